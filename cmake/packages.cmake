@@ -1,0 +1,10 @@
+# Third-party packages, all from Debian. Each is linked by the one folder that uses it.
+find_package(Threads REQUIRED)
+find_package(glm CONFIG REQUIRED)
+find_package(TBB 2021 CONFIG REQUIRED COMPONENTS tbb)
+find_package(OpenMesh CONFIG REQUIRED)   # target OpenMeshCore; the package has no version file
+find_package(TinyGLTF CONFIG REQUIRED)   # Debian ships it compiled: no implementation macro
+find_package(embree 3.13 CONFIG REQUIRED)
+find_package(CLI11 2.1 CONFIG REQUIRED)
+find_package(nlohmann_json 3.11 CONFIG REQUIRED)
+find_package(PkgConfig REQUIRED)

@@ -1,0 +1,192 @@
+#include "surfels/geometry.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace surfelao {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// Below this share of the summed areas a vector sum counts as cancelled: its direction would be
+/// rounding noise of the file's floats.
+constexpr double kCancelled = 1e-5;
+
+std::uint64_t hash_position(glm::dvec3 p)
+{
+    std::uint64_t hash = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        hash ^= std::bit_cast<std::uint64_t>(p[axis] + 0.0);  // + 0.0: -0 and 0 are one place
+        hash *= 0x9E3779B97F4A7C15u;
+        hash ^= hash >> 29;
+    }
+    return hash;
+}
+
+/// For each vertex the lowest index of a vertex at exactly the same position.
+std::vector<std::uint32_t> weld(const std::vector<glm::dvec3>& positions)
+{
+    const std::size_t slot_count = std::bit_ceil(positions.size() * 2 + 1);
+    std::vector<std::uint32_t> slots(slot_count, kNone);
+    std::vector<std::uint32_t> welded(positions.size());
+    for (std::uint32_t v = 0; v < positions.size(); ++v) {
+        std::size_t slot = hash_position(positions[v]) & (slot_count - 1);
+        while (slots[slot] != kNone && positions[slots[slot]] != positions[v])
+            slot = (slot + 1) & (slot_count - 1);
+        if (slots[slot] == kNone)
+            slots[slot] = v;
+        welded[v] = slots[slot];
+    }
+    return welded;
+}
+
+Frame frame_of(const Scene& scene)
+{
+    if (scene.triangles.empty())
+        return {};
+    glm::dvec3 low(std::numeric_limits<double>::max());
+    glm::dvec3 high(-std::numeric_limits<double>::max());
+    for (const glm::uvec3 triangle : scene.triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+            low = glm::min(low, scene.positions[triangle[corner]]);
+            high = glm::max(high, scene.positions[triangle[corner]]);
+        }
+    }
+    // hypot: the squares of the file's extremes (1e-30, 1e38) stay inside a double either way
+    const glm::dvec3 size = high - low;
+    const double diagonal = std::hypot(size.x, size.y, size.z);
+    return {low + 0.5 * size, diagonal > 0.0 ? diagonal : 1.0};
+}
+
+/// A position that only dropped triangles use takes the normal of the nearest neighbour along them
+/// (breadth first, so chains of degenerate triangles end at a real neighbour).
+void borrow_normals(const std::vector<glm::uvec3>& dropped, Geometry& geometry)
+{
+    // the dropped triangles around each position, as one array with offsets
+    const std::vector<std::uint32_t>& welded = geometry.welded;
+    std::vector<std::uint32_t> first(welded.size() + 1, 0);
+    for (const glm::uvec3 triangle : dropped) {
+        for (int corner = 0; corner < 3; ++corner)
+            ++first[welded[triangle[corner]] + 1];
+    }
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<std::uint32_t> around(dropped.size() * 3);
+    std::vector<std::uint32_t> next = first;
+    for (std::uint32_t t = 0; t < dropped.size(); ++t) {
+        for (int corner = 0; corner < 3; ++corner)
+            around[next[welded[dropped[t][corner]]]++] = t;
+    }
+
+    std::vector<std::uint32_t> queue;
+    for (std::uint32_t v = 0; v < welded.size(); ++v) {
+        if (first[v] != first[v + 1] && geometry.normals[v] != glm::vec3(0.0f))
+            queue.push_back(v);
+    }
+    for (std::size_t head = 0; head < queue.size(); ++head) {
+        const std::uint32_t from = queue[head];
+        for (std::uint32_t i = first[from]; i < first[from + 1]; ++i) {
+            for (int corner = 0; corner < 3; ++corner) {
+                const std::uint32_t to = welded[dropped[around[i]][corner]];
+                if (geometry.normals[to] == glm::vec3(0.0f)) {
+                    geometry.normals[to] = geometry.normals[from];
+                    queue.push_back(to);
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+
+Geometry make_geometry(const Scene& scene)
+{
+    Geometry geometry;
+    const std::size_t vertex_count = scene.positions.size();
+    geometry.frame = frame_of(scene);
+    geometry.welded = weld(scene.positions);
+    geometry.positions.resize(vertex_count);
+    geometry.normals.assign(vertex_count, glm::vec3(0.0f));
+    geometry.areas.assign(vertex_count, 0.0f);
+    geometry.triangles.reserve(scene.triangles.size());
+
+    const auto to_unit = [&](std::uint32_t v) {
+        return (scene.positions[v] - geometry.frame.centre) / geometry.frame.diagonal;
+    };
+    for (std::uint32_t v = 0; v < vertex_count; ++v)
+        geometry.positions[v] = glm::vec3(to_unit(v));
+
+    // triangles: keep those with area; sum vector areas per position and per vertex
+    std::vector<glm::dvec3> position_sum(vertex_count, glm::dvec3(0.0));
+    std::vector<glm::dvec3> own_sum(vertex_count, glm::dvec3(0.0));
+    std::vector<double> position_area(vertex_count, 0.0);
+    std::vector<double> own_area(vertex_count, 0.0);
+    std::vector<std::pair<double, std::uint32_t>> largest(vertex_count, {0.0, kNone});
+    std::vector<glm::uvec3> dropped;
+    for (const glm::uvec3 triangle : scene.triangles) {
+        const glm::dvec3 a = to_unit(triangle[0]);
+        const glm::dvec3 b = to_unit(triangle[1]);
+        const glm::dvec3 c = to_unit(triangle[2]);
+        const glm::dvec3 doubled = glm::cross(b - a, c - a);
+        const double longest2 = std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b),
+                                          glm::dot(a - c, a - c)});
+        const glm::vec3 fa(a), fb(b), fc(c);
+        const glm::vec3 rounded = glm::cross(fb - fa, fc - fa);
+        if (!(glm::length(doubled) > kZeroAreaRatio * longest2) ||
+            !(glm::dot(rounded, rounded) > 0.0f)) {
+            dropped.push_back(triangle);
+            continue;
+        }
+        const std::uint32_t index = static_cast<std::uint32_t>(geometry.triangles.size());
+        geometry.triangles.push_back(triangle);
+        const double area = 0.5 * glm::length(doubled);
+        for (int corner = 0; corner < 3; ++corner) {
+            const std::uint32_t v = triangle[corner];
+            const std::uint32_t w = geometry.welded[v];
+            position_sum[w] += 0.5 * doubled;
+            position_area[w] += area;
+            own_sum[v] += 0.5 * doubled;
+            own_area[v] += area;
+            if (area > largest[v].first)
+                largest[v] = {area, index};
+        }
+    }
+    geometry.dropped_triangles = dropped.size();
+
+    for (std::uint32_t v = 0; v < vertex_count; ++v) {
+        const std::uint32_t w = geometry.welded[v];
+        if (w == v)
+            geometry.areas[v] = static_cast<float>(position_area[v] / 3.0);
+        if (own_area[v] == 0.0)
+            continue;
+        glm::dvec3 sum = position_sum[w];
+        if (glm::length(sum) <= kCancelled * position_area[w])
+            sum = own_sum[v];
+        if (glm::length(sum) <= kCancelled * own_area[v]) {
+            const glm::uvec3 triangle = geometry.triangles[largest[v].second];
+            sum = glm::cross(to_unit(triangle[1]) - to_unit(triangle[0]),
+                             to_unit(triangle[2]) - to_unit(triangle[0]));
+        }
+        geometry.normals[v] = glm::vec3(glm::normalize(sum));
+    }
+    // the lowest vertex carries the area of its position, so it needs a normal even when no kept
+    // triangle uses that very vertex; then everyone at a position has one as soon as anyone has
+    for (std::uint32_t v = 0; v < vertex_count; ++v) {
+        const std::uint32_t w = geometry.welded[v];
+        if (geometry.normals[w] == glm::vec3(0.0f))
+            geometry.normals[w] = geometry.normals[v];
+    }
+    borrow_normals(dropped, geometry);
+    for (std::uint32_t v = 0; v < vertex_count; ++v) {
+        if (geometry.normals[v] == glm::vec3(0.0f))
+            geometry.normals[v] = geometry.normals[geometry.welded[v]];
+    }
+    return geometry;
+}
+
+}  // namespace surfelao

@@ -1,0 +1,50 @@
+/// geometry.h: the scene as every engine sees it: floats in one unit frame, clean, welded.
+///
+/// The frame is centred on the bounding box of all triangles and scaled by its diagonal, in double
+/// precision, so that every length and every epsilon in the engines is a share of the diagonal and
+/// neither a far offset (1e6) nor a tiny unit (1e-6) costs digits.
+#pragma once
+
+#include "surfels/scene.h"
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace surfelao {
+
+/// world = centre + diagonal * unit
+struct Frame {
+    glm::dvec3 centre{0.0};
+    double diagonal = 1.0;  ///< > 0; 1 where all triangles lie in one point
+};
+
+/// Invariants: all values finite; every triangle has an area > 0 in float arithmetic; |normal| is 1
+/// or 0; vertices at one and the same world position have the same `welded` entry.
+struct Geometry {
+    Frame frame;
+    std::vector<glm::vec3> positions;    ///< one per scene vertex, unit frame
+    std::vector<glm::vec3> normals;      ///< one per scene vertex; zero where no triangle gives one
+    std::vector<glm::uvec3> triangles;   ///< into positions; those without area are left out
+    std::vector<std::uint32_t> welded;   ///< one per vertex: lowest vertex index at this position
+    std::vector<float> areas;            ///< a third of the adjacent triangles, summed over welded
+                                         ///< vertices, at the lowest vertex; 0 elsewhere
+    std::uint64_t dropped_triangles = 0; ///< scene triangles without area
+};
+
+/// A triangle counts as having no area when twice its area is at most this share of its longest
+/// edge squared (in double: relative rounding of float files is 6e-8, of the computation 1e-16), or
+/// when its area is 0 after rounding to the unit frame.
+inline constexpr double kZeroAreaRatio = 1e-12;
+
+/// The normal of a vertex is the area-weighted mean of the triangles around its *position* (seams in
+/// the file do not split it). Where that sum cancels (two sheets back to back) it is the mean over
+/// the vertex's own triangles, then the normal of its largest triangle. A position that only dropped
+/// triangles use takes the normal of the nearest neighbour along them. A vertex that no triangle
+/// uses takes the normal of its position; where nothing else stands there it has none (zero).
+///
+/// O(n) expected; equal input gives equal bytes.
+[[nodiscard]] Geometry make_geometry(const Scene& scene);
+
+}  // namespace surfelao

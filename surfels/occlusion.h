@@ -1,0 +1,56 @@
+/// occlusion.h: the one definition of what surfelao measures. Every engine, file attribute and test
+/// refers to this page.
+///
+///     occlusion(p, n) = 1/pi * integral over the hemisphere around n of  H(w) (n.w) dw
+///
+/// H(w) = 1 where the ray from p along w hits any triangle, from either side, within max_distance;
+/// with a falloff, H(w) = falloff weight of the distance of the nearest hit. 0 = open, 1 = closed.
+/// visibility = 1 - occlusion is what is drawn and what is written to colours.
+///
+/// p is the receiver: the surface point moved along n by `offset`. On shells closer together than
+/// the offset the result depends on it, so both sides of a comparison use the same.
+///
+/// bent normal = normalised integral of (1 - H(w)) w (n.w) dw; n itself where nothing is open.
+///
+/// All lengths are in diagonals of the scene's bounding box (geometry.h).
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <limits>
+
+namespace surfelao {
+
+/// The answer for one receiver.
+struct Occlusion {
+    float occlusion = 0.0f;         ///< in [0, 1]: 0 = open, 1 = closed
+    glm::vec3 bent_normal{0.0f};    ///< unit length; zero only where the receiver has no normal
+};
+
+/// How directions are weighted.
+enum class Kernel {
+    cosine,   ///< the definition above
+    bunnell,  ///< min(1, 4 n.w) / (2 pi) in place of (n.w) / pi: the weight of Bunnell's "Dynamic
+              ///< Ambient Occlusion" (GPU Gems 2, 2005) and of Engleson's report (2011). Another
+              ///< quantity: a full enclosure gives 7/8. Known to the disk engine and to rays.
+};
+
+/// What a hit at a distance below max_distance counts.
+enum class Falloff {
+    none,    ///< every hit within max_distance counts 1
+    smooth,  ///< (1 - (t / max_distance)^2)^2: near hits count more, and nothing jumps at the limit.
+             ///< A choice of taste.
+};
+
+/// Everything that changes what is measured, and nothing that changes how.
+struct Definition {
+    float max_distance = std::numeric_limits<float>::infinity();  ///< > 0, in diagonals
+    Falloff falloff = Falloff::none;  ///< must be `none` where max_distance is infinite
+    float offset = 1e-4f;             ///< > 0, in diagonals
+    Kernel kernel = Kernel::cosine;
+};
+
+/// The weight in [0, 1] of a hit at distance t >= 0; 0 at and beyond max_distance.
+[[nodiscard]] float hit_weight(const Definition& definition, float t);
+
+}  // namespace surfelao

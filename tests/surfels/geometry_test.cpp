@@ -1,0 +1,135 @@
+#include "surfels/geometry.h"
+
+#include "surfels/receiver.h"
+#include "surfels/surfel.h"
+
+#include <glm/geometric.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace surfelao {
+namespace {
+
+/// Two triangles in z = 0, vertices 0..3 counterclockwise from the origin.
+Scene unit_square()
+{
+    Scene scene;
+    scene.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    scene.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return scene;
+}
+
+Scene moved(Scene scene, double scale, glm::dvec3 offset)
+{
+    for (glm::dvec3& p : scene.positions)
+        p = p * scale + offset;
+    return scene;
+}
+
+TEST(Geometry, FrameIsCentredAndItsDiagonalIsOne)
+{
+    const Geometry geometry = make_geometry(moved(unit_square(), 10.0, {5, 5, 5}));
+    EXPECT_NEAR(geometry.frame.diagonal, std::sqrt(200.0), 1e-12);
+    EXPECT_EQ(geometry.frame.centre, glm::dvec3(10, 10, 5));
+    EXPECT_NEAR(glm::length(geometry.positions[2] - geometry.positions[0]), 1.0f, 1e-6f);
+}
+
+TEST(Geometry, FarOffsetsAndExtremeScalesGiveTheSameUnitGeometry)
+{
+    const Geometry plain = make_geometry(unit_square());
+    for (double scale : {1e-30, 1e-6, 1e6, 1e30}) {
+        const Geometry other = make_geometry(moved(unit_square(), scale, glm::dvec3(0.0)));
+        EXPECT_EQ(other.positions, plain.positions) << "scale " << scale;
+        EXPECT_EQ(other.normals, plain.normals) << "scale " << scale;
+    }
+    const Geometry far = make_geometry(moved(unit_square(), 1.0, glm::dvec3(1e6)));
+    EXPECT_EQ(far.positions, plain.positions);
+}
+
+TEST(Geometry, SurfelAreasSumToTheMeshArea)
+{
+    const Geometry geometry = make_geometry(unit_square());
+    double sum = 0.0;
+    for (const Surfel& surfel : surfels_at_vertices(geometry))
+        sum += surfel.area;
+    EXPECT_NEAR(sum, 0.5, 1e-6);  // area 1 in units of diagonal^2 = 2
+}
+
+// Vertices 0 and 4 stand at one place: a seam. Both get the mean normal of the fold.
+TEST(Geometry, SeamsShareNormalAndArea)
+{
+    Scene scene;
+    scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}, {0, 1, 0}};
+    scene.triangles = {{0, 1, 2}, {4, 5, 3}};
+    const Geometry geometry = make_geometry(scene);
+    EXPECT_EQ(geometry.welded[4], 0u);
+    EXPECT_EQ(geometry.normals[4], geometry.normals[0]);
+    EXPECT_NEAR(geometry.normals[0].x, std::sqrt(0.5f), 1e-6f);
+    EXPECT_NEAR(geometry.normals[0].z, std::sqrt(0.5f), 1e-6f);
+    EXPECT_EQ(geometry.areas[4], 0.0f);
+    EXPECT_EQ(surfels_at_vertices(geometry).size(), 4u);
+}
+
+// Front and back of one sheet with vertices of their own: each side keeps its own normal.
+TEST(Geometry, BackToBackSheetsKeepTheirOwnNormals)
+{
+    Scene scene;
+    scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    scene.triangles = {{0, 1, 2}, {5, 4, 3}};
+    const Geometry geometry = make_geometry(scene);
+    EXPECT_EQ(geometry.normals[0], glm::vec3(0, 0, 1));
+    EXPECT_EQ(geometry.normals[3], glm::vec3(0, 0, -1));
+}
+
+TEST(Geometry, TrianglesWithoutAreaAreDroppedCountedAndLeaveNoNaN)
+{
+    Scene scene = unit_square();
+    scene.positions.push_back({2, 2, 0});  // 4: only a collinear triangle uses it
+    scene.positions.push_back({9, 9, 9});  // 5: nobody uses it
+    scene.triangles.push_back({0, 2, 4});
+    scene.triangles.push_back({1, 1, 3});
+    const Geometry geometry = make_geometry(scene);
+    EXPECT_EQ(geometry.dropped_triangles, 2u);
+    EXPECT_EQ(geometry.triangles.size(), 2u);
+    EXPECT_EQ(geometry.normals[4], glm::vec3(0, 0, 1));
+    EXPECT_EQ(geometry.normals[5], glm::vec3(0));
+}
+
+// A long chain of degenerate triangles, listed away from the one good triangle.
+TEST(Geometry, ChainsOfDegenerateTrianglesEndAtARealNormal)
+{
+    Scene scene = unit_square();
+    const std::uint32_t count = 100'000;
+    for (std::uint32_t i = 0; i < count; ++i)
+        scene.positions.push_back({2.0 + i, 0, 0});
+    for (std::uint32_t i = count - 1; i > 0; --i)
+        scene.triangles.push_back({3 + i, 4 + i, 4 + i});
+    scene.triangles.push_back({1, 4, 4});
+    const Geometry geometry = make_geometry(scene);
+    EXPECT_EQ(geometry.normals.back(), glm::vec3(0, 0, 1));
+}
+
+TEST(Geometry, AllVerticesInOnePointGiveNoTrianglesAndNoNormals)
+{
+    Scene scene;
+    scene.positions.assign(3, {7, 7, 7});
+    scene.triangles = {{0, 1, 2}};
+    const Geometry geometry = make_geometry(scene);
+    EXPECT_TRUE(geometry.triangles.empty());
+    EXPECT_EQ(geometry.frame.diagonal, 1.0);
+    EXPECT_EQ(geometry.normals[1], glm::vec3(0));
+}
+
+TEST(Receiver, StandsAboveTheSurfaceByTheOffset)
+{
+    const Geometry geometry = make_geometry(unit_square());
+    const std::vector<Receiver> receivers = receivers_at_vertices(geometry, 1e-3f);
+    ASSERT_EQ(receivers.size(), 4u);
+    EXPECT_NEAR(receivers[1].position.z, 1e-3f, 1e-9f);
+}
+
+}  // namespace
+}  // namespace surfelao
