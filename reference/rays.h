@@ -1,4 +1,5 @@
-/// rays.h: the independent witness: occlusion by ray casting with Embree. Shares nothing with tree/.
+/// rays.h: the independent witness: occlusion by ray casting with Embree. Shares nothing with
+/// tree/.
 ///
 /// Also the opponent of every speed comparison, so it is built to be fast: cosine-weighted
 /// Owen-scrambled Sobol points, packets of 16 rays of one receiver sorted to fill one Sobol cell,
@@ -45,8 +46,8 @@ struct RayOptions {
     std::uint32_t seed = 0;
 };
 
-/// One Occlusion per receiver; noise about 0.4 * rays^-0.73 RMS. All cores, same bytes for any number
-/// of threads. Throws Cancelled.
+/// One Occlusion per receiver; noise about 0.4 * rays^-0.73 RMS. All cores, same bytes for any
+/// number of threads. Throws Cancelled.
 [[nodiscard]] std::vector<Occlusion> trace_occlusion(const RayScene& scene,
                                                      std::span<const Receiver> receivers,
                                                      const RayOptions& options,

@@ -20,12 +20,12 @@ public:
 }  // namespace surfelao
 
 /// Prints the broken condition and its place, then aborts. For callers' mistakes only.
-#define SURFELAO_CHECK(condition)                                                             \
-    do {                                                                                      \
-        if (!(condition)) {                                                                   \
+#define SURFELAO_CHECK(condition)                                                              \
+    do {                                                                                       \
+        if (!(condition)) {                                                                    \
             std::fprintf(stderr, "%s:%d: check failed: %s\n", __FILE__, __LINE__, #condition); \
-            std::abort();                                                                     \
-        }                                                                                     \
+            std::abort();                                                                      \
+        }                                                                                      \
     } while (false)
 
 #ifdef NDEBUG

@@ -133,8 +133,8 @@ Geometry make_geometry(const Scene& scene)
         const glm::dvec3 b = to_unit(triangle[1]);
         const glm::dvec3 c = to_unit(triangle[2]);
         const glm::dvec3 doubled = glm::cross(b - a, c - a);
-        const double longest2 = std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b),
-                                          glm::dot(a - c, a - c)});
+        const double longest2 =
+            std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});
         const glm::vec3 fa(a), fb(b), fc(c);
         const glm::vec3 rounded = glm::cross(fb - fa, fc - fa);
         if (!(glm::length(doubled) > kZeroAreaRatio * longest2) ||

@@ -24,13 +24,13 @@ struct Frame {
 /// or 0; vertices at one and the same world position have the same `welded` entry.
 struct Geometry {
     Frame frame;
-    std::vector<glm::vec3> positions;    ///< one per scene vertex, unit frame
-    std::vector<glm::vec3> normals;      ///< one per scene vertex; zero where no triangle gives one
-    std::vector<glm::uvec3> triangles;   ///< into positions; those without area are left out
-    std::vector<std::uint32_t> welded;   ///< one per vertex: lowest vertex index at this position
-    std::vector<float> areas;            ///< a third of the adjacent triangles, summed over welded
-                                         ///< vertices, at the lowest vertex; 0 elsewhere
-    std::uint64_t dropped_triangles = 0; ///< scene triangles without area
+    std::vector<glm::vec3> positions;   ///< one per scene vertex, unit frame
+    std::vector<glm::vec3> normals;     ///< one per scene vertex; zero where no triangle gives one
+    std::vector<glm::uvec3> triangles;  ///< into positions; those without area are left out
+    std::vector<std::uint32_t> welded;  ///< one per vertex: lowest vertex index at this position
+    std::vector<float> areas;           ///< a third of the adjacent triangles, summed over welded
+                                        ///< vertices, at the lowest vertex; 0 elsewhere
+    std::uint64_t dropped_triangles = 0;  ///< scene triangles without area
 };
 
 /// A triangle counts as having no area when twice its area is at most this share of its longest
@@ -38,11 +38,12 @@ struct Geometry {
 /// when its area is 0 after rounding to the unit frame.
 inline constexpr double kZeroAreaRatio = 1e-12;
 
-/// The normal of a vertex is the area-weighted mean of the triangles around its *position* (seams in
-/// the file do not split it). Where that sum cancels (two sheets back to back) it is the mean over
-/// the vertex's own triangles, then the normal of its largest triangle. A position that only dropped
-/// triangles use takes the normal of the nearest neighbour along them. A vertex that no triangle
-/// uses takes the normal of its position; where nothing else stands there it has none (zero).
+/// The normal of a vertex is the area-weighted mean of the triangles around its *position* (seams
+/// in the file do not split it). Where that sum cancels (two sheets back to back) it is the mean
+/// over the vertex's own triangles, then the normal of its largest triangle. A position that only
+/// dropped triangles use takes the normal of the nearest neighbour along them. A vertex that no
+/// triangle uses takes the normal of its position; where nothing else stands there it has none
+/// (zero).
 ///
 /// O(n) expected; equal input gives equal bytes.
 [[nodiscard]] Geometry make_geometry(const Scene& scene);

@@ -23,8 +23,8 @@ namespace surfelao {
 
 /// The answer for one receiver.
 struct Occlusion {
-    float occlusion = 0.0f;         ///< in [0, 1]: 0 = open, 1 = closed
-    glm::vec3 bent_normal{0.0f};    ///< unit length; zero only where the receiver has no normal
+    float occlusion = 0.0f;       ///< in [0, 1]: 0 = open, 1 = closed
+    glm::vec3 bent_normal{0.0f};  ///< unit length; zero only where the receiver has no normal
 };
 
 /// How directions are weighted.
@@ -38,8 +38,8 @@ enum class Kernel {
 /// What a hit at a distance below max_distance counts.
 enum class Falloff {
     none,    ///< every hit within max_distance counts 1
-    smooth,  ///< (1 - (t / max_distance)^2)^2: near hits count more, and nothing jumps at the limit.
-             ///< A choice of taste.
+    smooth,  ///< (1 - (t / max_distance)^2)^2: near hits count more, and nothing jumps at the
+             ///< limit. A choice of taste.
 };
 
 /// Everything that changes what is measured, and nothing that changes how.

@@ -1,7 +1,7 @@
 /// scene.h: what a file holds, as triangles in world space.
 ///
-/// A scene is everything in the file: all nodes and instances occlude each other. It is flat: a mesh
-/// used by three nodes stands here three times, because each use gets occlusion of its own.
+/// A scene is everything in the file: all nodes and instances occlude each other. It is flat: a
+/// mesh used by three nodes stands here three times, because each use gets occlusion of its own.
 ///
 /// Invariants (read_scene guarantees them; nothing behind it checks again): every coordinate is
 /// finite, every index is in range, the parts cover all vertices and triangles in order and without
@@ -19,12 +19,12 @@ namespace surfelao {
 
 /// One use of one mesh: a consecutive range of vertices and triangles.
 struct Part {
-    std::string name;               ///< for messages and tables; may be empty
+    std::string name;  ///< for messages and tables; may be empty
     std::uint32_t first_vertex = 0;
     std::uint32_t vertex_count = 0;
     std::uint32_t first_triangle = 0;
     std::uint32_t triangle_count = 0;
-    std::int32_t node = -1;         ///< glTF: node, mesh and primitive that this part is; else -1
+    std::int32_t node = -1;  ///< glTF: node, mesh and primitive that this part is; else -1
     std::int32_t mesh = -1;
     std::int32_t primitive = -1;
 };
@@ -36,9 +36,9 @@ public:
 };
 
 struct Scene {
-    std::string name;                    ///< the file's name without folder, for messages
-    std::vector<glm::dvec3> positions;   ///< world space, in the file's own order and number
-    std::vector<glm::uvec3> triangles;   ///< into positions; polygons are already cut up
+    std::string name;                   ///< the file's name without folder, for messages
+    std::vector<glm::dvec3> positions;  ///< world space, in the file's own order and number
+    std::vector<glm::uvec3> triangles;  ///< into positions; polygons are already cut up
     std::vector<Part> parts;
     std::shared_ptr<const SourceAsset> asset;  ///< null for scenes made in code
 };

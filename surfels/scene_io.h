@@ -1,8 +1,9 @@
 /// scene_io.h: mesh files in, mesh files with occlusion out.
 ///
 /// Read: .obj .ply .off .stl .gltf .glb (by extension, any case). Written: .ply .obj .off, and
-/// .gltf/.glb for a scene that came from glTF. The file's own order and number of vertices are kept,
-/// also on non-manifold meshes and at seams (STL has no vertices of its own: equal corners are one).
+/// .gltf/.glb for a scene that came from glTF. The file's own order and number of vertices are
+/// kept, also on non-manifold meshes and at seams (STL has no vertices of its own: equal corners
+/// are one).
 #pragma once
 
 #include "surfels/occlusion.h"
@@ -13,24 +14,25 @@
 
 namespace surfelao {
 
-/// Reads a file. Throws InputError with one sentence that names file, element and fault for anything
-/// that is not a complete, finite, consistent mesh with at least one triangle. Time and memory stay
-/// in proportion to the file's size, whatever its counts claim.
+/// Reads a file. Throws InputError with one sentence that names file, element and fault for
+/// anything that is not a complete, finite, consistent mesh with at least one triangle. Time and
+/// memory stay in proportion to the file's size, whatever its counts claim.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path);
 
 struct WriteOptions {
-    bool colors = false;  ///< glTF: also write COLOR_0 (visibility as grey). PLY and OBJ always have it
+    bool colors =
+        false;  ///< glTF: also write COLOR_0 (visibility as grey). PLY and OBJ always have it
 };
 
 /// Throws InputError when a scene from `input` could not be written to `output` at all: unknown
-/// extension, STL, a glTF asked of a scene that is none, folder missing or not writable, output is a
-/// folder. For use before any work is done.
+/// extension, STL, a glTF asked of a scene that is none, folder missing or not writable, output is
+/// a folder. For use before any work is done.
 void check_output(const std::filesystem::path& input, const std::filesystem::path& output);
 
 /// Writes the scene with one Occlusion per scene vertex, in scene order. The file appears under its
-/// name only when it is complete (written to a temporary name beside it, then renamed): on any error
-/// an existing file is untouched and nothing is left behind. Throws std::runtime_error when the
-/// machine refuses (disk full).
+/// name only when it is complete (written to a temporary name beside it, then renamed): on any
+/// error an existing file is untouched and nothing is left behind. Throws std::runtime_error when
+/// the machine refuses (disk full).
 void write_scene(const std::filesystem::path& path, const Scene& scene,
                  std::span<const Occlusion> occlusion, const WriteOptions& options = {});
 

@@ -16,13 +16,15 @@ enum class OccluderSide : std::uint8_t {
 };
 
 struct Topology {
-    std::uint64_t component_count = 0;       ///< connected over welded vertices
-    std::uint64_t closed_component_count = 0;///< every edge has exactly two oppositely directed faces
-    std::uint64_t boundary_edge_count = 0;   ///< one face
-    std::uint64_t nonmanifold_edge_count = 0;///< more than two faces
-    std::uint64_t misoriented_edge_count = 0;///< two faces that run along it in the same direction
-    std::uint64_t duplicate_triangle_count = 0; ///< same three positions as an earlier triangle
-    std::vector<OccluderSide> sides;         ///< one per scene vertex
+    std::uint64_t component_count = 0;  ///< connected over welded vertices
+    std::uint64_t closed_component_count =
+        0;  ///< every edge has exactly two oppositely directed faces
+    std::uint64_t boundary_edge_count = 0;     ///< one face
+    std::uint64_t nonmanifold_edge_count = 0;  ///< more than two faces
+    std::uint64_t misoriented_edge_count =
+        0;  ///< two faces that run along it in the same direction
+    std::uint64_t duplicate_triangle_count = 0;  ///< same three positions as an earlier triangle
+    std::vector<OccluderSide> sides;             ///< one per scene vertex
 };
 
 /// O(n log n). Uses OpenMesh for connectivity where the surface is manifold; edges that OpenMesh

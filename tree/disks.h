@@ -1,7 +1,7 @@
 /// disks.h: occlusion by summed disk form factors over an octree of clustered surfels.
 ///
-/// The classic: fast, preview quality, the same in GLSL (gpu/). Known limits: layers, thin parts and
-/// open meshes (RMSE 0.05 and more), rooms fail. See design notes in docs/.
+/// The classic: fast, preview quality, the same in GLSL (gpu/). Known limits: layers, thin parts
+/// and open meshes (RMSE 0.05 and more), rooms fail. See design notes in docs/.
 ///
 /// Based on:
 ///   Bunnell. Dynamic Ambient Occlusion and Indirect Lighting. GPU Gems 2, ch. 14. 2005
@@ -22,9 +22,10 @@ namespace surfelao {
 
 struct DiskOptions {
     Definition definition;
-    float opening = 0.35f;   ///< >= 0: a node is opened while its radius / distance is above; 0 = all
-    int passes = 2;          ///< >= 1: 1 = plain sum; more = damped correction of over-occlusion
-    float strength = 1.0f;   ///< >= 0: occlusion is multiplied by it, then cut to [0, 1]
+    float opening =
+        0.35f;       ///< >= 0: a node is opened while its radius / distance is above; 0 = all
+    int passes = 2;  ///< >= 1: 1 = plain sum; more = damped correction of over-occlusion
+    float strength = 1.0f;  ///< >= 0: occlusion is multiplied by it, then cut to [0, 1]
 };
 
 struct DiskResult {

@@ -2,7 +2,8 @@
 ///
 /// Not sums but visibility: several layers count once. Nodes of a tree over triangles are oriented
 /// rectangles; near ones are opened down to single triangles; all are drawn as convex polygons into
-/// a six-face bit raster held in SIMD registers. Groups of neighbouring receivers share the far part.
+/// a six-face bit raster held in SIMD registers. Groups of neighbouring receivers share the far
+/// part.
 #pragma once
 
 #include "surfels/geometry.h"
