@@ -1,0 +1,359 @@
+#include "reference/rays.h"
+
+#include "reference/sobol.h"
+#include "surfels/errors.h"
+
+#include <embree3/rtcore.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+#include <xmmintrin.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace surfelao {
+namespace {
+
+/// One device per instruction set for the whole process: its start is not part of anyone's build.
+RTCDevice device_for(RayScene::Isa isa)
+{
+    const auto start = [](const char* config) {
+        const RTCDevice device = rtcNewDevice(config);
+        if (device == nullptr)
+            throw std::runtime_error("Embree cannot start (error " +
+                                     std::to_string(rtcGetDeviceError(nullptr)) + ")");
+        return device;
+    };
+    if (isa == RayScene::Isa::avx2) {
+        static const RTCDevice device = start("max_isa=avx2");
+        return device;
+    }
+    static const RTCDevice device = start(nullptr);
+    return device;
+}
+
+/// Denormals cost the traversal up to a hundred cycles each and change nothing here.
+class FlushDenormals {
+public:
+    FlushDenormals() : saved_(_mm_getcsr())
+    {
+        _mm_setcsr(saved_ | kFlushToZero | kDenormalsAreZero);
+    }
+    ~FlushDenormals() { _mm_setcsr(saved_); }
+    FlushDenormals(const FlushDenormals&) = delete;
+    FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+private:
+    static constexpr unsigned kFlushToZero = 0x8000, kDenormalsAreZero = 0x0040;
+    unsigned saved_;
+};
+
+/// Embree's packet types and calls by width.
+template <int width>
+struct Packets;
+
+template <>
+struct Packets<16> {
+    using Ray = RTCRay16;
+    using RayHit = RTCRayHit16;
+    static constexpr auto occluded = rtcOccluded16;
+    static constexpr auto intersect = rtcIntersect16;
+};
+
+template <>
+struct Packets<8> {
+    using Ray = RTCRay8;
+    using RayHit = RTCRayHit8;
+    static constexpr auto occluded = rtcOccluded8;
+    static constexpr auto intersect = rtcIntersect8;
+};
+
+/// Weight of a cosine-weighted sample: the kernel's density over (n.w) / pi.
+float sample_weight(Kernel kernel, float cosine)
+{
+    if (kernel == Kernel::cosine)
+        return 1.0f;
+    return cosine <= 0.25f ? 2.0f : 0.5f / cosine;  // min(1, 4 cosine) / (2 cosine)
+}
+
+/// What the rays of a packet have found, lane by lane.
+struct LaneSums {
+    float hits[kPacket] = {};                                 ///< weighted
+    float x[kPacket] = {}, y[kPacket] = {}, z[kPacket] = {};  ///< weighted open directions
+};
+
+/// Traces kPacket rays in Embree packets of `width`.
+template <int width>
+class PacketTracer {
+public:
+    PacketTracer(RTCScene scene, const Definition& definition)
+        : scene_(scene), definition_(definition)
+    {
+        rtcInitIntersectContext(&context_);
+        context_.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+        for (auto& part : rays_) {
+            for (int lane = 0; lane < width; ++lane) {
+                part.ray.tnear[lane] = 0.0f;
+                part.ray.time[lane] = 0.0f;
+                part.ray.mask[lane] = ~0u;
+                part.ray.id[lane] = 0;
+                part.ray.flags[lane] = 0;
+            }
+        }
+    }
+
+    void set_origin(int lane, glm::vec3 position)
+    {
+        auto& ray = rays_[lane / width].ray;
+        ray.org_x[lane % width] = position.x;
+        ray.org_y[lane % width] = position.y;
+        ray.org_z[lane % width] = position.z;
+    }
+
+    /// valid[lane] is -1 where there is a ray, else 0.
+    void trace(const DirectionPacket& directions, const int (&valid)[kPacket], LaneSums& sums)
+    {
+        for (int first = 0; first < kPacket; first += width)
+            trace_part(directions, first, valid + first, sums);
+    }
+
+private:
+    void trace_part(const DirectionPacket& directions, int first, const int* valid, LaneSums& sums)
+    {
+        auto& part = rays_[first / width];
+        for (int lane = 0; lane < width; ++lane) {
+            part.ray.dir_x[lane] = directions.x[first + lane];
+            part.ray.dir_y[lane] = directions.y[first + lane];
+            part.ray.dir_z[lane] = directions.z[first + lane];
+            part.ray.tfar[lane] = definition_.max_distance;
+        }
+        alignas(64) int mask[width];
+        std::copy_n(valid, width, mask);
+
+        // any hit is as good as another unless its distance counts
+        float hit[width];
+        if (definition_.falloff == Falloff::none) {
+            Packets<width>::occluded(mask, scene_, &context_, &part.ray);
+            for (int lane = 0; lane < width; ++lane)
+                hit[lane] = part.ray.tfar[lane] < 0.0f ? 1.0f : 0.0f;  // Embree's mark: -infinity
+        } else {
+            std::fill_n(part.hit.geomID, width, RTC_INVALID_GEOMETRY_ID);
+            Packets<width>::intersect(mask, scene_, &context_, &part);
+            for (int lane = 0; lane < width; ++lane)
+                hit[lane] = hit_weight(definition_, part.ray.tfar[lane]);  // 0 where it missed
+        }
+
+        for (int lane = 0; lane < width; ++lane) {
+            const float weight =
+                valid[lane] ? sample_weight(definition_.kernel, directions.cosine[first + lane])
+                            : 0.0f;
+            const float open = weight * (1.0f - hit[lane]);
+            sums.hits[first + lane] += weight * hit[lane];
+            sums.x[first + lane] += open * part.ray.dir_x[lane];
+            sums.y[first + lane] += open * part.ray.dir_y[lane];
+            sums.z[first + lane] += open * part.ray.dir_z[lane];
+        }
+    }
+
+    RTCScene scene_;
+    Definition definition_;
+    RTCIntersectContext context_;
+    typename Packets<width>::RayHit rays_[kPacket / width] = {};
+};
+
+Occlusion answer(float hits, glm::vec3 open, const Receiver& receiver, std::uint32_t rays)
+{
+    const float length = glm::length(open);
+    return {std::min(1.0f, hits / static_cast<float>(rays)),
+            length > 0.0f ? open / length : receiver.normal};
+}
+
+/// Receivers along a Morton curve: neighbours see the same part of the hierarchy.
+std::vector<std::uint32_t> morton_order(std::span<const Receiver> receivers)
+{
+    const auto spread = [](float x) {  // 10 bits of the unit frame (half a diagonal and a margin)
+        std::uint32_t bits =
+            static_cast<std::uint32_t>(std::clamp((x + 0.5f) * 1024.0f, 0.0f, 1023.0f));
+        bits = (bits | bits << 16) & 0x030000FFu;
+        bits = (bits | bits << 8) & 0x0300F00Fu;
+        bits = (bits | bits << 4) & 0x030C30C3u;
+        return (bits | bits << 2) & 0x09249249u;
+    };
+    std::vector<std::uint64_t> keys(receivers.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const glm::vec3 p = receivers[i].position;
+        const std::uint32_t code = spread(p.x) << 2 | spread(p.y) << 1 | spread(p.z);
+        keys[i] = static_cast<std::uint64_t>(code) << 32 | i;
+    }
+    tbb::parallel_sort(keys.begin(), keys.end());
+    std::vector<std::uint32_t> order(keys.size());
+    std::transform(keys.begin(), keys.end(), order.begin(),
+                   [](std::uint64_t key) { return static_cast<std::uint32_t>(key); });
+    return order;
+}
+
+/// The work on one fixed run of at most kPacket neighbouring receivers. Runs do not depend on the
+/// number of threads, and so neither does any packet.
+template <int width>
+class RunTracer {
+public:
+    RunTracer(RTCScene scene, std::span<const Receiver> receivers, const RayOptions& options,
+              const SobolPoints& points, std::vector<Occlusion>& results)
+        : receivers_(receivers),
+          options_(options),
+          points_(points),
+          results_(results),
+          tracer_(scene, options.definition)
+    {
+    }
+
+    void trace(std::span<const std::uint32_t> run)
+    {
+        if (options_.rays < kPacket) {
+            trace_across(run);
+        } else {
+            for (const std::uint32_t index : run)
+                trace_receiver(index);
+        }
+    }
+
+private:
+    /// Packets of rays of one receiver.
+    void trace_receiver(std::uint32_t index)
+    {
+        const Receiver& receiver = receivers_[index];
+        if (receiver.normal == glm::vec3(0.0f))
+            return;
+        const Hemisphere hemisphere = hemisphere_over(receiver.normal, options_.seed, index);
+        for (int lane = 0; lane < kPacket; ++lane)
+            tracer_.set_origin(lane, receiver.position);
+        LaneSums sums;
+        for (std::uint32_t first = 0; first < options_.rays; first += kPacket) {
+            int valid[kPacket];
+            for (int lane = 0; lane < kPacket; ++lane)
+                valid[lane] = first + static_cast<std::uint32_t>(lane) < options_.rays ? -1 : 0;
+            fill_directions(points_, first, hemisphere, directions_);
+            tracer_.trace(directions_, valid, sums);
+        }
+        float hits = 0.0f;
+        glm::vec3 open(0.0f);
+        for (int lane = 0; lane < kPacket; ++lane) {
+            hits += sums.hits[lane];
+            open += glm::vec3(sums.x[lane], sums.y[lane], sums.z[lane]);
+        }
+        results_[index] = answer(hits, open, receiver, options_.rays);
+    }
+
+    /// Packets of one ray each of neighbouring receivers.
+    void trace_across(std::span<const std::uint32_t> run)
+    {
+        Hemisphere hemispheres[kPacket];
+        int valid[kPacket] = {};
+        for (std::size_t lane = 0; lane < run.size(); ++lane) {
+            const Receiver& receiver = receivers_[run[lane]];
+            hemispheres[lane] = hemisphere_over(receiver.normal, options_.seed, run[lane]);
+            valid[lane] = receiver.normal == glm::vec3(0.0f) ? 0 : -1;
+            tracer_.set_origin(static_cast<int>(lane), receiver.position);
+        }
+        LaneSums sums;
+        for (std::uint32_t ray = 0; ray < options_.rays; ++ray) {
+            fill_directions_across(points_, ray, hemispheres, directions_);
+            tracer_.trace(directions_, valid, sums);
+        }
+        for (std::size_t lane = 0; lane < run.size(); ++lane) {
+            if (valid[lane])
+                results_[run[lane]] =
+                    answer(sums.hits[lane], {sums.x[lane], sums.y[lane], sums.z[lane]},
+                           receivers_[run[lane]], options_.rays);
+        }
+    }
+
+    std::span<const Receiver> receivers_;
+    const RayOptions& options_;
+    const SobolPoints& points_;
+    std::vector<Occlusion>& results_;
+    PacketTracer<width> tracer_;
+    DirectionPacket directions_;
+};
+
+template <int width>
+std::vector<Occlusion> trace_all(RTCScene scene, std::span<const Receiver> receivers,
+                                 const RayOptions& options, const Progress& progress)
+{
+    const SobolPoints points = sobol_points_by_cell(options.rays);
+    const std::vector<std::uint32_t> order = morton_order(receivers);
+    std::vector<Occlusion> results(receivers.size());
+    ProgressMeter meter(progress, receivers.size());
+
+    const std::size_t run_count = (order.size() + kPacket - 1) / kPacket;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, run_count, 4), [&](const auto& range) {
+        const FlushDenormals flush;
+        RunTracer<width> tracer(scene, receivers, options, points, results);
+        for (std::size_t run = range.begin(); run < range.end(); ++run) {
+            const std::size_t first = run * kPacket;
+            const std::size_t count = std::min<std::size_t>(kPacket, order.size() - first);
+            tracer.trace(std::span(order).subspan(first, count));
+            meter.add(count);
+        }
+    });
+    return results;
+}
+
+}  // namespace
+
+struct RayScene::Impl {
+    RTCScene scene = nullptr;
+    bool wide = false;  ///< packets of 16 are native
+    ~Impl() { rtcReleaseScene(scene); }
+};
+
+RayScene::RayScene(const Geometry& geometry, Build build, Isa isa) : impl_(std::make_unique<Impl>())
+{
+    const RTCDevice device = device_for(isa);
+    impl_->wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
+    impl_->scene = rtcNewScene(device);
+    rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneFlags(impl_->scene,
+                     build == Build::robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+    if (!geometry.triangles.empty()) {
+        const RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        void* vertices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                 sizeof(glm::vec3), geometry.positions.size());
+        void* indices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                sizeof(glm::uvec3), geometry.triangles.size());
+        if (vertices != nullptr && indices != nullptr) {
+            std::copy(geometry.positions.begin(), geometry.positions.end(),
+                      static_cast<glm::vec3*>(vertices));
+            std::copy(geometry.triangles.begin(), geometry.triangles.end(),
+                      static_cast<glm::uvec3*>(indices));
+            rtcCommitGeometry(mesh);
+            rtcAttachGeometry(impl_->scene, mesh);
+        }
+        rtcReleaseGeometry(mesh);
+    }
+    rtcCommitScene(impl_->scene);
+    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
+        throw std::runtime_error(error == RTC_ERROR_OUT_OF_MEMORY
+                                     ? "not enough memory for the ray tracer's hierarchy"
+                                     : "Embree cannot build its hierarchy (error " +
+                                           std::to_string(error) + ")");
+    }
+}
+
+RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+
+std::vector<Occlusion> trace_occlusion(const RayScene& scene, std::span<const Receiver> receivers,
+                                       const RayOptions& options, const Progress& progress)
+{
+    SURFELAO_CHECK(options.rays >= 1 && options.rays <= kMostRays);
+    const RayScene::Impl& impl = scene.impl();
+    return impl.wide ? trace_all<16>(impl.scene, receivers, options, progress)
+                     : trace_all<8>(impl.scene, receivers, options, progress);
+}
+
+}  // namespace surfelao
