@@ -1,0 +1,55 @@
+/// gltf_accessor.h: the values behind a glTF accessor. Internal to the glTF reader and writer.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+namespace surfelao {
+
+/// glTF's componentType.
+enum class GltfComponent : std::uint16_t {
+    int8 = 5120,
+    uint8 = 5121,
+    int16 = 5122,
+    uint16 = 5123,
+    uint32 = 5125,
+    float32 = 5126,
+};
+
+/// 1, 2 or 4 bytes.
+[[nodiscard]] std::size_t size_of(GltfComponent component);
+
+/// Where the elements lie. The bytes need no alignment.
+/// Invariant (the reader has checked it): the last element ends inside `bytes`.
+struct GltfAccessor {
+    std::string_view bytes;  ///< from the first element on; not used when `zero`
+    std::size_t stride = 0;  ///< bytes from one element to the next
+    std::size_t count = 0;
+    GltfComponent component = GltfComponent::float32;
+    int dimension = 1;       ///< components per element
+    bool normalized = false; ///< integers stand for [-1, 1] or [0, 1]
+    bool zero = false;       ///< without a bufferView: all zero, but for the sparse elements
+
+    std::size_t sparse_count = 0;
+    std::string_view sparse_indices;  ///< sparse_count whole numbers, close together
+    GltfComponent sparse_component = GltfComponent::uint32;
+    std::string_view sparse_values;   ///< sparse_count elements, close together
+};
+
+/// What is wrong with the values of an accessor; what() lacks the element's name.
+struct AccessorError : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Appends `count` vectors; asks for three components of any type. Throws AccessorError on a value
+/// that is not finite and on bad sparse indices.
+void append_vectors(const GltfAccessor& accessor, std::vector<glm::dvec3>& vectors);
+
+/// Asks for one component of an unsigned type. Throws AccessorError on bad sparse indices.
+[[nodiscard]] std::vector<std::uint32_t> read_indices(const GltfAccessor& accessor);
+
+}  // namespace surfelao

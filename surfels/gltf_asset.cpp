@@ -1,0 +1,313 @@
+#include "surfels/gltf_asset.h"
+
+#include "surfels/errors.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <map>
+
+namespace surfelao {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// Written files have about ten levels; recursion over the document is safe at this depth.
+constexpr int kMaxNesting = 256;
+
+constexpr std::uint32_t kGlbMagic = 0x46546C67;   // "glTF"
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
+constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN"
+
+std::string read_bytes(const fs::path& path, const fs::path& asset, std::string_view element)
+{
+    std::error_code error;
+    if (!fs::exists(path, error))
+        fail_gltf(asset, element, "no such file");
+    if (!fs::is_regular_file(path, error))
+        fail_gltf(asset, element, "is not a file");
+    const std::uintmax_t size = fs::file_size(path, error);
+    std::ifstream stream(path, std::ios::binary);
+    if (error || !stream)
+        fail_gltf(asset, element, "cannot be opened for reading");
+    std::string bytes(size, '\0');
+    stream.read(bytes.data(), static_cast<std::streamsize>(size));
+    if (!stream)
+        fail_gltf(asset, element, "cannot be read to its end");
+    return bytes;
+}
+
+std::uint32_t little_endian_32(std::string_view bytes, std::size_t offset)
+{
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        value |= std::uint32_t{static_cast<unsigned char>(bytes[offset + i])} << (8 * i);
+    return value;
+}
+
+struct Container {
+    std::string_view text;
+    std::string_view bin;
+};
+
+Container open_glb(std::string_view file, const fs::path& path)
+{
+    if (file.size() < 12)
+        fail_gltf(path, "GLB header", "the file ends after " + std::to_string(file.size()) +
+                                          " bytes, 12 are needed");
+    const std::uint32_t version = little_endian_32(file, 4);
+    if (version != 2)
+        fail_gltf(path, "GLB header",
+                  "container version " + std::to_string(version) + ", only 2 is read");
+    const std::uint32_t length = little_endian_32(file, 8);
+    if (length > file.size() || length < 12)
+        fail_gltf(path, "GLB header",
+                  "declares " + std::to_string(length) + " bytes, but the file has " +
+                      std::to_string(file.size()));
+    Container container;
+    bool has_text = false;
+    bool has_bin = false;
+    std::size_t at = 12;
+    for (int chunk = 0; at + 8 <= length; ++chunk) {
+        const std::size_t size = little_endian_32(file, at);
+        const std::uint32_t type = little_endian_32(file, at + 4);
+        at += 8;
+        if (size > length - at)
+            fail_gltf(path, "GLB chunk " + std::to_string(chunk),
+                      "declares " + std::to_string(size) + " bytes, but only " +
+                          std::to_string(length - at) + " follow");
+        const std::string_view contents = file.substr(at, size);
+        if (chunk == 0 && type != kJsonChunk)
+            fail_gltf(path, "GLB chunk 0", "is not of type JSON");
+        if (chunk == 0) {
+            container.text = contents;
+            has_text = true;
+        } else if (type == kBinChunk && !has_bin) {
+            container.bin = contents;
+            has_bin = true;
+        }
+        // a chunk is padded to a multiple of four; one that ends the file may lack that
+        at = std::min<std::size_t>(at + (size + 3) / 4 * 4, length);
+    }
+    if (!has_text)
+        fail_gltf(path, "GLB", "has no JSON chunk");
+    return container;
+}
+
+void check_nesting(std::string_view text, const fs::path& path)
+{
+    int depth = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (c == '"') {
+            for (++i; i < text.size() && text[i] != '"'; ++i)
+                i += text[i] == '\\' ? 1 : 0;
+        } else if (c == '[' || c == '{') {
+            if (++depth > kMaxNesting)
+                fail_gltf(path, "JSON",
+                          "is nested deeper than " + std::to_string(kMaxNesting) + " levels");
+        } else if (c == ']' || c == '}') {
+            --depth;
+        }
+    }
+}
+
+json parse_document(std::string_view text, const fs::path& path)
+{
+    check_nesting(text, path);
+    try {
+        json document = json::parse(text);
+        if (!document.is_object())
+            fail_gltf(path, "JSON", "is not an object");
+        return document;
+    } catch (const json::exception& error) {
+        // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
+        const std::string_view what = error.what();
+        const std::size_t tag_end = what.find("] ");
+        fail_gltf(path, "JSON", tag_end == what.npos ? what : what.substr(tag_end + 2));
+    }
+}
+
+void check_version(const json& document, const fs::path& path)
+{
+    const auto asset = document.find("asset");
+    if (asset == document.end() || !asset->is_object())
+        fail_gltf(path, "asset", "is missing: this is not glTF");
+    const auto version = asset->find("version");
+    if (version == asset->end() || !version->is_string())
+        fail_gltf(path, "asset", "has no version");
+    const auto& value = version->get_ref<const std::string&>();
+    if (!value.starts_with("2."))
+        fail_gltf(path, "asset", "is glTF version " + value.substr(0, 16) + ", only 2.x is read");
+    const auto minimum = asset->find("minVersion");
+    if (minimum != asset->end() && *minimum != "2.0")
+        fail_gltf(path, "asset", "demands a reader of version " + minimum->dump().substr(0, 16) +
+                                     ", this one knows 2.0");
+}
+
+std::optional<std::string> decode_base64(std::string_view text)
+{
+    static constexpr std::array<std::int8_t, 256> kValues = [] {
+        std::array<std::int8_t, 256> values{};
+        values.fill(-1);
+        const std::string_view alphabet =
+            "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+        for (std::size_t i = 0; i < alphabet.size(); ++i)
+            values[static_cast<unsigned char>(alphabet[i])] = static_cast<std::int8_t>(i);
+        return values;
+    }();
+    for (int padding = 0; padding < 2 && text.ends_with('='); ++padding)
+        text.remove_suffix(1);
+    if (text.size() % 4 == 1)
+        return std::nullopt;
+    std::string bytes;
+    bytes.reserve(text.size() / 4 * 3 + 2);
+    std::uint32_t pending = 0;
+    int bits = 0;
+    for (const char c : text) {
+        const int value = kValues[static_cast<unsigned char>(c)];
+        if (value < 0)
+            return std::nullopt;
+        pending = pending << 6 | static_cast<std::uint32_t>(value);
+        bits += 6;
+        if (bits >= 8) {
+            bits -= 8;
+            bytes.push_back(static_cast<char>(pending >> bits & 0xFF));
+        }
+    }
+    return bytes;
+}
+
+std::optional<std::string> decode_percent(std::string_view uri)
+{
+    const auto hex = [](char c) {
+        return c >= '0' && c <= '9'   ? c - '0'
+               : c >= 'a' && c <= 'f' ? c - 'a' + 10
+               : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                      : -1;
+    };
+    std::string decoded;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        if (uri[i] != '%') {
+            decoded.push_back(uri[i]);
+            continue;
+        }
+        const int high = i + 1 < uri.size() ? hex(uri[i + 1]) : -1;
+        const int low = i + 2 < uri.size() ? hex(uri[i + 2]) : -1;
+        if (high < 0 || low < 0)
+            return std::nullopt;
+        decoded.push_back(static_cast<char>(high * 16 + low));
+        i += 2;
+    }
+    return decoded;
+}
+
+/// The contents that a buffer's uri stands for.
+std::string load_uri(const std::string& uri, const fs::path& path, const std::string& element)
+{
+    if (uri.starts_with("data:")) {
+        const std::size_t comma = uri.find(',');
+        const std::string_view head = std::string_view(uri).substr(0, comma);
+        if (comma == uri.npos || !head.ends_with(";base64"))
+            fail_gltf(path, element, "has a data URI that is not base64");
+        std::optional<std::string> bytes = decode_base64(std::string_view(uri).substr(comma + 1));
+        if (!bytes)
+            fail_gltf(path, element, "has a data URI with broken base64");
+        return *std::move(bytes);
+    }
+    const std::string shown = "uri \"" + uri.substr(0, 80) + "\"";
+    const std::optional<fs::path> file = resolve_uri(path.parent_path(), uri);
+    if (!file)
+        fail_gltf(path, element + " " + shown,
+                  "is not the relative path of a file in the model's own folder");
+    return read_bytes(*file, path, element + " " + shown);
+}
+
+void load_buffers(GltfAsset& asset)
+{
+    const auto section = asset.document.find("buffers");
+    if (section == asset.document.end())
+        return;
+    if (!section->is_array())
+        fail_gltf(asset.path, "buffers", "is not an array");
+    asset.buffers.resize(section->size());
+    std::map<std::string, std::shared_ptr<const std::string>> files;
+    for (std::size_t i = 0; i < asset.buffers.size(); ++i) {
+        const json& entry = (*section)[i];
+        const std::string element = "buffer " + std::to_string(i);
+        if (!entry.is_object())
+            fail_gltf(asset.path, element, "is not an object");
+        const auto length = entry.find("byteLength");
+        if (length == entry.end() || !length->is_number_unsigned())
+            fail_gltf(asset.path, element, "has no byteLength that is a whole number");
+        const auto byte_length = length->get<std::uint64_t>();
+
+        GltfBuffer& buffer = asset.buffers[i];
+        const auto uri = entry.find("uri");
+        if (uri != entry.end()) {
+            if (!uri->is_string())
+                fail_gltf(asset.path, element, "has a uri that is not a string");
+            const auto& name = uri->get_ref<const std::string&>();
+            std::shared_ptr<const std::string>& contents = files[name];
+            if (!contents)
+                contents =
+                    std::make_shared<const std::string>(load_uri(name, asset.path, element));
+            buffer.contents = contents;
+            buffer.bytes = *buffer.contents;
+        } else if (i == 0 && !asset.bin.empty()) {
+            buffer.bytes = asset.bin;
+        } else {
+            continue;
+        }
+        if (byte_length > buffer.bytes.size())
+            fail_gltf(asset.path, element,
+                      "declares " + std::to_string(byte_length) + " bytes, but has " +
+                          std::to_string(buffer.bytes.size()));
+        buffer.bytes = buffer.bytes.substr(0, byte_length);
+    }
+}
+
+}  // namespace
+
+void fail_gltf(const fs::path& path, std::string_view element, std::string_view fault)
+{
+    std::string sentence = path.filename().string();
+    for (const std::string_view piece : {element, fault}) {
+        if (!piece.empty())
+            sentence.append(": ").append(piece);
+    }
+    throw InputError(sentence);
+}
+
+std::optional<fs::path> resolve_uri(const fs::path& folder, std::string_view uri)
+{
+    const std::optional<std::string> name = decode_percent(uri);
+    // a colon in front of the first slash makes a scheme (or a drive)
+    if (!name || name->empty() || name->find('\0') != name->npos ||
+        name->find('\\') != name->npos || name->substr(0, name->find('/')).find(':') != name->npos)
+        return std::nullopt;
+    const fs::path relative(*name);
+    if (relative.is_absolute() || std::find(relative.begin(), relative.end(), "..") != relative.end())
+        return std::nullopt;
+    return folder / relative;
+}
+
+void load_gltf_asset(const fs::path& path, GltfAsset& asset)
+{
+    asset.path = path;
+    asset.file = read_bytes(path, path, "");
+    Container container{asset.file, {}};
+    if (asset.file.size() >= 4 && little_endian_32(asset.file, 0) == kGlbMagic)
+        container = open_glb(asset.file, path);
+    if (container.text.empty())
+        fail_gltf(path, "", "is empty");
+    asset.bin = container.bin;
+    asset.document = parse_document(container.text, path);
+    check_version(asset.document, path);
+    load_buffers(asset);
+}
+
+}  // namespace surfelao

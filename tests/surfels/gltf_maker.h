@@ -1,0 +1,165 @@
+/// gltf_maker.h: small glTF files made in code, right ones and broken ones.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace surfelao::test {
+
+/// A fresh folder that is gone at the end of the test.
+class TemporaryFolder {
+public:
+    TemporaryFolder()
+    {
+        std::string pattern = (std::filesystem::temp_directory_path() / "gltf_XXXXXX").string();
+        path_ = mkdtemp(pattern.data());
+    }
+    ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
+
+private:
+    std::filesystem::path path_;
+};
+
+inline std::filesystem::path write_file(const std::filesystem::path& path, std::string_view bytes)
+{
+    std::ofstream(path, std::ios::binary) << bytes;
+    return path;
+}
+
+inline std::string read_file(const std::filesystem::path& path)
+{
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+template <typename T> std::string bytes_of(std::initializer_list<T> values)
+{
+    std::string bytes(values.size() * sizeof(T), '\0');
+    std::memcpy(bytes.data(), values.begin(), bytes.size());
+    return bytes;
+}
+
+template <typename T> constexpr int component_type()
+{
+    return std::is_same_v<T, std::int8_t>     ? 5120
+           : std::is_same_v<T, std::uint8_t>  ? 5121
+           : std::is_same_v<T, std::int16_t>  ? 5122
+           : std::is_same_v<T, std::uint16_t> ? 5123
+           : std::is_same_v<T, std::uint32_t> ? 5125
+                                              : 5126;
+}
+
+/// A document and its binary chunk. Starts with asset, one scene that lists node 0, and buffer 0.
+struct GltfMaker {
+    nlohmann::json document = {{"asset", {{"version", "2.0"}}},
+                               {"scene", 0},
+                               {"scenes", {{{"nodes", {0}}}}},
+                               {"buffers", {{{"byteLength", 0}}}}};
+    std::string bin;
+
+    /// Returns the index of the new buffer view.
+    int add_view(std::string_view bytes, int stride = 0)
+    {
+        nlohmann::json view = {
+            {"buffer", 0}, {"byteOffset", bin.size()}, {"byteLength", bytes.size()}};
+        if (stride != 0)
+            view["byteStride"] = stride;
+        bin += bytes;
+        bin.resize((bin.size() + 3) / 4 * 4);
+        document["buffers"][0]["byteLength"] = bin.size();
+        return add("bufferViews", view);
+    }
+
+    int add_accessor(int view, int component, const char* type, std::size_t count)
+    {
+        return add("accessors", {{"bufferView", view},
+                                 {"componentType", component},
+                                 {"type", type},
+                                 {"count", count}});
+    }
+
+    template <typename T> int add_vectors(std::initializer_list<T> values)
+    {
+        return add_accessor(add_view(bytes_of(values)), component_type<T>(), "VEC3",
+                            values.size() / 3);
+    }
+
+    template <typename T> int add_indices(std::initializer_list<T> values)
+    {
+        return add_accessor(add_view(bytes_of(values)), component_type<T>(), "SCALAR",
+                            values.size());
+    }
+
+    /// Appends to a top-level array and returns the new entry's index.
+    int add(const char* section, const nlohmann::json& entry)
+    {
+        document[section].push_back(entry);
+        return static_cast<int>(document[section].size()) - 1;
+    }
+
+    /// GLB: header, JSON chunk, BIN chunk where there are bytes.
+    std::string glb() const
+    {
+        const auto number = [](std::size_t value) {
+            return bytes_of({static_cast<std::uint32_t>(value)});
+        };
+        std::string text = document.dump();
+        text.resize((text.size() + 3) / 4 * 4, ' ');
+        std::string chunks = number(text.size()) + "JSON" + text;
+        if (!bin.empty())
+            chunks += number(bin.size()) + std::string("BIN\0", 4) + bin;
+        return "glTF" + number(2) + number(12 + chunks.size()) + chunks;
+    }
+
+    std::filesystem::path save_glb(const std::filesystem::path& path) const
+    {
+        return write_file(path, glb());
+    }
+
+    /// .gltf with the bytes in a file beside it.
+    std::filesystem::path save_gltf(const std::filesystem::path& path,
+                                    const std::string& buffer_name = "buffer.bin") const
+    {
+        nlohmann::json with_uri = document;
+        with_uri["buffers"][0]["uri"] = buffer_name;
+        write_file(path.parent_path() / buffer_name, bin);
+        return write_file(path, with_uri.dump());
+    }
+};
+
+/// One triangle (0,0,0) (1,0,0) (0,1,0): accessor 0, mesh 0, node 0.
+inline GltfMaker one_triangle()
+{
+    GltfMaker maker;
+    maker.add_vectors<float>({0, 0, 0, 1, 0, 0, 0, 1, 0});
+    maker.add("meshes", {{"primitives", {{{"attributes", {{"POSITION", 0}}}}}}});
+    maker.add("nodes", {{"mesh", 0}});
+    return maker;
+}
+
+/// The square (0,0,0) (1,0,0) (1,1,0) (0,1,0): accessors 0 and 1 (indices, uint16), mesh 0, node 0.
+inline GltfMaker square()
+{
+    GltfMaker maker;
+    maker.add_vectors<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
+    maker.add_indices<std::uint16_t>({0, 1, 2, 0, 2, 3});
+    maker.add("meshes",
+              {{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", 1}}}}});
+    maker.add("nodes", {{"mesh", 0}});
+    return maker;
+}
+
+}  // namespace surfelao::test
