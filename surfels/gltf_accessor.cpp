@@ -15,7 +15,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "glTF is little endian, and so is this");
 
-template <typename T> T load(const char* at)
+template <typename T>
+T load(const char* at)
 {
     T value;
     std::memcpy(&value, at, sizeof value);
@@ -23,20 +24,28 @@ template <typename T> T load(const char* at)
 }
 
 /// Calls f with a value of the C++ type that `component` names.
-template <typename F> void with_type(GltfComponent component, F&& f)
+template <typename F>
+void with_type(GltfComponent component, F&& f)
 {
     switch (component) {
-    case GltfComponent::int8: return f(std::int8_t{});
-    case GltfComponent::uint8: return f(std::uint8_t{});
-    case GltfComponent::int16: return f(std::int16_t{});
-    case GltfComponent::uint16: return f(std::uint16_t{});
-    case GltfComponent::uint32: return f(std::uint32_t{});
-    case GltfComponent::float32: return f(float{});
+        case GltfComponent::int8:
+            return f(std::int8_t{});
+        case GltfComponent::uint8:
+            return f(std::uint8_t{});
+        case GltfComponent::int16:
+            return f(std::int16_t{});
+        case GltfComponent::uint16:
+            return f(std::uint16_t{});
+        case GltfComponent::uint32:
+            return f(std::uint32_t{});
+        case GltfComponent::float32:
+            return f(float{});
     }
 }
 
 /// Section 3.6.2.2 of the specification: c / 127, c / 255 and so on, not below -1.
-template <typename T> double to_real(T value, bool normalized)
+template <typename T>
+double to_real(T value, bool normalized)
 {
     if constexpr (std::is_floating_point_v<T>) {
         return value;
@@ -45,7 +54,8 @@ template <typename T> double to_real(T value, bool normalized)
     }
 }
 
-template <typename T> glm::dvec3 load_vector(const char* at, bool normalized)
+template <typename T>
+glm::dvec3 load_vector(const char* at, bool normalized)
 {
     return {to_real(load<T>(at), normalized), to_real(load<T>(at + sizeof(T)), normalized),
             to_real(load<T>(at + 2 * sizeof(T)), normalized)};
@@ -89,8 +99,8 @@ void append_vectors(const GltfAccessor& accessor, std::vector<glm::dvec3>& vecto
         using T = decltype(sample);
         if (!accessor.zero) {
             for (std::size_t i = 0; i < accessor.count; ++i)
-                vectors[first + i] = load_vector<T>(
-                    accessor.bytes.data() + i * accessor.stride, accessor.normalized);
+                vectors[first + i] = load_vector<T>(accessor.bytes.data() + i * accessor.stride,
+                                                    accessor.normalized);
         }
         if (accessor.sparse_count > 0) {
             const std::vector<std::uint32_t> targets = sparse_targets(accessor);

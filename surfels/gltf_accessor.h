@@ -30,14 +30,14 @@ struct GltfAccessor {
     std::size_t stride = 0;  ///< bytes from one element to the next
     std::size_t count = 0;
     GltfComponent component = GltfComponent::float32;
-    int dimension = 1;       ///< components per element
-    bool normalized = false; ///< integers stand for [-1, 1] or [0, 1]
-    bool zero = false;       ///< without a bufferView: all zero, but for the sparse elements
+    int dimension = 1;        ///< components per element
+    bool normalized = false;  ///< integers stand for [-1, 1] or [0, 1]
+    bool zero = false;        ///< without a bufferView: all zero, but for the sparse elements
 
     std::size_t sparse_count = 0;
     std::string_view sparse_indices;  ///< sparse_count whole numbers, close together
     GltfComponent sparse_component = GltfComponent::uint32;
-    std::string_view sparse_values;   ///< sparse_count elements, close together
+    std::string_view sparse_values;  ///< sparse_count elements, close together
 };
 
 /// What is wrong with the values of an accessor; what() lacks the element's name.

@@ -56,8 +56,8 @@ struct Container {
 Container open_glb(std::string_view file, const fs::path& path)
 {
     if (file.size() < 12)
-        fail_gltf(path, "GLB header", "the file ends after " + std::to_string(file.size()) +
-                                          " bytes, 12 are needed");
+        fail_gltf(path, "GLB header",
+                  "the file ends after " + std::to_string(file.size()) + " bytes, 12 are needed");
     const std::uint32_t version = little_endian_32(file, 4);
     if (version != 2)
         fail_gltf(path, "GLB header",
@@ -144,8 +144,9 @@ void check_version(const json& document, const fs::path& path)
         fail_gltf(path, "asset", "is glTF version " + value.substr(0, 16) + ", only 2.x is read");
     const auto minimum = asset->find("minVersion");
     if (minimum != asset->end() && *minimum != "2.0")
-        fail_gltf(path, "asset", "demands a reader of version " + minimum->dump().substr(0, 16) +
-                                     ", this one knows 2.0");
+        fail_gltf(path, "asset",
+                  "demands a reader of version " + minimum->dump().substr(0, 16) +
+                      ", this one knows 2.0");
 }
 
 std::optional<std::string> decode_base64(std::string_view text)
@@ -253,8 +254,7 @@ void load_buffers(GltfAsset& asset)
             const auto& name = uri->get_ref<const std::string&>();
             std::shared_ptr<const std::string>& contents = files[name];
             if (!contents)
-                contents =
-                    std::make_shared<const std::string>(load_uri(name, asset.path, element));
+                contents = std::make_shared<const std::string>(load_uri(name, asset.path, element));
             buffer.contents = contents;
             buffer.bytes = *buffer.contents;
         } else if (i == 0 && !asset.bin.empty()) {
@@ -290,7 +290,8 @@ std::optional<fs::path> resolve_uri(const fs::path& folder, std::string_view uri
         name->find('\\') != name->npos || name->substr(0, name->find('/')).find(':') != name->npos)
         return std::nullopt;
     const fs::path relative(*name);
-    if (relative.is_absolute() || std::find(relative.begin(), relative.end(), "..") != relative.end())
+    if (relative.is_absolute() ||
+        std::find(relative.begin(), relative.end(), "..") != relative.end())
         return std::nullopt;
     return folder / relative;
 }

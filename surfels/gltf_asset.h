@@ -1,5 +1,5 @@
-/// gltf_asset.h: a glTF file as it lies on the disk: the JSON document and the bytes of its buffers.
-/// Internal to the glTF reader and writer.
+/// gltf_asset.h: a glTF file as it lies on the disk: the JSON document and the bytes of its
+/// buffers. Internal to the glTF reader and writer.
 #pragma once
 
 #include "surfels/scene.h"
@@ -20,7 +20,7 @@ namespace surfelao {
 /// One entry of the document's `buffers`.
 struct GltfBuffer {
     std::shared_ptr<const std::string> contents;  ///< of its uri; buffers with one file share it
-    std::string_view bytes;                       ///< byteLength bytes; empty: has no data (see below)
+    std::string_view bytes;  ///< byteLength bytes; empty: has no data (see below)
 };
 
 /// Everything a writer needs to hand the file back with attributes added.
@@ -30,26 +30,26 @@ struct GltfAsset : SourceAsset {
     GltfAsset& operator=(const GltfAsset&) = delete;
 
     std::filesystem::path path;
-    std::string file;            ///< the whole file, as read
-    nlohmann::json document;     ///< an object
-    std::string_view bin;        ///< the binary chunk of a GLB; empty without one
+    std::string file;         ///< the whole file, as read
+    nlohmann::json document;  ///< an object
+    std::string_view bin;     ///< the binary chunk of a GLB; empty without one
     std::vector<GltfBuffer> buffers;
     std::vector<glm::dmat3> part_matrices;  ///< per Part: the linear part of mesh space -> world
 };
 
-/// Reads the container, the document and all buffers into `asset`. A buffer without a uri that is not
-/// the binary chunk (its contents come from an extension) has no bytes; using it is the fault.
+/// Reads the container, the document and all buffers into `asset`. A buffer without a uri that is
+/// not the binary chunk (its contents come from an extension) has no bytes; using it is the fault.
 ///
-/// Throws InputError: unreadable, cut, not glTF 2, not JSON, nested deeper than 256 levels, a buffer
-/// that is missing, shorter than declared, or outside the file's folder.
+/// Throws InputError: unreadable, cut, not glTF 2, not JSON, nested deeper than 256 levels, a
+/// buffer that is missing, shorter than declared, or outside the file's folder.
 void load_gltf_asset(const std::filesystem::path& path, GltfAsset& asset);
 
 /// "model.gltf: element: fault", as InputError.
 [[noreturn]] void fail_gltf(const std::filesystem::path& path, std::string_view element,
                             std::string_view fault);
 
-/// The file that a relative URI names, seen from `folder`; nothing for a URI that is absolute, has a
-/// scheme, leaves the folder or is no valid name.
+/// The file that a relative URI names, seen from `folder`; nothing for a URI that is absolute, has
+/// a scheme, leaves the folder or is no valid name.
 [[nodiscard]] std::optional<std::filesystem::path> resolve_uri(const std::filesystem::path& folder,
                                                                std::string_view uri);
 

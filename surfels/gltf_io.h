@@ -1,11 +1,12 @@
 /// gltf_io.h: glTF 2.0 scenes, .gltf and .glb (told apart by content, not by name).
 ///
-/// Read: the default scene (else the first; a file without scenes: all root nodes), every node with a
-/// mesh, triangles, strips and fans with or without indices of any type, sparse, normalised and
+/// Read: the default scene (else the first; a file without scenes: all root nodes), every node with
+/// a mesh, triangles, strips and fans with or without indices of any type, sparse, normalised and
 /// interleaved accessors (KHR_mesh_quantization), data URIs and external buffers. Positions are
-/// transformed in double precision; under a mirroring node the winding is turned, so that the outside
-/// stays outside. Points and lines are left out, images are not looked at. Skinned and morphed meshes
-/// stand as they are stored, moved by their node: no joint and no morph weight is applied.
+/// transformed in double precision; under a mirroring node the winding is turned, so that the
+/// outside stays outside. Points and lines are left out, images are not looked at. Skinned and
+/// morphed meshes stand as they are stored, moved by their node: no joint and no morph weight is
+/// applied.
 ///
 /// A primitive becomes one Part per node that uses its mesh, with all vertices of its POSITION
 /// accessor; primitives of one mesh that share that accessor are one Part (Part::primitive is the

@@ -316,8 +316,8 @@ private:
             else
                 triangle = {vertex(i + 1), vertex(i + 2), vertex(0)};
             // a strip repeats vertices to jump from one row to the next: no surface is meant
-            if (strip && (triangle.x == triangle.y || triangle.y == triangle.z ||
-                          triangle.z == triangle.x))
+            if (strip &&
+                (triangle.x == triangle.y || triangle.y == triangle.z || triangle.z == triangle.x))
                 continue;
             if (mirrored)
                 std::swap(triangle.y, triangle.z);
@@ -337,10 +337,17 @@ private:
             fail(element, "is not of type SCALAR");
         std::uint32_t restart = 0;
         switch (accessor.component) {
-        case GltfComponent::uint8: restart = std::numeric_limits<std::uint8_t>::max(); break;
-        case GltfComponent::uint16: restart = std::numeric_limits<std::uint16_t>::max(); break;
-        case GltfComponent::uint32: restart = std::numeric_limits<std::uint32_t>::max(); break;
-        default: fail(element, "is not of an unsigned integer type");
+            case GltfComponent::uint8:
+                restart = std::numeric_limits<std::uint8_t>::max();
+                break;
+            case GltfComponent::uint16:
+                restart = std::numeric_limits<std::uint16_t>::max();
+                break;
+            case GltfComponent::uint32:
+                restart = std::numeric_limits<std::uint32_t>::max();
+                break;
+            default:
+                fail(element, "is not of an unsigned integer type");
         }
         if (accessor.normalized)
             fail(element, "is normalized, which no index may be");
@@ -369,7 +376,8 @@ private:
         GltfAccessor accessor;
         accessor.count = source.count;
         accessor.component = static_cast<GltfComponent>(source.componentType);
-        accessor.dimension = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(source.type));
+        accessor.dimension =
+            tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(source.type));
         accessor.normalized = source.normalized;
         const std::size_t size =
             size_of(accessor.component) * static_cast<std::size_t>(accessor.dimension);
@@ -387,9 +395,10 @@ private:
             accessor.bytes =
                 slice(view, source.byteOffset, accessor.stride, size, source.count, element);
         } else if (!source.sparse.isSparse) {
-            fail(element, compressed_by_draco(mesh, primitive)
-                              ? "is compressed by KHR_draco_mesh_compression, which is not supported"
-                              : "has neither a bufferView nor sparse values");
+            fail(element,
+                 compressed_by_draco(mesh, primitive)
+                     ? "is compressed by KHR_draco_mesh_compression, which is not supported"
+                     : "has neither a bufferView nor sparse values");
         }
         if (source.sparse.isSparse) {
             const auto& indices = source.sparse.indices;
@@ -405,10 +414,9 @@ private:
                 slice(static_cast<std::size_t>(indices.bufferView),
                       static_cast<std::size_t>(indices.byteOffset), index_size, index_size,
                       accessor.sparse_count, element + " sparse indices");
-            accessor.sparse_values =
-                slice(static_cast<std::size_t>(values.bufferView),
-                      static_cast<std::size_t>(values.byteOffset), size, size,
-                      accessor.sparse_count, element + " sparse values");
+            accessor.sparse_values = slice(static_cast<std::size_t>(values.bufferView),
+                                           static_cast<std::size_t>(values.byteOffset), size, size,
+                                           accessor.sparse_count, element + " sparse values");
         }
         return accessor;
     }
@@ -418,17 +426,16 @@ private:
                            std::size_t size, std::size_t count, const std::string& element) const
     {
         const tinygltf::BufferView& view = model_.bufferViews[index];
-        const std::string_view buffer =
-            asset_.buffers[static_cast<std::size_t>(view.buffer)].bytes;
+        const std::string_view buffer = asset_.buffers[static_cast<std::size_t>(view.buffer)].bytes;
         if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
             fail(element, numbered("bufferView", index) + " ends at byte " +
                               std::to_string(view.byteOffset + view.byteLength) + ", but " +
                               numbered("buffer", static_cast<std::size_t>(view.buffer)) + " has " +
                               std::to_string(buffer.size()));
         // count elements end at offset + stride * (count - 1) + size
-        const bool fits = count == 0 || (offset <= view.byteLength &&
-                                         size <= view.byteLength - offset &&
-                                         count - 1 <= (view.byteLength - offset - size) / stride);
+        const bool fits =
+            count == 0 || (offset <= view.byteLength && size <= view.byteLength - offset &&
+                           count - 1 <= (view.byteLength - offset - size) / stride);
         if (!fits)
             fail(element, std::to_string(count) + " elements from byte " + std::to_string(offset) +
                               " on do not fit into " + numbered("bufferView", index) + " of " +

@@ -82,18 +82,10 @@ constexpr Field kRoot[] = {{"scene", Kind::index, Need::optional, "scenes"}};
 /// A name that ends in '_' stands for all that begin with it.
 constexpr std::string_view kHarmlessExtensions[] = {
     "KHR_mesh_quantization",  // known
-    "KHR_materials_",
-    "KHR_texture_",
-    "EXT_texture_",
-    "MSFT_texture_",
-    "KHR_lights_",
-    "EXT_lights_",
-    "KHR_technique_webgl",
-    "KHR_techniques_webgl",
-    "KHR_xmp",
-    "KHR_xmp_json_ld",
-    "KHR_animation_pointer",
-    "KHR_audio",
+    "KHR_materials_",        "KHR_texture_",          "EXT_texture_",
+    "MSFT_texture_",         "KHR_lights_",           "EXT_lights_",
+    "KHR_technique_webgl",   "KHR_techniques_webgl",  "KHR_xmp",
+    "KHR_xmp_json_ld",       "KHR_animation_pointer", "KHR_audio",
 };
 
 constexpr std::string_view kTypeNames[] = {"SCALAR", "VEC2", "VEC3", "VEC4",
@@ -152,19 +144,24 @@ private:
     json member(const json& value, const Field& field, const std::string& element) const
     {
         switch (field.kind) {
-        case Kind::size: return whole(value, field, element, std::uint64_t{1} << 53);
-        case Kind::small: return whole(value, field, element, std::numeric_limits<int>::max());
-        case Kind::index: return index(value, field, element);
-        case Kind::indices: return array(value, field, element);
-        case Kind::numbers: return array(value, field, element);
-        case Kind::flag:
-            if (!value.is_boolean())
-                fail(element, field, "is not true or false");
-            return value;
-        case Kind::text:
-            if (!value.is_string())
-                fail(element, field, "is not a string");
-            return value;
+            case Kind::size:
+                return whole(value, field, element, std::uint64_t{1} << 53);
+            case Kind::small:
+                return whole(value, field, element, std::numeric_limits<int>::max());
+            case Kind::index:
+                return index(value, field, element);
+            case Kind::indices:
+                return array(value, field, element);
+            case Kind::numbers:
+                return array(value, field, element);
+            case Kind::flag:
+                if (!value.is_boolean())
+                    fail(element, field, "is not true or false");
+                return value;
+            case Kind::text:
+                if (!value.is_string())
+                    fail(element, field, "is not a string");
+                return value;
         }
         return {};
     }
@@ -190,8 +187,7 @@ private:
 
     std::uint64_t index(const json& value, const Field& field, const std::string& element) const
     {
-        const std::uint64_t number =
-            whole(value, field, element, std::numeric_limits<int>::max());
+        const std::uint64_t number = whole(value, field, element, std::numeric_limits<int>::max());
         const std::size_t count = section(field.into).size();
         if (number >= count)
             fail(element, field,
@@ -235,14 +231,13 @@ void check_extensions(const json& document, const fs::path& path)
         if (!entry.is_string())
             fail_gltf(path, "extensionsRequired", "holds something that is not a string");
         const auto& name = entry.get_ref<const std::string&>();
-        const bool harmless =
-            std::ranges::any_of(kHarmlessExtensions, [&](std::string_view known) {
-                return known.ends_with('_') ? name.starts_with(known) : name == known;
-            });
+        const bool harmless = std::ranges::any_of(kHarmlessExtensions, [&](std::string_view known) {
+            return known.ends_with('_') ? name.starts_with(known) : name == known;
+        });
         if (!harmless)
-            fail_gltf(path, "extensionsRequired",
-                      "the file needs the extension " + name.substr(0, 80) +
-                          ", which is not supported");
+            fail_gltf(
+                path, "extensionsRequired",
+                "the file needs the extension " + name.substr(0, 80) + ", which is not supported");
     }
 }
 
@@ -255,17 +250,14 @@ json checked_accessor(const Checker& check, const json& value, const std::string
         fail_gltf(path, element, "has the unknown type \"" + type.substr(0, 16) + '"');
     const auto component_type = accessor["componentType"].get<std::uint64_t>();
     if (component_type < 5120 || component_type > 5126 || component_type == 5124)
-        fail_gltf(path, element,
-                  "has the unknown componentType " + std::to_string(component_type));
+        fail_gltf(path, element, "has the unknown componentType " + std::to_string(component_type));
     if (value.contains("sparse")) {
         const json& sparse = check.child(value, "sparse", element);
         json& checked = accessor["sparse"] = check.object(sparse, kSparse, element + " sparse");
-        checked["indices"] =
-            check.object(check.child(sparse, "indices", element + " sparse"), kSparseIndices,
-                         element + " sparse indices");
-        checked["values"] =
-            check.object(check.child(sparse, "values", element + " sparse"), kSparseValues,
-                         element + " sparse values");
+        checked["indices"] = check.object(check.child(sparse, "indices", element + " sparse"),
+                                          kSparseIndices, element + " sparse indices");
+        checked["values"] = check.object(check.child(sparse, "values", element + " sparse"),
+                                         kSparseValues, element + " sparse values");
     }
     return accessor;
 }
@@ -308,9 +300,9 @@ json geometry_document(const json& document, const fs::path& path)
         json view = check.object(value, kBufferView, element);
         const std::uint64_t stride = view.value("byteStride", std::uint64_t{4});
         if (stride < 4 || stride > 252 || stride % 4 != 0)
-            fail_gltf(path, element,
-                      "byteStride " + std::to_string(stride) +
-                          " is not a multiple of 4 from 4 to 252");
+            fail_gltf(
+                path, element,
+                "byteStride " + std::to_string(stride) + " is not a multiple of 4 from 4 to 252");
         return view;
     });
     collect("accessors", "accessor", [&](const json& value, const std::string& element) {

@@ -8,11 +8,11 @@
 
 namespace surfelao {
 
-/// A document with the scenes, nodes, meshes (POSITION and indices only), accessors and buffer views
-/// of `document`, and of those only the fields that geometry needs. What stands in it is of the type
-/// that the specification asks for, nothing required is missing, whole numbers are not written as
-/// fractions, every index lies inside the section it points into, and no number is too large for
-/// what tinygltf stores it in. Entries keep their indices.
+/// A document with the scenes, nodes, meshes (POSITION and indices only), accessors and buffer
+/// views of `document`, and of those only the fields that geometry needs. What stands in it is of
+/// the type that the specification asks for, nothing required is missing, whole numbers are not
+/// written as fractions, every index lies inside the section it points into, and no number is too
+/// large for what tinygltf stores it in. Entries keep their indices.
 ///
 /// Throws InputError naming the element at fault (`path` is for the message), and for an extension
 /// that the file requires and that changes geometry in a way this reader does not know.

@@ -45,14 +45,16 @@ inline std::string read_file(const std::filesystem::path& path)
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-template <typename T> std::string bytes_of(std::initializer_list<T> values)
+template <typename T>
+std::string bytes_of(std::initializer_list<T> values)
 {
     std::string bytes(values.size() * sizeof(T), '\0');
     std::memcpy(bytes.data(), values.begin(), bytes.size());
     return bytes;
 }
 
-template <typename T> constexpr int component_type()
+template <typename T>
+constexpr int component_type()
 {
     return std::is_same_v<T, std::int8_t>     ? 5120
            : std::is_same_v<T, std::uint8_t>  ? 5121
@@ -85,19 +87,20 @@ struct GltfMaker {
 
     int add_accessor(int view, int component, const char* type, std::size_t count)
     {
-        return add("accessors", {{"bufferView", view},
-                                 {"componentType", component},
-                                 {"type", type},
-                                 {"count", count}});
+        return add(
+            "accessors",
+            {{"bufferView", view}, {"componentType", component}, {"type", type}, {"count", count}});
     }
 
-    template <typename T> int add_vectors(std::initializer_list<T> values)
+    template <typename T>
+    int add_vectors(std::initializer_list<T> values)
     {
         return add_accessor(add_view(bytes_of(values)), component_type<T>(), "VEC3",
                             values.size() / 3);
     }
 
-    template <typename T> int add_indices(std::initializer_list<T> values)
+    template <typename T>
+    int add_indices(std::initializer_list<T> values)
     {
         return add_accessor(add_view(bytes_of(values)), component_type<T>(), "SCALAR",
                             values.size());
@@ -156,8 +159,7 @@ inline GltfMaker square()
     GltfMaker maker;
     maker.add_vectors<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
     maker.add_indices<std::uint16_t>({0, 1, 2, 0, 2, 3});
-    maker.add("meshes",
-              {{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", 1}}}}});
+    maker.add("meshes", {{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", 1}}}}});
     maker.add("nodes", {{"mesh", 0}});
     return maker;
 }

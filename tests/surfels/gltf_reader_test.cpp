@@ -56,8 +56,7 @@ TEST(GltfReader, ReadsADataUri)
     maker.document["buffers"][0]["uri"] =
         "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
     const TemporaryFolder folder;
-    const Scene scene =
-        read_gltf(test::write_file(folder / "made.gltf", maker.document.dump()));
+    const Scene scene = read_gltf(test::write_file(folder / "made.gltf", maker.document.dump()));
     EXPECT_EQ(scene.positions, (Positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 
@@ -99,8 +98,9 @@ TEST(GltfReader, RefusesAnIndexOutOfRangeInOneSentence)
         static_cast<void>(read_gltf(path));
         FAIL() << "was read";
     } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(), "made.glb: mesh 0 primitive 0 indices accessor 1: "
-                                   "index 0 is 9, but there are 4 vertices");
+        EXPECT_STREQ(error.what(),
+                     "made.glb: mesh 0 primitive 0 indices accessor 1: "
+                     "index 0 is 9, but there are 4 vertices");
     }
 }
 
