@@ -1,0 +1,361 @@
+#include "gpu/objects.h"
+
+#include "gpu/gl_table.inc"
+#include "surfels/errors.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace surfelao {
+namespace {
+
+struct FormatNames {
+    GLint internal;
+    GLenum layout;
+    GLenum type;
+    std::size_t bytes;
+};
+
+FormatNames names_of(TexelFormat format)
+{
+    switch (format) {
+        case TexelFormat::rgba8:
+            return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
+        case TexelFormat::rgba16f:
+            return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8};
+        case TexelFormat::r32f:
+            return {GL_R32F, GL_RED, GL_FLOAT, 4};
+        case TexelFormat::rg32f:
+            return {GL_RG32F, GL_RG, GL_FLOAT, 8};
+        case TexelFormat::rgba32f:
+            return {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
+        case TexelFormat::r32ui:
+            return {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4};
+        case TexelFormat::rgba32ui:
+            return {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16};
+        case TexelFormat::depth32f:
+            return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, 4};
+    }
+    SURFELAO_CHECK(false);
+}
+
+GlHandle make_buffer(const GlTable& gl)
+{
+    GLuint id = 0;
+    gl.GenBuffers(1, &id);
+    return GlHandle(gl, id,
+                    [](const GlTable& table, unsigned name) { table.DeleteBuffers(1, &name); });
+}
+
+GlHandle make_texture(const GlTable& gl)
+{
+    GLuint id = 0;
+    gl.GenTextures(1, &id);
+    return GlHandle(gl, id,
+                    [](const GlTable& table, unsigned name) { table.DeleteTextures(1, &name); });
+}
+
+GlHandle make_renderbuffer(const GlTable& gl)
+{
+    GLuint id = 0;
+    gl.GenRenderbuffers(1, &id);
+    return GlHandle(
+        gl, id, [](const GlTable& table, unsigned name) { table.DeleteRenderbuffers(1, &name); });
+}
+
+GlHandle make_framebuffer(const GlTable& gl)
+{
+    GLuint id = 0;
+    gl.GenFramebuffers(1, &id);
+    return GlHandle(
+        gl, id, [](const GlTable& table, unsigned name) { table.DeleteFramebuffers(1, &name); });
+}
+
+GlHandle make_vertex_array(const GlTable& gl)
+{
+    GLuint id = 0;
+    gl.GenVertexArrays(1, &id);
+    return GlHandle(
+        gl, id, [](const GlTable& table, unsigned name) { table.DeleteVertexArrays(1, &name); });
+}
+
+void check_size(const GlInfo& info, const char* what, int width, int height)
+{
+    if (width < 1 || height < 1 || width > info.max_texture_size || height > info.max_texture_size)
+        throw std::runtime_error(std::string("OpenGL: a ") + what + " of " + std::to_string(width) +
+                                 " x " + std::to_string(height) + " pixels cannot be made; 1 to " +
+                                 std::to_string(info.max_texture_size) + " a side can");
+}
+
+/// Bytes to allocate for a texture buffer: an empty one gets a texel, drivers differ on no bytes.
+std::size_t checked_buffer_size(const GlInfo& info, TexelFormat format, std::size_t bytes)
+{
+    const std::size_t texel = texel_bytes(format);
+    SURFELAO_CHECK(bytes % texel == 0);
+    const std::size_t limit = static_cast<std::size_t>(info.max_buffer_texels);
+    if (bytes / texel > limit)
+        throw std::runtime_error("OpenGL: a texture buffer of " + std::to_string(bytes / texel) +
+                                 " texels cannot be made; this device takes " +
+                                 std::to_string(limit));
+    return std::max(bytes, texel);
+}
+
+}  // namespace
+
+std::size_t texel_bytes(TexelFormat format)
+{
+    return names_of(format).bytes;
+}
+
+// --- Buffer
+// ---------------------------------------------------------------------------------------
+
+Buffer::Buffer(const GlContext& context, std::size_t bytes)
+    : handle_(make_buffer(context.gl())), size_(bytes)
+{
+    // bound as a vertex buffer whatever it is for: that binding belongs to no vertex array
+    gl().BindBuffer(GL_ARRAY_BUFFER, id());
+    gl().BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes), nullptr, GL_STATIC_DRAW);
+    check_gl(gl(), "making a buffer");
+}
+
+Buffer::Buffer(const GlContext& context, std::span<const std::byte> bytes)
+    : Buffer(context, bytes.size())
+{
+    update_bytes(0, bytes);
+}
+
+void Buffer::update_bytes(std::size_t offset, std::span<const std::byte> bytes)
+{
+    SURFELAO_CHECK(offset + bytes.size() <= size_);
+    gl().BindBuffer(GL_ARRAY_BUFFER, id());
+    gl().BufferSubData(GL_ARRAY_BUFFER, static_cast<GLintptr>(offset),
+                       static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+    check_gl(gl(), "filling a buffer");
+}
+
+// --- textures
+// -------------------------------------------------------------------------------------
+
+TextureBuffer::TextureBuffer(const GlContext& context, TexelFormat format,
+                             std::span<const std::byte> bytes)
+    : buffer_(context, checked_buffer_size(context.info(), format, bytes.size())),
+      texture_(make_texture(context.gl()))
+{
+    buffer_.update(0, bytes);
+    const GlTable& gl = context.gl();
+    gl.BindTexture(GL_TEXTURE_BUFFER, texture_.id());
+    gl.TexBuffer(GL_TEXTURE_BUFFER, static_cast<GLenum>(names_of(format).internal), buffer_.id());
+    check_gl(gl, "making a texture buffer");
+}
+
+TextureBinding TextureBuffer::binding() const
+{
+    return {GL_TEXTURE_BUFFER, texture_.id()};
+}
+
+Texture2D::Texture2D(const GlContext& context, int width, int height, TexelFormat format,
+                     std::span<const std::byte> texels, const TextureOptions& options)
+    : handle_(make_texture(context.gl())), width_(width), height_(height)
+{
+    check_size(context.info(), "texture", width, height);
+    const FormatNames names = names_of(format);
+    SURFELAO_CHECK(texels.empty() || texels.size() == names.bytes *
+                                                          static_cast<std::size_t>(width) *
+                                                          static_cast<std::size_t>(height));
+    const GlTable& gl = context.gl();
+    gl.BindTexture(GL_TEXTURE_2D, handle_.id());
+    gl.TexImage2D(GL_TEXTURE_2D, 0, names.internal, width, height, 0, names.layout, names.type,
+                  texels.empty() ? nullptr : texels.data());
+    const bool linear = options.filter != TextureFilter::nearest;
+    const bool mipmaps = options.filter == TextureFilter::mipmaps;
+    if (mipmaps)
+        gl.GenerateMipmap(GL_TEXTURE_2D);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER,
+                     mipmaps ? GL_LINEAR_MIPMAP_LINEAR : (linear ? GL_LINEAR : GL_NEAREST));
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, linear ? GL_LINEAR : GL_NEAREST);
+    const bool repeat = options.wrap == TextureWrap::repeat_x;
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, repeat ? GL_REPEAT : GL_CLAMP_TO_EDGE);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    check_gl(gl, "making a texture");
+}
+
+TextureBinding Texture2D::binding() const
+{
+    return {GL_TEXTURE_2D, handle_.id()};
+}
+
+// --- Framebuffer
+// ----------------------------------------------------------------------------------
+
+Framebuffer::Framebuffer(const GlContext& context, const FramebufferOptions& options)
+    : gl_(&context.gl()), width_(options.width), height_(options.height)
+{
+    check_size(context.info(), "framebuffer", width_, height_);
+    if (options.samples < 1 || options.samples > context.info().max_samples)
+        throw std::runtime_error("OpenGL: a framebuffer of " + std::to_string(options.samples) +
+                                 " samples a pixel cannot be made; 1 to " +
+                                 std::to_string(context.info().max_samples) + " can");
+    handle_ = make_framebuffer(*gl_);
+    gl_->BindFramebuffer(GL_FRAMEBUFFER, handle_.id());
+
+    const auto attach = [&](GLenum where, TexelFormat format) {
+        if (options.samples > 1) {
+            GlHandle& target = renderbuffers_.emplace_back(make_renderbuffer(*gl_));
+            gl_->BindRenderbuffer(GL_RENDERBUFFER, target.id());
+            gl_->RenderbufferStorageMultisample(GL_RENDERBUFFER, options.samples,
+                                                static_cast<GLenum>(names_of(format).internal),
+                                                width_, height_);
+            gl_->FramebufferRenderbuffer(GL_FRAMEBUFFER, where, GL_RENDERBUFFER, target.id());
+            return;
+        }
+        Texture2D texture(context, width_, height_, format);
+        gl_->FramebufferTexture2D(GL_FRAMEBUFFER, where, GL_TEXTURE_2D, texture.binding().id, 0);
+        if (where == GL_DEPTH_ATTACHMENT)
+            depth_ = std::make_unique<Texture2D>(std::move(texture));
+        else
+            colors_.push_back(std::move(texture));
+    };
+    std::vector<GLenum> outputs;
+    for (const TexelFormat format : options.colors) {
+        outputs.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(outputs.size()));
+        attach(outputs.back(), format);
+    }
+    if (options.depth)
+        attach(GL_DEPTH_ATTACHMENT, TexelFormat::depth32f);
+    gl_->DrawBuffers(static_cast<GLsizei>(outputs.size()), outputs.data());
+    check_gl(*gl_, "making a framebuffer");
+    const GLenum status = gl_->CheckFramebufferStatus(GL_FRAMEBUFFER);
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+        throw std::runtime_error(
+            "OpenGL: this device cannot draw into a framebuffer of these "
+            "formats (status " +
+            std::to_string(status) + ")");
+}
+
+Framebuffer Framebuffer::window(const GlContext& context, int width, int height)
+{
+    check_size(context.info(), "window", width, height);
+    Framebuffer result;
+    result.gl_ = &context.gl();
+    result.width_ = width;
+    result.height_ = height;
+    return result;
+}
+
+void Framebuffer::clear_color(glm::vec4 value, std::size_t index) const
+{
+    gl_->BindFramebuffer(GL_FRAMEBUFFER, id());
+    gl_->Disable(GL_SCISSOR_TEST);
+    gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    gl_->ClearBufferfv(GL_COLOR, static_cast<GLint>(index), &value.x);
+    check_gl(*gl_, "clearing a framebuffer");
+}
+
+void Framebuffer::clear_depth(float value) const
+{
+    gl_->BindFramebuffer(GL_FRAMEBUFFER, id());
+    gl_->Disable(GL_SCISSOR_TEST);
+    gl_->DepthMask(GL_TRUE);
+    gl_->ClearBufferfv(GL_DEPTH, 0, &value);
+    check_gl(*gl_, "clearing a depth buffer");
+}
+
+void Framebuffer::copy_to(const Framebuffer& target, std::size_t index) const
+{
+    const auto attachment = [&](const Framebuffer& of) {
+        return of.id() == 0 ? static_cast<GLenum>(GL_BACK)
+                            : GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(index);
+    };
+    gl_->BindFramebuffer(GL_READ_FRAMEBUFFER, id());
+    gl_->ReadBuffer(attachment(*this));
+    gl_->BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.id());
+    gl_->Disable(GL_SCISSOR_TEST);
+    gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    const bool same = width_ == target.width_ && height_ == target.height_;
+    // all colours of the target are listed for drawing; the blit writes to each of them, so name
+    // one
+    const GLenum only = attachment(target);
+    if (target.id() != 0)
+        gl_->DrawBuffers(1, &only);
+    gl_->BlitFramebuffer(0, 0, width_, height_, 0, 0, target.width_, target.height_,
+                         GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
+    if (target.id() != 0) {
+        std::vector<GLenum> outputs;
+        for (std::size_t i = 0; i < target.colors_.size(); ++i)
+            outputs.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
+        gl_->DrawBuffers(static_cast<GLsizei>(outputs.size()), outputs.data());
+    }
+    check_gl(*gl_, "copying a framebuffer");
+}
+
+void Framebuffer::read(const Rect& part, unsigned layout, void* out) const
+{
+    SURFELAO_CHECK(part.x >= 0 && part.y >= 0 && part.x + part.width <= width_ &&
+                   part.y + part.height <= height_);
+    gl_->ReadPixels(part.x, part.y, part.width, part.height, layout, GL_FLOAT, out);
+    check_gl(*gl_, "reading pixels");
+}
+
+std::vector<glm::vec4> Framebuffer::read_color(const Rect& part, std::size_t index) const
+{
+    std::vector<glm::vec4> result(static_cast<std::size_t>(part.width) *
+                                  static_cast<std::size_t>(part.height));
+    gl_->BindFramebuffer(GL_FRAMEBUFFER, id());
+    gl_->ReadBuffer(id() == 0 ? static_cast<GLenum>(GL_BACK)
+                              : GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(index));
+    read(part, GL_RGBA, result.data());
+    return result;
+}
+
+std::vector<float> Framebuffer::read_red(const Rect& part, std::size_t index) const
+{
+    std::vector<float> result(static_cast<std::size_t>(part.width) *
+                              static_cast<std::size_t>(part.height));
+    gl_->BindFramebuffer(GL_FRAMEBUFFER, id());
+    gl_->ReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(index));
+    read(part, GL_RED, result.data());
+    return result;
+}
+
+std::vector<float> Framebuffer::read_depth(const Rect& part) const
+{
+    std::vector<float> result(static_cast<std::size_t>(part.width) *
+                              static_cast<std::size_t>(part.height));
+    gl_->BindFramebuffer(GL_FRAMEBUFFER, id());
+    read(part, GL_DEPTH_COMPONENT, result.data());
+    return result;
+}
+
+// --- VertexArray
+// ----------------------------------------------------------------------------------
+
+VertexArray::VertexArray(const GlContext& context) : handle_(make_vertex_array(context.gl()))
+{
+    check_gl(context.gl(), "making a vertex array");
+}
+
+void VertexArray::attribute(unsigned location, const Buffer& buffer, const Attribute& attribute)
+{
+    const GlTable& gl = handle_.gl();
+    gl.BindVertexArray(id());
+    gl.BindBuffer(GL_ARRAY_BUFFER, buffer.id());
+    gl.EnableVertexAttribArray(location);
+    gl.VertexAttribPointer(
+        location, attribute.components, attribute.bytes ? GL_UNSIGNED_BYTE : GL_FLOAT,
+        attribute.bytes ? GL_TRUE : GL_FALSE, static_cast<GLsizei>(attribute.stride),
+        reinterpret_cast<const void*>(attribute.offset));
+    gl.VertexAttribDivisor(location, attribute.per_instance ? 1 : 0);
+    check_gl(gl, "describing vertices");
+}
+
+void VertexArray::indices(const Buffer& buffer)
+{
+    const GlTable& gl = handle_.gl();
+    gl.BindVertexArray(id());
+    gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer.id());
+    check_gl(gl, "describing indices");
+}
+
+}  // namespace surfelao

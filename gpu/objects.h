@@ -1,0 +1,243 @@
+/// objects.h: what lives in the device's memory. All RAII and move-only; each belongs to the
+/// context it was made with (context.h). Constructors throw std::runtime_error when the device
+/// refuses (out of memory, beyond a limit) and for sizes of zero, naming the object.
+#pragma once
+
+#include "gpu/context.h"
+
+#include <glm/vec4.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace surfelao {
+
+/// The name of one GL object; deletes it.
+class GlHandle {
+public:
+    using Delete = void (*)(const GlTable& gl, unsigned id);
+    GlHandle() = default;
+    GlHandle(const GlTable& gl, unsigned id, Delete destroy) : gl_(&gl), id_(id), destroy_(destroy)
+    {
+    }
+    ~GlHandle()
+    {
+        if (id_ != 0)
+            destroy_(*gl_, id_);
+    }
+    GlHandle(GlHandle&& other) noexcept
+        : gl_(other.gl_), id_(std::exchange(other.id_, 0)), destroy_(other.destroy_)
+    {
+    }
+    GlHandle& operator=(GlHandle&& other) noexcept
+    {
+        std::swap(gl_, other.gl_);
+        std::swap(id_, other.id_);
+        std::swap(destroy_, other.destroy_);
+        return *this;
+    }
+    unsigned id() const { return id_; }
+    const GlTable& gl() const { return *gl_; }
+
+private:
+    const GlTable* gl_ = nullptr;
+    unsigned id_ = 0;
+    Delete destroy_ = nullptr;
+};
+
+/// Bytes: vertex attributes, indices, or the memory of a texture buffer.
+class Buffer {
+public:
+    /// Of that many bytes, not filled.
+    Buffer(const GlContext& context, std::size_t bytes);
+
+    /// A copy of `values`, which are plain data.
+    template <typename T>
+    Buffer(const GlContext& context, std::span<const T> values)
+        : Buffer(context, std::as_bytes(values))
+    {
+    }
+    Buffer(const GlContext& context, std::span<const std::byte> bytes);
+
+    /// Overwrites bytes [offset, offset + size of values).
+    template <typename T>
+    void update(std::size_t offset, std::span<const T> values)
+    {
+        update_bytes(offset, std::as_bytes(values));
+    }
+
+    std::size_t size() const { return size_; }
+    unsigned id() const { return handle_.id(); }
+    const GlTable& gl() const { return handle_.gl(); }
+
+private:
+    void update_bytes(std::size_t offset, std::span<const std::byte> bytes);
+    GlHandle handle_;
+    std::size_t size_ = 0;
+};
+
+/// How a texel is stored. Float formats come back from the device with all their bits; *ui formats
+/// are fetched as integers by usampler*, so that no bit of a mixed record is touched.
+enum class TexelFormat { rgba8, rgba16f, r32f, rg32f, rgba32f, r32ui, rgba32ui, depth32f };
+
+/// Bytes of one texel.
+[[nodiscard]] std::size_t texel_bytes(TexelFormat format);
+
+/// Can be bound to a sampler of a program.
+struct TextureBinding {
+    unsigned target = 0;
+    unsigned id = 0;
+};
+
+/// A long array that shaders read by texelFetch from a samplerBuffer or usamplerBuffer.
+class TextureBuffer {
+public:
+    /// values: plain data whose bytes are a whole number of texels. Throws std::runtime_error when
+    /// there are more texels than GlInfo::max_buffer_texels.
+    template <typename T>
+    TextureBuffer(const GlContext& context, TexelFormat format, std::span<const T> values)
+        : TextureBuffer(context, format, std::as_bytes(values))
+    {
+    }
+    TextureBuffer(const GlContext& context, TexelFormat format, std::span<const std::byte> bytes);
+
+    template <typename T>
+    void update(std::size_t offset, std::span<const T> values)
+    {
+        buffer_.update(offset, values);
+    }
+    TextureBinding binding() const;
+
+private:
+    Buffer buffer_;
+    GlHandle texture_;
+};
+
+enum class TextureFilter {
+    nearest,
+    linear,
+    mipmaps,  ///< linear between mipmap levels made from the first
+};
+
+enum class TextureWrap { clamp, repeat_x };  ///< repeat_x: a panorama that closes on itself
+
+struct TextureOptions {
+    TextureFilter filter = TextureFilter::nearest;
+    TextureWrap wrap = TextureWrap::clamp;
+};
+
+/// width x height texels; row 0 is the bottom row, as everywhere in OpenGL.
+class Texture2D {
+public:
+    using Options = TextureOptions;
+
+    /// `texels` are width * height records of texel_bytes(format); empty: not filled.
+    template <typename T>
+    Texture2D(const GlContext& context, int width, int height, TexelFormat format,
+              std::span<const T> texels, const TextureOptions& options = {})
+        : Texture2D(context, width, height, format, std::as_bytes(texels), options)
+    {
+    }
+    Texture2D(const GlContext& context, int width, int height, TexelFormat format,
+              std::span<const std::byte> texels = {}, const TextureOptions& options = {});
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    TextureBinding binding() const;
+
+private:
+    GlHandle handle_;
+    int width_ = 0, height_ = 0;
+};
+
+/// An axis-aligned part of a target, in pixels from the lower left corner.
+struct Rect {
+    int x = 0, y = 0, width = 0, height = 0;
+};
+
+struct FramebufferOptions {
+    int width = 0, height = 0;  ///< > 0
+    std::vector<TexelFormat> colors = {TexelFormat::rgba8};
+    bool depth = false;  ///< a float depth buffer
+    int samples = 1;     ///< 1 .. GlInfo::max_samples; above 1: resolve before reading
+};
+
+/// A target to draw into. With one sample its colours and depth are textures; with more they are
+/// renderbuffers, to be resolved into a framebuffer of one sample.
+class Framebuffer {
+public:
+    using Options = FramebufferOptions;
+    Framebuffer(const GlContext& context, const FramebufferOptions& options);
+
+    /// The default framebuffer of a window's context, whose size its owner knows. Zero-size windows
+    /// (minimised) are an error here too: do not draw then.
+    [[nodiscard]] static Framebuffer window(const GlContext& context, int width, int height);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    Rect rect() const { return {0, 0, width_, height_}; }
+
+    /// Of a framebuffer of one sample that is not a window.
+    const Texture2D& color(std::size_t index = 0) const { return colors_[index]; }
+    const Texture2D& depth() const { return *depth_; }
+
+    /// Fills the part with one colour per attachment (float formats) or the depth, without drawing.
+    void clear_color(glm::vec4 value, std::size_t index = 0) const;
+    void clear_depth(float value = 1.0f) const;
+
+    /// Averages the samples, or copies, colour `index` to the same of `target`. Sizes must agree,
+    /// or this must have one sample (then it is stretched, with linear filtering).
+    void copy_to(const Framebuffer& target, std::size_t index = 0) const;
+
+    /// The texels of colour `index` in `part`, row by row from the bottom, waiting for the drawing.
+    /// Not for *ui formats, nor for several samples.
+    std::vector<glm::vec4> read_color(const Rect& part, std::size_t index = 0) const;
+    /// The same, for r32f: one float a texel.
+    std::vector<float> read_red(const Rect& part, std::size_t index = 0) const;
+    /// 0 = near plane, 1 = far plane or nothing drawn.
+    std::vector<float> read_depth(const Rect& part) const;
+
+    unsigned id() const { return handle_.id(); }
+    const GlTable& gl() const { return *gl_; }
+
+private:
+    Framebuffer() = default;
+    void read(const Rect& part, unsigned layout, void* out) const;
+    const GlTable* gl_ = nullptr;
+    GlHandle handle_;  // empty for a window: GL's framebuffer 0
+    std::vector<Texture2D> colors_;
+    std::unique_ptr<Texture2D> depth_;
+    std::vector<GlHandle> renderbuffers_;
+    int width_ = 0, height_ = 0;
+};
+
+/// Where the vertices of a drawing come from. An empty one is enough for shaders that make them
+/// from gl_VertexID. The buffers must outlive it.
+class VertexArray {
+public:
+    explicit VertexArray(const GlContext& context);
+
+    struct Attribute {
+        int components = 3;         ///< 1 .. 4 floats
+        std::size_t stride = 0;     ///< bytes from one vertex to the next; 0 = tightly packed
+        std::size_t offset = 0;     ///< bytes before the first
+        bool per_instance = false;  ///< one value per instance instead of one per vertex
+        bool bytes = false;         ///< unsigned bytes, 255 = 1.0, in place of floats
+    };
+    /// in_name at `layout(location = location)`.
+    void attribute(unsigned location, const Buffer& buffer, const Attribute& attribute);
+
+    /// 32-bit indices for draws with `indexed`.
+    void indices(const Buffer& buffer);
+
+    unsigned id() const { return handle_.id(); }
+
+private:
+    GlHandle handle_;
+};
+
+}  // namespace surfelao

@@ -1,0 +1,99 @@
+#include "gpu/platform.h"
+
+#include <dlfcn.h>
+
+#include <array>
+
+namespace surfelao {
+namespace {
+
+// GL/osmesa.h includes GL/gl.h, which clashes with GL/glcorearb.h: its few names stand here instead
+using OsmesaContext = struct osmesa_context*;
+using OsmesaProc = void (*)();
+constexpr int kOsmesaFormat = 0x22, kOsmesaDepthBits = 0x30, kOsmesaProfile = 0x33;
+constexpr int kOsmesaCoreProfile = 0x34, kOsmesaMajor = 0x36, kOsmesaMinor = 0x37;
+constexpr int kGlRgba = 0x1908, kGlUnsignedByte = 0x1401;
+
+struct Osmesa {
+    OsmesaContext (*create)(const int* attributes, OsmesaContext share) = nullptr;
+    void (*destroy)(OsmesaContext) = nullptr;
+    unsigned char (*make_current)(OsmesaContext, void* buffer, unsigned type, int width,
+                                  int height) = nullptr;
+    OsmesaProc (*get_proc)(const char* name) = nullptr;
+    std::string error;  ///< why the functions are missing
+};
+
+/// Opened once and never closed: contexts of the library may outlive any owner.
+const Osmesa& osmesa()
+{
+    static const Osmesa loaded = [] {
+        Osmesa result;
+        void* library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
+        if (library == nullptr) {
+            result.error = dlerror();
+            return result;
+        }
+        const auto find = [&](auto& function, const char* name) {
+            function =
+                reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
+            if (function == nullptr)
+                result.error = std::string("libOSMesa.so.8 has no ") + name;
+        };
+        find(result.create, "OSMesaCreateContextAttribs");
+        find(result.destroy, "OSMesaDestroyContext");
+        find(result.make_current, "OSMesaMakeCurrent");
+        find(result.get_proc, "OSMesaGetProcAddress");
+        return result;
+    }();
+    return loaded;
+}
+
+class OsmesaPlatform final : public GlPlatform {
+public:
+    explicit OsmesaPlatform(OsmesaContext context) : context_(context) {}
+    ~OsmesaPlatform() override { osmesa().destroy(context_); }
+    std::string name() const override { return "OSMesa"; }
+    void* get_proc(const char* name) const override
+    {
+        return reinterpret_cast<void*>(osmesa().get_proc(name));
+    }
+    bool make_current() const override
+    {
+        return osmesa().make_current(context_, pixels_.data(), kGlUnsignedByte, kSide, kSide) != 0;
+    }
+    void release() const override { osmesa().make_current(nullptr, nullptr, 0, 0, 0); }
+
+private:
+    static constexpr int kSide = 4;  // nothing is drawn here: pictures go to framebuffer objects
+    OsmesaContext context_;
+    mutable std::array<unsigned char, 4 * kSide * kSide> pixels_{};
+};
+
+}  // namespace
+
+std::unique_ptr<GlPlatform> make_osmesa_platform(std::string& reasons)
+{
+    if (!osmesa().error.empty()) {
+        add_reason(reasons, "OSMesa: " + osmesa().error);
+        return nullptr;
+    }
+    const int attributes[] = {kOsmesaFormat,
+                              kGlRgba,
+                              kOsmesaDepthBits,
+                              0,
+                              kOsmesaProfile,
+                              kOsmesaCoreProfile,
+                              kOsmesaMajor,
+                              3,
+                              kOsmesaMinor,
+                              3,
+                              0};
+    OsmesaContext context = osmesa().create(attributes, nullptr);
+    if (context == nullptr) {
+        add_reason(reasons, "OSMesa: makes no OpenGL 3.3 core context");
+        return nullptr;
+    }
+    return std::make_unique<OsmesaPlatform>(context);
+}
+
+}  // namespace surfelao
