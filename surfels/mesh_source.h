@@ -1,0 +1,75 @@
+/// mesh_source.h: what the readers of OBJ, PLY, OFF and STL share: polygons in, Scene out.
+#pragma once
+
+#include "surfels/scene.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace surfelao {
+
+/// Polygons one after the other.
+struct Polygons {
+    std::vector<std::uint32_t> corners;  ///< vertex indices of all polygons
+    std::vector<std::uint32_t> sizes;  ///< corners of each polygon, >= 3; empty: all are triangles
+
+    [[nodiscard]] std::size_t count() const
+    {
+        return sizes.empty() ? corners.size() / 3 : sizes.size();
+    }
+};
+
+/// A polygon of `size` corners has just been appended to polygons.corners.
+void close_polygon(Polygons& polygons, std::uint32_t size);
+
+/// What the writers need beyond the Scene. The readers of OBJ and PLY derive from it and keep the
+/// file itself.
+class MeshSource : public SourceAsset {
+public:
+    Polygons polygons;  ///< empty when the file's faces are the scene's triangles
+};
+
+/// The largest coordinate that a reader accepts: squares and sums of it stay inside a double.
+inline constexpr double kLargestCoordinate = 1e100;
+
+/// Makes the scene of a file whose vertices and polygons are known; leaves polygons with more than
+/// three corners in `source`. Throws InputError when a corner is out of range, a coordinate beyond
+/// kLargestCoordinate, there is no polygon, or there are more vertices or triangles than 32 bits
+/// count.
+[[nodiscard]] Scene make_mesh_scene(std::string_view file_name, std::vector<glm::dvec3> positions,
+                                    Polygons polygons, std::shared_ptr<MeshSource> source);
+
+/// Calls visit(corners) with a span of the vertex indices of each face, in the file's order: the
+/// source's polygons where it has them, else the scene's triangles.
+template <class Visit>
+void for_each_face(const Scene& scene, const Visit& visit);
+
+/// How many times for_each_face calls.
+[[nodiscard]] std::size_t face_count(const Scene& scene);
+
+// ------------------------------------------------------------------------------------------------
+
+/// The source's polygons, or null where the triangles are the faces.
+[[nodiscard]] const Polygons* source_polygons(const Scene& scene);
+
+template <class Visit>
+void for_each_face(const Scene& scene, const Visit& visit)
+{
+    const Polygons* polygons = source_polygons(scene);
+    if (!polygons) {
+        for (const glm::uvec3& triangle : scene.triangles)
+            visit(std::span<const std::uint32_t>(&triangle.x, 3));
+        return;
+    }
+    std::size_t first = 0;
+    for (const std::uint32_t size : polygons->sizes) {
+        visit(std::span<const std::uint32_t>(&polygons->corners[first], size));
+        first += size;
+    }
+}
+
+}  // namespace surfelao

@@ -1,0 +1,36 @@
+/// number_text.h: numbers appended to a text, the same in every locale.
+#pragma once
+
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace surfelao {
+
+/// The shortest text that reads back as the same double (or float).
+template <class Real>
+void append_shortest(std::string& text, Real value)
+{
+    char digits[32];
+    const char* end = std::to_chars(digits, digits + sizeof(digits), value).ptr;
+    text.append(digits, static_cast<std::size_t>(end - digits));
+}
+
+/// With so many decimals; for |value| < 1e9.
+inline void append_fixed(std::string& text, double value, int decimals)
+{
+    char digits[40];
+    const std::to_chars_result result =
+        std::to_chars(digits, digits + sizeof(digits), value, std::chars_format::fixed, decimals);
+    text.append(digits, static_cast<std::size_t>(result.ptr - digits));
+}
+
+inline void append_integer(std::string& text, std::int64_t value)
+{
+    char digits[24];
+    const char* end = std::to_chars(digits, digits + sizeof(digits), value).ptr;
+    text.append(digits, static_cast<std::size_t>(end - digits));
+}
+
+}  // namespace surfelao

@@ -1,0 +1,170 @@
+#include "surfels/off_io.h"
+
+#include "surfels/errors.h"
+#include "surfels/mesh_source.h"
+#include "surfels/number_text.h"
+#include "surfels/text_cursor.h"
+
+#include <cmath>
+
+namespace surfelao {
+namespace {
+
+/// x y z, normal, colour, texture coordinates.
+constexpr int kMostVertexNumbers = 3 + 3 + 4 + 2;
+
+struct Counts {
+    std::uint64_t vertices = 0;
+    std::uint64_t faces = 0;
+};
+
+/// The cursor stands on a line with a word left, or moves to the next.
+void next_word_line(TextCursor& cursor, const std::string& wanted)
+{
+    if (cursor.at_line_end() && !cursor.next_line())
+        cursor.fail("the file ends, but " + wanted);
+}
+
+/// Refuses a count for which the file is too short before anything of that size is reserved.
+std::uint64_t read_count(TextCursor& cursor, const std::string& what, std::size_t least_bytes)
+{
+    next_word_line(cursor, "the number of " + what + " is missing");
+    const std::int64_t count = cursor.integer({});
+    if (count < 0)
+        cursor.fail("the number of " + what + " is " + std::to_string(count));
+    if (static_cast<std::uint64_t>(count) > (cursor.remaining() + 1) / least_bytes) {
+        cursor.fail(std::to_string(count) + " " + what +
+                    " are more than the rest of the file can hold");
+    }
+    return static_cast<std::uint64_t>(count);
+}
+
+Counts read_header(const std::string& file_name, TextCursor& cursor)
+{
+    if (!cursor.next_line())
+        throw InputError(file_name + ": is empty");
+    TextCursor ahead = cursor;
+    const std::string_view keyword = ahead.word();
+    if (keyword.find_first_not_of("0123456789+-") != std::string_view::npos) {
+        std::string_view prefix = keyword;
+        if (!prefix.ends_with("OFF"))
+            cursor.fail("begins with " + quoted(keyword) + ", but must begin with OFF");
+        prefix.remove_suffix(3);
+        for (const std::string_view known : {"ST", "C", "N"}) {
+            if (prefix.starts_with(known))
+                prefix.remove_prefix(known.size());
+        }
+        if (!prefix.empty())
+            cursor.fail("the variant " + quoted(keyword) + " is not known");
+        cursor = ahead;
+        ahead = cursor;
+        if (!ahead.at_line_end() && ahead.word() == "BINARY")
+            cursor.fail("binary OFF files are not read");
+    }
+    Counts counts;
+    counts.vertices = read_count(cursor, "vertices", 6);  // "0 0 0\n"
+    counts.faces = read_count(cursor, "faces", 2);        // "0\n"
+    if (!cursor.at_line_end())
+        cursor.integer({});  // edges
+    if (!cursor.at_line_end())
+        cursor.fail(quoted(cursor.word()) + " stands behind the counts");
+    return counts;
+}
+
+glm::dvec3 read_vertex(TextCursor& cursor, std::uint64_t vertex, std::uint64_t count)
+{
+    const auto missing = [&] {
+        return "vertex " + std::to_string(vertex) + " of " + std::to_string(count) + " is missing";
+    };
+    if (!cursor.next_line())
+        cursor.fail("the file ends, but " + missing());
+    glm::dvec3 position;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (cursor.at_line_end())
+            cursor.fail("vertex " + std::to_string(vertex) + " has " + std::to_string(axis) +
+                        " numbers, but needs 3");
+        position[axis] = cursor.number({});
+    }
+    int numbers = 3;
+    for (; !cursor.at_line_end(); ++numbers)
+        cursor.number({});
+    if (numbers > kMostVertexNumbers)
+        cursor.fail("vertex " + std::to_string(vertex) + " has " + std::to_string(numbers) +
+                    " numbers, but at most " + std::to_string(kMostVertexNumbers) +
+                    " have a meaning");
+    return position;
+}
+
+void read_face(TextCursor& cursor, std::uint64_t face, const Counts& counts, Polygons& polygons)
+{
+    const auto name = [&] { return "face " + std::to_string(face); };
+    if (!cursor.next_line())
+        cursor.fail("the file ends, but " + name() + " of " + std::to_string(counts.faces) +
+                    " is missing");
+    const std::int64_t size = cursor.integer({});
+    if (size < 1)
+        cursor.fail(name() + " has " + std::to_string(size) + " corners");
+    for (std::int64_t i = 0; i < size; ++i) {
+        if (cursor.at_line_end())
+            cursor.fail(name() + " has " + std::to_string(i) + " corners, but says " +
+                        std::to_string(size));
+        const std::int64_t index = cursor.integer({});
+        if (index < 0 || static_cast<std::uint64_t>(index) >= counts.vertices)
+            cursor.fail(name() + " uses vertex " + std::to_string(index) + ", but there are " +
+                        std::to_string(counts.vertices) + " vertices");
+        if (size > 2)
+            polygons.corners.push_back(static_cast<std::uint32_t>(index));
+    }
+    if (size > 2)
+        close_polygon(polygons, static_cast<std::uint32_t>(size));
+}
+
+}  // namespace
+
+Scene read_off(const std::string& file_name, std::string contents)
+{
+    TextCursor cursor(file_name, contents, {.comment = '#'});
+    const Counts counts = read_header(file_name, cursor);
+    std::vector<glm::dvec3> positions;
+    positions.reserve(counts.vertices);
+    for (std::uint64_t v = 0; v < counts.vertices; ++v)
+        positions.push_back(read_vertex(cursor, v, counts.vertices));
+    Polygons polygons;
+    for (std::uint64_t face = 0; face < counts.faces; ++face)
+        read_face(cursor, face, counts, polygons);
+    return make_mesh_scene(file_name, std::move(positions), std::move(polygons),
+                           std::make_shared<MeshSource>());
+}
+
+std::string off_contents(const Scene& scene, std::span<const Occlusion> occlusion)
+{
+    std::string text = "COFF\n";
+    append_integer(text, static_cast<std::int64_t>(scene.positions.size()));
+    text += ' ';
+    append_integer(text, static_cast<std::int64_t>(face_count(scene)));
+    text += " 0\n";
+    for (std::size_t v = 0; v < scene.positions.size(); ++v) {
+        for (int axis = 0; axis < 3; ++axis) {
+            append_shortest(text, scene.positions[v][axis]);
+            text += ' ';
+        }
+        const std::int64_t grey =
+            std::lround(255.0 * (1.0 - static_cast<double>(occlusion[v].occlusion)));
+        for (int channel = 0; channel < 3; ++channel) {
+            append_integer(text, grey);
+            text += ' ';
+        }
+        text += "255\n";
+    }
+    for_each_face(scene, [&](std::span<const std::uint32_t> corners) {
+        append_integer(text, static_cast<std::int64_t>(corners.size()));
+        for (const std::uint32_t corner : corners) {
+            text += ' ';
+            append_integer(text, corner);
+        }
+        text += '\n';
+    });
+    return text;
+}
+
+}  // namespace surfelao

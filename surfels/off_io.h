@@ -1,0 +1,26 @@
+/// off_io.h: the Object File Format of Geomview.
+///
+/// Read: [ST][C][N]OFF in ascii, the keyword may be missing; the counts on the keyword's line or
+/// the next; comments anywhere. A vertex takes x y z and what else stands on its line (normal,
+/// colour, texture coordinates: numbers, not used). Faces of one or two corners are points and
+/// lines and are passed over; a face's colour is. The edge count may be missing and is not used.
+/// Homogeneous (4), n-dimensional (n) and BINARY files are refused.
+#pragma once
+
+#include "surfels/occlusion.h"
+#include "surfels/scene.h"
+
+#include <span>
+#include <string>
+
+namespace surfelao {
+
+/// file_name is what faults are reported of; contents is the file. Faults name the line.
+[[nodiscard]] Scene read_off(const std::string& file_name, std::string contents);
+
+/// The scene as COFF: vertices with the visibility as grey (`x y z g g g 255`, g in 0..255), the
+/// polygons of its source where it has them. Normals, texture coordinates and face colours of an
+/// OFF source are not carried over.
+[[nodiscard]] std::string off_contents(const Scene& scene, std::span<const Occlusion> occlusion);
+
+}  // namespace surfelao

@@ -1,0 +1,153 @@
+#include "surfels/scene_io.h"
+
+#include "surfels/atomic_file.h"
+#include "surfels/errors.h"
+#include "surfels/gltf_io.h"
+#include "surfels/obj_io.h"
+#include "surfels/off_io.h"
+#include "surfels/ply_io.h"
+#include "surfels/stl_io.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <string>
+#include <system_error>
+
+namespace surfelao {
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class FileType { obj, ply, off, stl, gltf, glb, unknown };
+
+FileType type_of(const fs::path& path)
+{
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    constexpr std::pair<const char*, FileType> kTypes[] = {
+        {".obj", FileType::obj}, {".ply", FileType::ply},   {".off", FileType::off},
+        {".stl", FileType::stl}, {".gltf", FileType::gltf}, {".glb", FileType::glb}};
+    for (const auto& [name, type] : kTypes) {
+        if (extension == name)
+            return type;
+    }
+    return FileType::unknown;
+}
+
+bool is_gltf(FileType type)
+{
+    return type == FileType::gltf || type == FileType::glb;
+}
+
+/// The whole file. One read: a file that shrinks meanwhile is short, where a mapping would crash.
+std::string read_contents(const fs::path& path)
+{
+    const auto refuse = [&](const std::string& fault) {
+        throw InputError(path.string() + ": " + fault);
+    };
+    const auto reason = [] { return std::generic_category().message(errno); };
+    struct File {
+        int descriptor;
+        ~File()
+        {
+            if (descriptor >= 0)
+                close(descriptor);
+        }
+        // non-blocking: opening a pipe that nobody writes to must not wait
+    } const file{open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+    struct stat status = {};
+    if (file.descriptor < 0 || fstat(file.descriptor, &status) != 0)
+        refuse("cannot be opened: " + reason());
+    if (S_ISDIR(status.st_mode))
+        refuse("is a folder, not a file");
+    if (!S_ISREG(status.st_mode))
+        refuse("is no regular file");
+    std::string contents(static_cast<std::size_t>(status.st_size), '\0');
+    std::size_t filled = 0;
+    while (filled < contents.size()) {
+        const ssize_t count =
+            read(file.descriptor, contents.data() + filled, contents.size() - filled);
+        if (count < 0 && errno == EINTR)
+            continue;
+        if (count < 0)
+            refuse("cannot be read: " + reason());
+        if (count == 0)
+            break;
+        filled += static_cast<std::size_t>(count);
+    }
+    contents.resize(filled);
+    if (contents.empty())
+        refuse("is empty");
+    return contents;
+}
+
+Scene read_any(const fs::path& path)
+{
+    const std::string name = path.string();
+    switch (type_of(path)) {
+        case FileType::obj:
+            return read_obj(name, read_contents(path));
+        case FileType::ply:
+            return read_ply(name, read_contents(path));
+        case FileType::off:
+            return read_off(name, read_contents(path));
+        case FileType::stl:
+            return read_stl(name, read_contents(path));
+        case FileType::gltf:
+        case FileType::glb:
+            return read_gltf(path);
+        default:
+            throw InputError(name + ": the extension " + path.extension().string() +
+                             " is not known, only .obj .ply .off .stl .gltf .glb");
+    }
+}
+
+}  // namespace
+
+Scene read_scene(const fs::path& path)
+{
+    Scene scene = read_any(path);
+    scene.name = path.filename().string();
+    return scene;
+}
+
+void check_output(const fs::path& input, const fs::path& output)
+{
+    const auto refuse = [&](const std::string& fault) {
+        throw InputError(output.string() + ": " + fault);
+    };
+    const FileType type = type_of(output);
+    if (type == FileType::stl)
+        refuse("STL has no place for occlusion, use .ply");
+    if (type == FileType::unknown)
+        refuse("the extension " + output.extension().string() +
+               " is not known, only .ply .obj .off .gltf .glb");
+    if (is_gltf(type) && !is_gltf(type_of(input)))
+        refuse("only a scene that was read from glTF can be written as glTF, use .ply or .obj");
+    check_writable(output);
+}
+
+void write_scene(const fs::path& path, const Scene& scene, std::span<const Occlusion> occlusion,
+                 const WriteOptions& /*options*/)
+{
+    SURFELAO_CHECK(occlusion.size() == scene.positions.size());
+    check_output(path, path);
+    switch (type_of(path)) {
+        case FileType::obj:
+            return write_atomically(path, obj_contents(scene, occlusion));
+        case FileType::off:
+            return write_atomically(path, off_contents(scene, occlusion));
+        case FileType::ply:
+            return write_atomically(path, ply_contents(scene, occlusion));
+        default:
+            throw InputError(path.string() + ": glTF is not written by this version");
+    }
+}
+
+}  // namespace surfelao

@@ -1,0 +1,74 @@
+/// text_cursor.h: the words and numbers of a text file, and the line they stand on.
+///
+/// Shared by the readers of text formats. Lines end with LF, CRLF or CR. Nothing is copied; memory
+/// does not depend on the length of lines. Every fault is an InputError "FILE: line N: FAULT".
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace surfelao {
+
+/// A word of a file as it may stand in a message: in quotes, cut after 40 bytes, unprintable bytes
+/// replaced by '?'.
+[[nodiscard]] std::string quoted(std::string_view word);
+
+/// What a text format knows beside words and lines.
+struct TextRules {
+    char comment = '\0';        ///< from here to the end of the line is nothing; '\0': no comments
+    bool continuation = false;  ///< a backslash at the end of a line joins it with the next
+};
+
+class TextCursor {
+public:
+    /// Both views must outlive the cursor. Line 1 may begin with a UTF-8 byte order mark; where it
+    /// shows UTF-16 or UTF-32, InputError is thrown.
+    TextCursor(std::string_view file_name, std::string_view text, TextRules rules,
+               std::uint64_t first_line = 1);
+
+    /// Goes to the first word of the next line that has one (at the start: of the first such line).
+    /// False when there is none.
+    bool next_line();
+
+    /// True when the line holds no more words.
+    bool at_line_end();
+
+    /// The next word on this line; empty at its end.
+    std::string_view word();
+
+    /// The next word as a finite number. `what` names it in the sentence when it is missing.
+    double number(std::string_view what);
+
+    /// The next word as a whole number.
+    std::int64_t integer(std::string_view what);
+
+    /// The number that makes up all of `word`, which stands on this line.
+    std::int64_t integer_of(std::string_view word) const;
+
+    /// Bytes that lie behind the cursor.
+    [[nodiscard]] std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
+
+    /// Byte position in the text: of the next word after next_line() or at_line_end().
+    [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
+
+    /// Counts from 1.
+    [[nodiscard]] std::uint64_t line() const { return line_; }
+
+    [[noreturn]] void fail(const std::string& fault) const;
+
+private:
+    /// Steps over the line's end; a no-op at the end of the text.
+    void skip_newline();
+    [[nodiscard]] bool ends_word(const char* at) const;
+
+    std::string_view file_name_;
+    const char* begin_;
+    const char* at_;
+    const char* end_;
+    TextRules rules_;
+    std::uint64_t line_;
+    bool started_ = false;
+};
+
+}  // namespace surfelao

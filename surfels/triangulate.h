@@ -1,0 +1,35 @@
+/// triangulate.h: a polygon as triangles.
+///
+/// Based on:
+///   Newell's normal, as in Sutherland, Sproull, Schumacker. A Characterization of Ten Hidden-
+///     Surface Algorithms. ACM Computing Surveys 6(1), 1974
+///   Meisters. Polygons Have Ears. American Mathematical Monthly 82, 1975
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace surfelao {
+
+/// Appends exactly n - 2 triangles over the n >= 3 corners (indices into positions, which must be
+/// in range), wound like the polygon.
+///
+/// Convex polygons become the fan of their first corner. Others are cut by their ears in the plane
+/// of the Newell normal (projected along its largest axis, so that coordinates are not rounded
+/// again); this is right for every simple polygon, also with collinear and repeated corners. A
+/// polygon that crosses itself has no right answer: every corner is used and nothing more is
+/// promised.
+///
+/// O(n) for convex polygons, O(n * reflex corners) for others. After kEarTestsPerCorner * n tests
+/// the rest becomes a fan, so that no file costs more than a bounded time per corner: only polygons
+/// with thousands of reflex corners get there.
+void triangulate(std::span<const glm::dvec3> positions, std::span<const std::uint32_t> corners,
+                 std::vector<glm::uvec3>& triangles);
+
+/// Tests of a reflex corner against an ear: a nanosecond or two each.
+inline constexpr std::uint64_t kEarTestsPerCorner = 4096;
+
+}  // namespace surfelao
