@@ -1,0 +1,50 @@
+#include "reference/well_defined.h"
+
+#include "reference/sobol.h"
+
+#include <algorithm>
+
+namespace surfelao {
+
+std::vector<float> placement_change(const RayScene& scene, std::span<const Receiver> receivers,
+                                    const Definition& definition, const Progress& progress)
+{
+    // steps in the receiver's own frame: (sideways x, sideways y, along the normal)
+    constexpr float kSin120 = 0.8660254f;
+    const glm::vec3 steps[] = {
+        {0.0f, 0.0f, -0.5f * definition.offset},
+        {0.0f, 0.0f, definition.offset},
+        {kSidestep, 0.0f, 0.0f},
+        {-0.5f * kSidestep, kSin120 * kSidestep, 0.0f},
+        {-0.5f * kSidestep, -kSin120 * kSidestep, 0.0f},
+    };
+    RayOptions options;
+    options.definition = definition;
+    options.rays = 256;
+
+    std::vector<float> low(receivers.size(), 1.0f), high(receivers.size(), 0.0f);
+    std::vector<Receiver> moved(receivers.size());
+    double done = 0.0;
+    for (const glm::vec3 step : steps) {
+        for (std::size_t i = 0; i < receivers.size(); ++i) {
+            moved[i] = receivers[i];
+            if (receivers[i].normal == glm::vec3(0.0f))
+                continue;
+            const Hemisphere around = hemisphere_over(receivers[i].normal, 0, 0);
+            moved[i].position += step.x * around.x + step.y * around.y + step.z * around.z;
+        }
+        const Progress part = [&](double share) { return !progress || progress(done + share / 5); };
+        const std::vector<Occlusion> answers = trace_occlusion(scene, moved, options, part);
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+            low[i] = std::min(low[i], answers[i].occlusion);
+            high[i] = std::max(high[i], answers[i].occlusion);
+        }
+        done += 0.2;
+    }
+    std::vector<float> change(receivers.size());
+    for (std::size_t i = 0; i < change.size(); ++i)
+        change[i] = std::max(0.0f, high[i] - low[i]);
+    return change;
+}
+
+}  // namespace surfelao

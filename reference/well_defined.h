@@ -1,0 +1,43 @@
+/// well_defined.h: which receivers have an answer at all.
+///
+/// The definition (surfels/occlusion.h) puts the receiver `offset` above the surface. Where another
+/// surface is about as near as that, or the receiver stands exactly in another surface's plane, the
+/// answer belongs to the offset or to the last bit of a float, not to the scene: no method can be
+/// right or wrong there. One rule finds these receivers, and every error figure leaves them out,
+/// for every engine and for rays alike, and says how many they are.
+///
+/// The rule: rays are traced from five places, at half the offset, at twice the offset, and from
+/// the receiver moved sideways by kSidestep in three directions 120 degrees apart (any plane that
+/// contains the normal has two of them on different sides). The receiver is ill-defined when the
+/// five answers spread over more than kIllDefined.
+#pragma once
+
+#include "reference/rays.h"
+#include "surfels/occlusion.h"
+#include "surfels/progress.h"
+#include "surfels/receiver.h"
+
+#include <span>
+#include <vector>
+
+namespace surfelao {
+
+/// In occlusion. Five times the noise of the rays, and a tenth of what a sheet that comes or goes
+/// in front of half the hemisphere changes.
+inline constexpr float kIllDefined = 0.05f;
+
+/// In diagonals: eight roundings of a float at the rim of the unit frame (2^-24 each).
+inline constexpr float kSidestep = 5e-7f;
+
+/// For each receiver the largest minus the smallest occlusion over the five places; it is
+/// ill-defined when that is above kIllDefined. 0 for receivers without a normal.
+///
+/// scene: Build::robust. receivers: off the surface by definition.offset. The five places share
+/// their directions, so that their noise mostly cancels. Costs five times 256 rays a receiver.
+/// Throws Cancelled.
+[[nodiscard]] std::vector<float> placement_change(const RayScene& scene,
+                                                  std::span<const Receiver> receivers,
+                                                  const Definition& definition,
+                                                  const Progress& progress = {});
+
+}  // namespace surfelao
