@@ -54,13 +54,6 @@ double to_real(T value, bool normalized)
     }
 }
 
-template <typename T>
-glm::dvec3 load_vector(const char* at, bool normalized)
-{
-    return {to_real(load<T>(at), normalized), to_real(load<T>(at + sizeof(T)), normalized),
-            to_real(load<T>(at + 2 * sizeof(T)), normalized)};
-}
-
 /// Which elements the sparse values replace.
 std::vector<std::uint32_t> sparse_targets(const GltfAccessor& accessor)
 {
@@ -81,6 +74,49 @@ std::vector<std::uint32_t> sparse_targets(const GltfAccessor& accessor)
     return targets;
 }
 
+/// Calls store(i, vector) for `count` elements of dimension N that begin at `bytes`.
+template <int N, typename Store>
+void load_vectors(const GltfAccessor& accessor, const char* bytes, std::size_t stride,
+                  std::size_t count, Store&& store)
+{
+    with_type(accessor.component, [&](auto sample) {
+        using T = decltype(sample);
+        for (std::size_t i = 0; i < count; ++i, bytes += stride) {
+            glm::vec<N, double> vector;
+            for (int k = 0; k < N; ++k)
+                vector[k] = to_real(load<T>(bytes + static_cast<std::size_t>(k) * sizeof(T)),
+                                    accessor.normalized);
+            store(i, vector);
+        }
+    });
+}
+
+template <int N>
+void append(const GltfAccessor& accessor, std::vector<glm::vec<N, double>>& vectors)
+{
+    SURFELAO_CHECK(accessor.dimension == N);
+    const std::size_t first = vectors.size();
+    vectors.resize(first + accessor.count, glm::vec<N, double>(0.0));
+    if (!accessor.zero)
+        load_vectors<N>(accessor, accessor.bytes.data(), accessor.stride, accessor.count,
+                        [&](std::size_t i, const auto& vector) { vectors[first + i] = vector; });
+    if (accessor.sparse_count > 0) {
+        const std::vector<std::uint32_t> targets = sparse_targets(accessor);
+        load_vectors<N>(accessor, accessor.sparse_values.data(), N * size_of(accessor.component),
+                        targets.size(), [&](std::size_t i, const auto& vector) {
+                            vectors[first + targets[i]] = vector;
+                        });
+    }
+    for (std::size_t i = first; i < vectors.size(); ++i) {
+        // doubles that were floats cannot overflow: the sum is finite when all of them are
+        double sum = 0.0;
+        for (int k = 0; k < N; ++k)
+            sum += vectors[i][k];
+        if (!std::isfinite(sum))
+            throw AccessorError("element " + std::to_string(i - first) + " is not finite");
+    }
+}
+
 }  // namespace
 
 std::size_t size_of(GltfComponent component)
@@ -92,27 +128,21 @@ std::size_t size_of(GltfComponent component)
 
 void append_vectors(const GltfAccessor& accessor, std::vector<glm::dvec3>& vectors)
 {
-    SURFELAO_CHECK(accessor.dimension == 3);
-    const std::size_t first = vectors.size();
-    vectors.resize(first + accessor.count, glm::dvec3(0.0));
-    with_type(accessor.component, [&](auto sample) {
-        using T = decltype(sample);
-        if (!accessor.zero) {
-            for (std::size_t i = 0; i < accessor.count; ++i)
-                vectors[first + i] = load_vector<T>(accessor.bytes.data() + i * accessor.stride,
-                                                    accessor.normalized);
-        }
-        if (accessor.sparse_count > 0) {
-            const std::vector<std::uint32_t> targets = sparse_targets(accessor);
-            for (std::size_t i = 0; i < targets.size(); ++i)
-                vectors[first + targets[i]] = load_vector<T>(
-                    accessor.sparse_values.data() + i * 3 * sizeof(T), accessor.normalized);
-        }
-    });
-    for (std::size_t i = first; i < vectors.size(); ++i) {
-        if (!std::isfinite(vectors[i].x + vectors[i].y + vectors[i].z))
-            throw AccessorError("element " + std::to_string(i - first) + " is not finite");
+    append<3>(accessor, vectors);
+}
+
+std::vector<glm::dvec4> read_colors(const GltfAccessor& accessor)
+{
+    std::vector<glm::dvec4> colors;
+    if (accessor.dimension == 4) {
+        append<4>(accessor, colors);
+        return colors;
     }
+    std::vector<glm::dvec3> opaque;
+    append<3>(accessor, opaque);
+    for (const glm::dvec3& color : opaque)
+        colors.emplace_back(color, 1.0);
+    return colors;
 }
 
 std::vector<std::uint32_t> read_indices(const GltfAccessor& accessor)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include <cstdint>
 #include <stdexcept>
@@ -48,6 +49,9 @@ struct AccessorError : std::runtime_error {
 /// Appends `count` vectors; asks for three components of any type. Throws AccessorError on a value
 /// that is not finite and on bad sparse indices.
 void append_vectors(const GltfAccessor& accessor, std::vector<glm::dvec3>& vectors);
+
+/// Asks for three components of any type (alpha is then 1) or four. Throws like append_vectors.
+[[nodiscard]] std::vector<glm::dvec4> read_colors(const GltfAccessor& accessor);
 
 /// Asks for one component of an unsigned type. Throws AccessorError on bad sparse indices.
 [[nodiscard]] std::vector<std::uint32_t> read_indices(const GltfAccessor& accessor);

@@ -1,12 +1,12 @@
 #include "surfels/gltf_asset.h"
 
 #include "surfels/errors.h"
+#include "surfels/file_contents.h"
+#include "surfels/gltf_uri.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <map>
 
 namespace surfelao {
@@ -22,24 +22,6 @@ constexpr std::uint32_t kGlbMagic = 0x46546C67;   // "glTF"
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
 constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN"
 
-std::string read_bytes(const fs::path& path, const fs::path& asset, std::string_view element)
-{
-    std::error_code error;
-    if (!fs::exists(path, error))
-        fail_gltf(asset, element, "no such file");
-    if (!fs::is_regular_file(path, error))
-        fail_gltf(asset, element, "is not a file");
-    const std::uintmax_t size = fs::file_size(path, error);
-    std::ifstream stream(path, std::ios::binary);
-    if (error || !stream)
-        fail_gltf(asset, element, "cannot be opened for reading");
-    std::string bytes(size, '\0');
-    stream.read(bytes.data(), static_cast<std::streamsize>(size));
-    if (!stream)
-        fail_gltf(asset, element, "cannot be read to its end");
-    return bytes;
-}
-
 std::uint32_t little_endian_32(std::string_view bytes, std::size_t offset)
 {
     std::uint32_t value = 0;
@@ -51,6 +33,7 @@ std::uint32_t little_endian_32(std::string_view bytes, std::size_t offset)
 struct Container {
     std::string_view text;
     std::string_view bin;
+    std::vector<std::string_view> other_chunks;
 };
 
 Container open_glb(std::string_view file, const fs::path& path)
@@ -88,6 +71,8 @@ Container open_glb(std::string_view file, const fs::path& path)
         } else if (type == kBinChunk && !has_bin) {
             container.bin = contents;
             has_bin = true;
+        } else {
+            container.other_chunks.push_back(file.substr(at - 8, size + 8));
         }
         // a chunk is padded to a multiple of four; one that ends the file may lack that
         at = std::min<std::size_t>(at + (size + 3) / 4 * 4, length);
@@ -149,82 +134,20 @@ void check_version(const json& document, const fs::path& path)
                       ", this one knows 2.0");
 }
 
-std::optional<std::string> decode_base64(std::string_view text)
-{
-    static constexpr std::array<std::int8_t, 256> kValues = [] {
-        std::array<std::int8_t, 256> values{};
-        values.fill(-1);
-        const std::string_view alphabet =
-            "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-        for (std::size_t i = 0; i < alphabet.size(); ++i)
-            values[static_cast<unsigned char>(alphabet[i])] = static_cast<std::int8_t>(i);
-        return values;
-    }();
-    for (int padding = 0; padding < 2 && text.ends_with('='); ++padding)
-        text.remove_suffix(1);
-    if (text.size() % 4 == 1)
-        return std::nullopt;
-    std::string bytes;
-    bytes.reserve(text.size() / 4 * 3 + 2);
-    std::uint32_t pending = 0;
-    int bits = 0;
-    for (const char c : text) {
-        const int value = kValues[static_cast<unsigned char>(c)];
-        if (value < 0)
-            return std::nullopt;
-        pending = pending << 6 | static_cast<std::uint32_t>(value);
-        bits += 6;
-        if (bits >= 8) {
-            bits -= 8;
-            bytes.push_back(static_cast<char>(pending >> bits & 0xFF));
-        }
-    }
-    return bytes;
-}
-
-std::optional<std::string> decode_percent(std::string_view uri)
-{
-    const auto hex = [](char c) {
-        return c >= '0' && c <= '9'   ? c - '0'
-               : c >= 'a' && c <= 'f' ? c - 'a' + 10
-               : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                      : -1;
-    };
-    std::string decoded;
-    for (std::size_t i = 0; i < uri.size(); ++i) {
-        if (uri[i] != '%') {
-            decoded.push_back(uri[i]);
-            continue;
-        }
-        const int high = i + 1 < uri.size() ? hex(uri[i + 1]) : -1;
-        const int low = i + 2 < uri.size() ? hex(uri[i + 2]) : -1;
-        if (high < 0 || low < 0)
-            return std::nullopt;
-        decoded.push_back(static_cast<char>(high * 16 + low));
-        i += 2;
-    }
-    return decoded;
-}
-
 /// The contents that a buffer's uri stands for.
 std::string load_uri(const std::string& uri, const fs::path& path, const std::string& element)
 {
-    if (uri.starts_with("data:")) {
-        const std::size_t comma = uri.find(',');
-        const std::string_view head = std::string_view(uri).substr(0, comma);
-        if (comma == uri.npos || !head.ends_with(";base64"))
-            fail_gltf(path, element, "has a data URI that is not base64");
-        std::optional<std::string> bytes = decode_base64(std::string_view(uri).substr(comma + 1));
+    if (is_data_uri(uri)) {
+        std::optional<std::string> bytes = decode_data_uri(uri);
         if (!bytes)
-            fail_gltf(path, element, "has a data URI with broken base64");
+            fail_gltf(path, element, "has a data URI that is not base64 or is broken");
         return *std::move(bytes);
     }
-    const std::string shown = "uri \"" + uri.substr(0, 80) + "\"";
+    const std::string place = element + " uri \"" + uri.substr(0, 80) + '"';
     const std::optional<fs::path> file = resolve_uri(path.parent_path(), uri);
     if (!file)
-        fail_gltf(path, element + " " + shown,
-                  "is not the relative path of a file in the model's own folder");
-    return read_bytes(*file, path, element + " " + shown);
+        fail_gltf(path, place, "is not the relative path of a file in the model's own folder");
+    return read_contents(*file, path.string() + ": " + place);
 }
 
 void load_buffers(GltfAsset& asset)
@@ -274,7 +197,7 @@ void load_buffers(GltfAsset& asset)
 
 void fail_gltf(const fs::path& path, std::string_view element, std::string_view fault)
 {
-    std::string sentence = path.filename().string();
+    std::string sentence = path.string();
     for (const std::string_view piece : {element, fault}) {
         if (!piece.empty())
             sentence.append(": ").append(piece);
@@ -282,30 +205,15 @@ void fail_gltf(const fs::path& path, std::string_view element, std::string_view 
     throw InputError(sentence);
 }
 
-std::optional<fs::path> resolve_uri(const fs::path& folder, std::string_view uri)
-{
-    const std::optional<std::string> name = decode_percent(uri);
-    // a colon in front of the first slash makes a scheme (or a drive)
-    if (!name || name->empty() || name->find('\0') != name->npos ||
-        name->find('\\') != name->npos || name->substr(0, name->find('/')).find(':') != name->npos)
-        return std::nullopt;
-    const fs::path relative(*name);
-    if (relative.is_absolute() ||
-        std::find(relative.begin(), relative.end(), "..") != relative.end())
-        return std::nullopt;
-    return folder / relative;
-}
-
 void load_gltf_asset(const fs::path& path, GltfAsset& asset)
 {
     asset.path = path;
-    asset.file = read_bytes(path, path, "");
-    Container container{asset.file, {}};
+    asset.file = read_contents(path, path.string());
+    Container container{asset.file, {}, {}};
     if (asset.file.size() >= 4 && little_endian_32(asset.file, 0) == kGlbMagic)
         container = open_glb(asset.file, path);
-    if (container.text.empty())
-        fail_gltf(path, "", "is empty");
     asset.bin = container.bin;
+    asset.other_chunks = container.other_chunks;
     asset.document = parse_document(container.text, path);
     check_version(asset.document, path);
     load_buffers(asset);

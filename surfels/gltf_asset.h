@@ -2,6 +2,7 @@
 /// buffers. Internal to the glTF reader and writer.
 #pragma once
 
+#include "surfels/gltf_accessor.h"
 #include "surfels/scene.h"
 
 #include <glm/mat3x3.hpp>
@@ -9,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,10 +31,12 @@ struct GltfAsset : SourceAsset {
     GltfAsset& operator=(const GltfAsset&) = delete;
 
     std::filesystem::path path;
-    std::string file;         ///< the whole file, as read
-    nlohmann::json document;  ///< an object
-    std::string_view bin;     ///< the binary chunk of a GLB; empty without one
+    std::string file;                            ///< the whole file, as read
+    nlohmann::json document;                     ///< an object
+    std::string_view bin;                        ///< the binary chunk of a GLB; empty without one
+    std::vector<std::string_view> other_chunks;  ///< of a GLB: neither JSON nor BIN, with headers
     std::vector<GltfBuffer> buffers;
+    std::map<std::size_t, GltfAccessor> colors;  ///< COLOR_0 by accessor index, of all parts
     std::vector<glm::dmat3> part_matrices;  ///< per Part: the linear part of mesh space -> world
 };
 
@@ -47,10 +50,5 @@ void load_gltf_asset(const std::filesystem::path& path, GltfAsset& asset);
 /// "model.gltf: element: fault", as InputError.
 [[noreturn]] void fail_gltf(const std::filesystem::path& path, std::string_view element,
                             std::string_view fault);
-
-/// The file that a relative URI names, seen from `folder`; nothing for a URI that is absolute, has
-/// a scheme, leaves the folder or is no valid name.
-[[nodiscard]] std::optional<std::filesystem::path> resolve_uri(const std::filesystem::path& folder,
-                                                               std::string_view uri);
 
 }  // namespace surfelao

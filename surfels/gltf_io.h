@@ -17,10 +17,11 @@
 /// kInstancingBase).
 #pragma once
 
-#include "surfels/scene.h"
+#include "surfels/scene_io.h"
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 
 namespace surfelao {
 
@@ -32,5 +33,32 @@ inline constexpr std::uint64_t kInstancingPerByte = 8;
 
 /// Throws InputError with one sentence that names file, element and fault. O(bytes + vertices).
 [[nodiscard]] Scene read_gltf(const std::filesystem::path& path);
+
+/// Writes the file that `scene` was read from (read_gltf) with new vertex attributes, one Occlusion
+/// per scene vertex:
+///
+///   _OCCLUSION    SCALAR float, 0 = open, 1 = closed (occlusion.h)
+///   _BENT_NORMAL  VEC3 float, unit length, in the mesh's own space like NORMAL: the normal matrix
+///   of
+///                 the node turns it into world space. Zero where there is none, and where the node
+///                 flattens the mesh so that no direction is left.
+///   COLOR_0       when options.colors: VEC3 float, visibility as grey. Where the file has vertex
+///                 colours they are multiplied by the visibility, alpha kept (so baking twice
+///                 darkens twice).
+///
+/// Everything else is handed back: materials, textures, animations, nodes, extensions, extras,
+/// unknown GLB chunks; keys of JSON objects come out sorted. A mesh that several nodes use is
+/// listed once per use, as each has its own occlusion; the copies share all accessors but the new
+/// ones. Nodes outside the scene that was read keep the mesh as it was.
+///
+/// .glb: one file with one binary chunk; external buffers move into it, external images as well
+/// where they lie in the model's folder (another image keeps its uri).
+/// .gltf: the new data stand in the file as a data URI. Beside the original the other buffers and
+/// images stay where they are; in another folder they become data URIs too, so that the file opens.
+///
+/// Equal input gives equal bytes. Throws std::runtime_error when the file cannot be written or
+/// would exceed the 4 GiB of a GLB; see write_atomically for what stays behind (nothing).
+void write_gltf(const std::filesystem::path& path, const Scene& scene,
+                std::span<const Occlusion> occlusion, const WriteOptions& options = {});
 
 }  // namespace surfelao

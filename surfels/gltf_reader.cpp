@@ -248,8 +248,10 @@ private:
             add_vertices(group, mesh, node, world);
             part.vertex_count =
                 static_cast<std::uint32_t>(scene_.positions.size()) - part.first_vertex;
-            for (const std::size_t primitive : group.primitives)
+            for (const std::size_t primitive : group.primitives) {
                 add_triangles(mesh, primitive, node, part, mirrored);
+                find_colors(mesh, primitive, part.vertex_count);
+            }
             part.triangle_count =
                 static_cast<std::uint32_t>(scene_.triangles.size()) - part.first_triangle;
             scene_.parts.push_back(std::move(part));
@@ -263,8 +265,7 @@ private:
         const std::string element = numbered("mesh", mesh) +
                                     numbered(" primitive", group.primitives.front()) +
                                     numbered(" POSITION accessor", group.position_accessor);
-        const GltfAccessor accessor =
-            resolve(group.position_accessor, element, mesh, group.primitives.front());
+        const GltfAccessor accessor = resolve(group.position_accessor, element);
         if (accessor.dimension != 3)
             fail(element, "is not of type VEC3");
         if (accessor.component == GltfComponent::uint32)
@@ -325,6 +326,25 @@ private:
         }
     }
 
+    /// Leaves word of existing vertex colours for the writer.
+    void find_colors(std::size_t mesh, std::size_t index, std::size_t vertex_count)
+    {
+        const auto& attributes = model_.meshes[mesh].primitives[index].attributes;
+        const auto color = attributes.find("COLOR_0");
+        if (color == attributes.end())
+            return;
+        const auto accessor_index = static_cast<std::size_t>(color->second);
+        const std::string element = numbered("mesh", mesh) + numbered(" primitive", index) +
+                                    numbered(" COLOR_0 accessor", accessor_index);
+        const GltfAccessor accessor = resolve(accessor_index, element);
+        if (accessor.dimension != 3 && accessor.dimension != 4)
+            fail(element, "is neither of type VEC3 nor VEC4");
+        if (accessor.count != vertex_count)
+            fail(element, "has " + std::to_string(accessor.count) + " elements for " +
+                              std::to_string(vertex_count) + " vertices");
+        asset_.colors.insert_or_assign(accessor_index, accessor);
+    }
+
     std::vector<std::uint32_t> load_indices(std::size_t mesh, std::size_t primitive,
                                             std::size_t vertex_count) const
     {
@@ -332,7 +352,7 @@ private:
             static_cast<std::size_t>(model_.meshes[mesh].primitives[primitive].indices);
         const std::string element = numbered("mesh", mesh) + numbered(" primitive", primitive) +
                                     numbered(" indices accessor", index);
-        const GltfAccessor accessor = resolve(index, element, mesh, primitive);
+        const GltfAccessor accessor = resolve(index, element);
         if (accessor.dimension != 1)
             fail(element, "is not of type SCALAR");
         std::uint32_t restart = 0;
@@ -369,8 +389,7 @@ private:
     }
 
     /// Where the accessor's elements lie; everything about their place is checked here.
-    GltfAccessor resolve(std::size_t index, const std::string& element, std::size_t mesh,
-                         std::size_t primitive) const
+    GltfAccessor resolve(std::size_t index, const std::string& element) const
     {
         const tinygltf::Accessor& source = model_.accessors[index];
         GltfAccessor accessor;
@@ -395,10 +414,7 @@ private:
             accessor.bytes =
                 slice(view, source.byteOffset, accessor.stride, size, source.count, element);
         } else if (!source.sparse.isSparse) {
-            fail(element,
-                 compressed_by_draco(mesh, primitive)
-                     ? "is compressed by KHR_draco_mesh_compression, which is not supported"
-                     : "has neither a bufferView nor sparse values");
+            fail(element, "has neither a bufferView nor sparse values");
         }
         if (source.sparse.isSparse) {
             const auto& indices = source.sparse.indices;
@@ -441,14 +457,6 @@ private:
                               " on do not fit into " + numbered("bufferView", index) + " of " +
                               std::to_string(view.byteLength) + " bytes");
         return count == 0 ? std::string_view() : buffer.substr(view.byteOffset + offset);
-    }
-
-    bool compressed_by_draco(std::size_t mesh, std::size_t primitive) const
-    {
-        const nlohmann::json& entry = asset_.document["meshes"][mesh]["primitives"][primitive];
-        const auto extensions = entry.find("extensions");
-        return extensions != entry.end() && extensions->is_object() &&
-               extensions->contains("KHR_draco_mesh_compression");
     }
 
     [[noreturn]] void fail_expanded(std::size_t node, const std::string& what) const

@@ -64,7 +64,10 @@ constexpr Field kPrimitive[] = {
     {"indices", Kind::index, Need::optional, "accessors"},
     {"mode", Kind::small},
 };
-constexpr Field kAttributes[] = {{"POSITION", Kind::index, Need::optional, "accessors"}};
+constexpr Field kAttributes[] = {
+    {"POSITION", Kind::index, Need::optional, "accessors"},
+    {"COLOR_0", Kind::index, Need::optional, "accessors"},
+};
 constexpr Field kNode[] = {
     {"name", Kind::text},
     {"mesh", Kind::index, Need::optional, "meshes"},
@@ -275,6 +278,12 @@ json checked_mesh(const Checker& check, const json& value, const std::string& el
         json primitive = check.object(entry, kPrimitive, place);
         primitive["attributes"] =
             check.object(check.child(entry, "attributes", place), kAttributes, place);
+        // even where plain accessors stand beside it: decoders may number its vertices otherwise
+        const auto extensions = entry.find("extensions");
+        if (extensions != entry.end() && extensions->is_object() &&
+            extensions->contains("KHR_draco_mesh_compression"))
+            fail_gltf(path, place,
+                      "is compressed by KHR_draco_mesh_compression, which is not supported");
         primitives.push_back(std::move(primitive));
     }
     return mesh;

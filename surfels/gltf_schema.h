@@ -8,7 +8,7 @@
 
 namespace surfelao {
 
-/// A document with the scenes, nodes, meshes (POSITION and indices only), accessors and buffer
+/// A document with the scenes, nodes, meshes (POSITION, COLOR_0 and indices), accessors and buffer
 /// views of `document`, and of those only the fields that geometry needs. What stands in it is of
 /// the type that the specification asks for, nothing required is missing, whole numbers are not
 /// written as fractions, every index lies inside the section it points into, and no number is too

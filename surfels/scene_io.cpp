@@ -2,20 +2,15 @@
 
 #include "surfels/atomic_file.h"
 #include "surfels/errors.h"
+#include "surfels/file_contents.h"
 #include "surfels/gltf_io.h"
 #include "surfels/obj_io.h"
 #include "surfels/off_io.h"
 #include "surfels/ply_io.h"
 #include "surfels/stl_io.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <string>
-#include <system_error>
 
 namespace surfelao {
 namespace {
@@ -45,60 +40,18 @@ bool is_gltf(FileType type)
     return type == FileType::gltf || type == FileType::glb;
 }
 
-/// The whole file. One read: a file that shrinks meanwhile is short, where a mapping would crash.
-std::string read_contents(const fs::path& path)
-{
-    const auto refuse = [&](const std::string& fault) {
-        throw InputError(path.string() + ": " + fault);
-    };
-    const auto reason = [] { return std::generic_category().message(errno); };
-    struct File {
-        int descriptor;
-        ~File()
-        {
-            if (descriptor >= 0)
-                close(descriptor);
-        }
-        // non-blocking: opening a pipe that nobody writes to must not wait
-    } const file{open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-    struct stat status = {};
-    if (file.descriptor < 0 || fstat(file.descriptor, &status) != 0)
-        refuse("cannot be opened: " + reason());
-    if (S_ISDIR(status.st_mode))
-        refuse("is a folder, not a file");
-    if (!S_ISREG(status.st_mode))
-        refuse("is no regular file");
-    std::string contents(static_cast<std::size_t>(status.st_size), '\0');
-    std::size_t filled = 0;
-    while (filled < contents.size()) {
-        const ssize_t count =
-            read(file.descriptor, contents.data() + filled, contents.size() - filled);
-        if (count < 0 && errno == EINTR)
-            continue;
-        if (count < 0)
-            refuse("cannot be read: " + reason());
-        if (count == 0)
-            break;
-        filled += static_cast<std::size_t>(count);
-    }
-    contents.resize(filled);
-    if (contents.empty())
-        refuse("is empty");
-    return contents;
-}
-
 Scene read_any(const fs::path& path)
 {
     const std::string name = path.string();
     switch (type_of(path)) {
         case FileType::obj:
-            return read_obj(name, read_contents(path));
+            return read_obj(name, read_contents(path, name));
         case FileType::ply:
-            return read_ply(name, read_contents(path));
+            return read_ply(name, read_contents(path, name));
         case FileType::off:
-            return read_off(name, read_contents(path));
+            return read_off(name, read_contents(path, name));
         case FileType::stl:
-            return read_stl(name, read_contents(path));
+            return read_stl(name, read_contents(path, name));
         case FileType::gltf:
         case FileType::glb:
             return read_gltf(path);
@@ -134,7 +87,7 @@ void check_output(const fs::path& input, const fs::path& output)
 }
 
 void write_scene(const fs::path& path, const Scene& scene, std::span<const Occlusion> occlusion,
-                 const WriteOptions& /*options*/)
+                 const WriteOptions& options)
 {
     SURFELAO_CHECK(occlusion.size() == scene.positions.size());
     check_output(path, path);
@@ -146,7 +99,7 @@ void write_scene(const fs::path& path, const Scene& scene, std::span<const Occlu
         case FileType::ply:
             return write_atomically(path, ply_contents(scene, occlusion));
         default:
-            throw InputError(path.string() + ": glTF is not written by this version");
+            return write_gltf(path, scene, occlusion, options);
     }
 }
 

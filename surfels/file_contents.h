@@ -1,0 +1,14 @@
+/// file_contents.h: a whole file in memory. Internal to the readers.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace surfelao {
+
+/// All bytes of a regular file that is not empty. Throws InputError, "subject: fault". Read at
+/// once: a file that shrinks meanwhile is short, where a mapping would crash.
+[[nodiscard]] std::string read_contents(const std::filesystem::path& path,
+                                        const std::string& subject);
+
+}  // namespace surfelao
