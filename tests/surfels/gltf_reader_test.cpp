@@ -98,9 +98,9 @@ TEST(GltfReader, RefusesAnIndexOutOfRangeInOneSentence)
         static_cast<void>(read_gltf(path));
         FAIL() << "was read";
     } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(),
-                     "made.glb: mesh 0 primitive 0 indices accessor 1: "
-                     "index 0 is 9, but there are 4 vertices");
+        EXPECT_EQ(error.what(), path.string() +
+                                    ": mesh 0 primitive 0 indices accessor 1: "
+                                    "index 0 is 9, but there are 4 vertices");
     }
 }
 
