@@ -1,6 +1,7 @@
 # Third-party packages, all from Debian. Each is linked by the one folder that uses it.
 find_package(Threads REQUIRED)
 find_package(glm CONFIG REQUIRED)
+find_package(hwy CONFIG REQUIRED)        # Highway: SIMD, one code for every instruction set
 find_package(TBB 2021 CONFIG REQUIRED COMPONENTS tbb)
 find_package(OpenMesh CONFIG REQUIRED)   # target OpenMeshCore; the package has no version file
 find_package(TinyGLTF CONFIG REQUIRED)   # Debian ships it compiled: no implementation macro

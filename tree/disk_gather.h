@@ -1,0 +1,45 @@
+/// disk_gather.h: the inner loop of the disk engine, compiled once per instruction set.
+///
+/// Explicit SIMD without fused multiply-add: the widest set that the processor has is taken at run
+/// time, and every set gives the same bytes.
+#pragma once
+
+#include "surfels/occlusion.h"
+#include "tree/disk_form_factor.h"
+#include "tree/octree.h"
+#include "tree/receiver_group.h"
+
+#include <glm/vec3.hpp>
+
+#include <span>
+#include <vector>
+
+namespace surfelao {
+
+/// What lies beyond every disk, on the side its casting normal points to (`front`) and, for
+/// two-sided ones, on the other (`back`). Either set belongs to the nodes and surfels of one
+/// Octree.
+struct EmitterVisibility {
+    std::vector<FarVisibility> node_front, surfel_front;  ///< one per node, per surfel
+    std::vector<FarVisibility> node_back,
+        surfel_back;  ///< the same, or empty where all is one-sided
+};
+
+/// What is summed over the disks for one receiver.
+struct DiskSum {
+    float occlusion = 0.0f;     ///< sum of weighted form factors, >= 0, may exceed 1
+    glm::vec3 direction{0.0f};  ///< the same, each term times its direction
+};
+
+struct GatherSettings {
+    Definition definition = {};
+    float opening = 0.35f;
+    bool all_two_sided = false;  ///< treat one-sided surfels as two-sided
+};
+
+/// sums[i] for every receiver i that stands in one of the groups.
+void gather_disks(const Octree& octree, const EmitterVisibility& visibility,
+                  std::span<const ReceiverGroup> groups, const GatherSettings& settings,
+                  std::span<DiskSum> sums);
+
+}  // namespace surfelao

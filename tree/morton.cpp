@@ -1,0 +1,64 @@
+#include "tree/morton.h"
+
+#include <glm/common.hpp>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+
+namespace surfelao {
+namespace {
+
+constexpr double kCells = 2097152.0;  // 2^21 cells along each axis
+
+/// Puts two zero bits after each of the lowest 21 bits.
+std::uint64_t spread(std::uint64_t x)
+{
+    x = (x | x << 32) & 0x001F00000000FFFFull;
+    x = (x | x << 16) & 0x001F0000FF0000FFull;
+    x = (x | x << 8) & 0x100F00F00F00F00Full;
+    x = (x | x << 4) & 0x10C30C30C30C30C3ull;
+    return (x | x << 2) & 0x1249249249249249ull;
+}
+
+std::uint64_t cell(double offset, double cells_per_length)
+{
+    return static_cast<std::uint64_t>(std::clamp(offset * cells_per_length, 0.0, kCells - 1.0));
+}
+
+}  // namespace
+
+std::vector<MortonKey> morton_order(std::span<const glm::vec3> points)
+{
+    if (points.empty())
+        return {};
+    glm::vec3 low = points[0];
+    glm::vec3 high = points[0];
+    for (const glm::vec3& point : points) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+    const glm::dvec3 size = glm::dvec3(high) - glm::dvec3(low);
+    const double side = std::max({size.x, size.y, size.z});
+    const double cells_per_length = side > 0.0 ? kCells / side : 0.0;
+
+    std::vector<MortonKey> keys(points.size());
+    using Range = tbb::blocked_range<std::size_t>;
+    tbb::parallel_for(Range(0, points.size(), 4096), [&](const Range& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            const glm::dvec3 offset = glm::dvec3(points[i]) - glm::dvec3(low);
+            keys[i].code = spread(cell(offset.x, cells_per_length)) |
+                           spread(cell(offset.y, cells_per_length)) << 1 |
+                           spread(cell(offset.z, cells_per_length)) << 2;
+            keys[i].index = static_cast<std::uint32_t>(i);
+        }
+    });
+    tbb::parallel_sort(keys, [](const MortonKey& a, const MortonKey& b) {
+        return a.code != b.code ? a.code < b.code : a.index < b.index;
+    });
+    return keys;
+}
+
+}  // namespace surfelao

@@ -1,0 +1,36 @@
+/// receiver_group.h: sixteen neighbouring receivers that walk the octree together.
+///
+/// One walk per group makes one list of disks, opened for the nearest of the sixteen, which all of
+/// them then sum in SIMD lanes. That is faster than sixteen walks and, since more is taken
+/// directly, more exact (Barnes. A Modified Tree Code: Don't Laugh; It Runs. 1990).
+#pragma once
+
+#include "surfels/receiver.h"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace surfelao {
+
+inline constexpr std::uint32_t kGroupSize = 16;
+
+/// Neighbours along a Morton curve. Lanes from `count` on repeat lane 0.
+struct alignas(64) ReceiverGroup {
+    using Lanes = std::array<float, kGroupSize>;
+    std::array<Lanes, 3> position;  ///< x, y, z
+    std::array<Lanes, 3> normal;
+    std::array<std::uint32_t, kGroupSize> receiver;  ///< index into the receivers
+    std::uint32_t count = 0;                         ///< 1 to 16 lanes stand for a receiver
+    glm::vec3 center{0.0f};                          ///< the ball that holds all positions
+    float radius = 0.0f;
+};
+
+/// Every receiver that has a normal, in exactly one lane. O(n log n), all cores, same bytes for any
+/// number of threads.
+[[nodiscard]] std::vector<ReceiverGroup> group_receivers(std::span<const Receiver> receivers);
+
+}  // namespace surfelao
