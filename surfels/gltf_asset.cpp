@@ -18,7 +18,6 @@ using nlohmann::json;
 /// Written files have about ten levels; recursion over the document is safe at this depth.
 constexpr int kMaxNesting = 256;
 
-constexpr std::uint32_t kGlbMagic = 0x46546C67;   // "glTF"
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
 constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN"
 
@@ -176,8 +175,10 @@ void load_buffers(GltfAsset& asset)
                 fail_gltf(asset.path, element, "has a uri that is not a string");
             const auto& name = uri->get_ref<const std::string&>();
             std::shared_ptr<const std::string>& contents = files[name];
-            if (!contents)
+            if (!contents) {
                 contents = std::make_shared<const std::string>(load_uri(name, asset.path, element));
+                asset.byte_count += contents->size();
+            }
             buffer.contents = contents;
             buffer.bytes = *buffer.contents;
         } else if (i == 0 && !asset.bin.empty()) {
@@ -205,16 +206,18 @@ void fail_gltf(const fs::path& path, std::string_view element, std::string_view 
     throw InputError(sentence);
 }
 
-void load_gltf_asset(const fs::path& path, GltfAsset& asset)
+void load_gltf_asset(const fs::path& path, std::string contents, GltfAsset& asset)
 {
     asset.path = path;
-    asset.file = read_contents(path, path.string());
-    Container container{asset.file, {}, {}};
-    if (asset.file.size() >= 4 && little_endian_32(asset.file, 0) == kGlbMagic)
-        container = open_glb(asset.file, path);
+    asset.file = std::move(contents);
+    asset.byte_count = asset.file.size();
+    const bool binary = asset.file.starts_with("glTF");
+    const Container container = binary ? open_glb(asset.file, path) : Container{asset.file, {}, {}};
+    asset.document = parse_document(container.text, path);
     asset.bin = container.bin;
     asset.other_chunks = container.other_chunks;
-    asset.document = parse_document(container.text, path);
+    if (!binary)
+        asset.file = {};
     check_version(asset.document, path);
     load_buffers(asset);
 }

@@ -31,21 +31,23 @@ struct GltfAsset : SourceAsset {
     GltfAsset& operator=(const GltfAsset&) = delete;
 
     std::filesystem::path path;
-    std::string file;                            ///< the whole file, as read
-    nlohmann::json document;                     ///< an object
-    std::string_view bin;                        ///< the binary chunk of a GLB; empty without one
+    std::string file;            ///< a GLB as read; empty for text, of which nothing else is needed
+    std::size_t byte_count = 0;  ///< of the file and its buffers
+    nlohmann::json document;     ///< an object
+    std::string_view bin;        ///< the binary chunk of a GLB; empty without one
     std::vector<std::string_view> other_chunks;  ///< of a GLB: neither JSON nor BIN, with headers
     std::vector<GltfBuffer> buffers;
     std::map<std::size_t, GltfAccessor> colors;  ///< COLOR_0 by accessor index, of all parts
     std::vector<glm::dmat3> part_matrices;  ///< per Part: the linear part of mesh space -> world
 };
 
-/// Reads the container, the document and all buffers into `asset`. A buffer without a uri that is
-/// not the binary chunk (its contents come from an extension) has no bytes; using it is the fault.
+/// Takes the container apart, parses the document and loads all buffers into `asset`. A buffer
+/// without a uri that is not the binary chunk (its contents come from an extension) has no bytes;
+/// using it is the fault.
 ///
-/// Throws InputError: unreadable, cut, not glTF 2, not JSON, nested deeper than 256 levels, a
-/// buffer that is missing, shorter than declared, or outside the file's folder.
-void load_gltf_asset(const std::filesystem::path& path, GltfAsset& asset);
+/// Throws InputError: cut, not glTF 2, not JSON, nested deeper than 256 levels, a buffer that is
+/// missing, shorter than declared, or outside the file's folder.
+void load_gltf_asset(const std::filesystem::path& path, std::string contents, GltfAsset& asset);
 
 /// "model.gltf: element: fault", as InputError.
 [[noreturn]] void fail_gltf(const std::filesystem::path& path, std::string_view element,

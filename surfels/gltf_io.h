@@ -22,6 +22,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 
 namespace surfelao {
 
@@ -31,11 +32,13 @@ namespace surfelao {
 inline constexpr std::uint64_t kInstancingBase = 1u << 24;
 inline constexpr std::uint64_t kInstancingPerByte = 8;
 
-/// Throws InputError with one sentence that names file, element and fault. O(bytes + vertices).
-[[nodiscard]] Scene read_gltf(const std::filesystem::path& path);
+/// `contents` is the file at `path`; the path is for messages, and its folder is where external
+/// buffers are looked for. Throws InputError with one sentence that names file, element and fault.
+/// O(bytes + vertices).
+[[nodiscard]] Scene read_gltf(const std::filesystem::path& path, std::string contents);
 
-/// Writes the file that `scene` was read from (read_gltf) with new vertex attributes, one Occlusion
-/// per scene vertex:
+/// The file that `scene` was read from (read_gltf) with new vertex attributes, one Occlusion per
+/// scene vertex, as it is to stand at `path` (whose extension says whether it is a .glb):
 ///
 ///   _OCCLUSION    SCALAR float, 0 = open, 1 = closed (occlusion.h)
 ///   _BENT_NORMAL  VEC3 float, unit length, in the mesh's own space like NORMAL: the normal matrix
@@ -56,9 +59,10 @@ inline constexpr std::uint64_t kInstancingPerByte = 8;
 /// .gltf: the new data stand in the file as a data URI. Beside the original the other buffers and
 /// images stay where they are; in another folder they become data URIs too, so that the file opens.
 ///
-/// Equal input gives equal bytes. Throws std::runtime_error when the file cannot be written or
-/// would exceed the 4 GiB of a GLB; see write_atomically for what stays behind (nothing).
-void write_gltf(const std::filesystem::path& path, const Scene& scene,
-                std::span<const Occlusion> occlusion, const WriteOptions& options = {});
+/// Equal input gives equal bytes. Throws InputError when the scene did not come from glTF, when a
+/// colour to be multiplied is not finite, and when a .glb would exceed the format's 4 GiB.
+[[nodiscard]] std::string gltf_contents(const std::filesystem::path& path, const Scene& scene,
+                                        std::span<const Occlusion> occlusion,
+                                        const WriteOptions& options = {});
 
 }  // namespace surfelao

@@ -14,7 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
+
 #include <string>
 #include <vector>
 
@@ -56,14 +56,9 @@ public:
     SceneBuilder(const tinygltf::Model& model, GltfAsset& asset, Scene& scene)
         : model_(model), asset_(asset), scene_(scene)
     {
-        std::uint64_t bytes = asset.file.size();
-        std::set<const std::string*> counted;
-        for (const GltfBuffer& buffer : asset.buffers) {
-            if (buffer.contents && counted.insert(buffer.contents.get()).second)
-                bytes += buffer.contents->size();
-        }
-        element_limit_ = std::min<std::uint64_t>(kInstancingBase + kInstancingPerByte * bytes,
-                                                 std::numeric_limits<std::uint32_t>::max());
+        element_limit_ =
+            std::min<std::uint64_t>(kInstancingBase + kInstancingPerByte * asset.byte_count,
+                                    std::numeric_limits<std::uint32_t>::max());
     }
 
     void build()
@@ -475,10 +470,10 @@ private:
 
 }  // namespace
 
-Scene read_gltf(const fs::path& path)
+Scene read_gltf(const fs::path& path, std::string contents)
 {
     const auto asset = std::make_shared<GltfAsset>();
-    load_gltf_asset(path, *asset);
+    load_gltf_asset(path, std::move(contents), *asset);
     const tinygltf::Model model = parse_model(*asset);
     Scene scene;
     scene.name = path.filename().string();

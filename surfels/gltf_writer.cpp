@@ -1,6 +1,5 @@
 #include "surfels/gltf_io.h"
 
-#include "surfels/atomic_file.h"
 #include "surfels/errors.h"
 #include "surfels/file_contents.h"
 #include "surfels/gltf_accessor.h"
@@ -341,8 +340,7 @@ std::string make_glb(const json& document, const std::string& bin, const GltfAss
     for (const std::string_view chunk : asset.other_chunks)
         size += (chunk.size() + 3) / 4 * 4;
     if (size > std::numeric_limits<std::uint32_t>::max())
-        throw std::runtime_error(path.string() +
-                                 ": would be larger than the 4 GiB that a .glb may have");
+        throw InputError(path.string() + ": would be larger than the 4 GiB that a .glb may have");
     std::string file;
     file.reserve(size);
     const auto append_32 = [&](std::uint64_t value) {
@@ -419,8 +417,8 @@ bool in_one_folder(const fs::path& a, const fs::path& b)
 
 }  // namespace
 
-void write_gltf(const fs::path& path, const Scene& scene, std::span<const Occlusion> occlusion,
-                const WriteOptions& options)
+std::string gltf_contents(const fs::path& path, const Scene& scene,
+                          std::span<const Occlusion> occlusion, const WriteOptions& options)
 {
     const auto* asset = dynamic_cast<const GltfAsset*>(scene.asset.get());
     if (asset == nullptr)
@@ -444,7 +442,7 @@ void write_gltf(const fs::path& path, const Scene& scene, std::span<const Occlus
     if (!binary)
         buffers.push_back({{"uri", make_data_uri("application/octet-stream", bytes)}});
     buffers[buffer]["byteLength"] = bytes.size();
-    write_atomically(path, binary ? make_glb(document, bytes, *asset, path) : document.dump(2));
+    return binary ? make_glb(document, bytes, *asset, path) : document.dump(2) + '\n';
 }
 
 }  // namespace surfelao

@@ -54,7 +54,7 @@ Scene read_any(const fs::path& path)
             return read_stl(name, read_contents(path, name));
         case FileType::gltf:
         case FileType::glb:
-            return read_gltf(path);
+            return read_gltf(path, read_contents(path, name));
         default:
             throw InputError(name + ": the extension " + path.extension().string() +
                              " is not known, only .obj .ply .off .stl .gltf .glb");
@@ -99,7 +99,7 @@ void write_scene(const fs::path& path, const Scene& scene, std::span<const Occlu
         case FileType::ply:
             return write_atomically(path, ply_contents(scene, occlusion));
         default:
-            return write_gltf(path, scene, occlusion, options);
+            return write_atomically(path, gltf_contents(path, scene, occlusion, options));
     }
 }
 

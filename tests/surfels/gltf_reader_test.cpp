@@ -1,7 +1,7 @@
 #include "gltf_maker.h"
 
 #include "surfels/errors.h"
-#include "surfels/gltf_io.h"
+#include "surfels/scene_io.h"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ using Triangles = std::vector<glm::uvec3>;
 Scene read(const GltfMaker& maker)
 {
     const TemporaryFolder folder;
-    return read_gltf(maker.save_glb(folder / "made.glb"));
+    return read_scene(maker.save_glb(folder / "made.glb"));
 }
 
 const Positions kSquare = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -46,7 +46,7 @@ TEST(GltfReader, ReadsABinaryFile)
 TEST(GltfReader, ReadsATextFileWithAnExternalBuffer)
 {
     const TemporaryFolder folder;
-    EXPECT_EQ(read_gltf(square().save_gltf(folder / "made.gltf")).positions, kSquare);
+    EXPECT_EQ(read_scene(square().save_gltf(folder / "made.gltf")).positions, kSquare);
 }
 
 TEST(GltfReader, ReadsADataUri)
@@ -56,7 +56,7 @@ TEST(GltfReader, ReadsADataUri)
     maker.document["buffers"][0]["uri"] =
         "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
     const TemporaryFolder folder;
-    const Scene scene = read_gltf(test::write_file(folder / "made.gltf", maker.document.dump()));
+    const Scene scene = read_scene(test::write_file(folder / "made.gltf", maker.document.dump()));
     EXPECT_EQ(scene.positions, (Positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 
@@ -95,7 +95,7 @@ TEST(GltfReader, RefusesAnIndexOutOfRangeInOneSentence)
     const TemporaryFolder folder;
     const std::filesystem::path path = maker.save_glb(folder / "made.glb");
     try {
-        static_cast<void>(read_gltf(path));
+        static_cast<void>(read_scene(path));
         FAIL() << "was read";
     } catch (const InputError& error) {
         EXPECT_EQ(error.what(), path.string() +
