@@ -6,6 +6,7 @@ target_compile_options(surfelao_options INTERFACE
     -ffp-contract=off  # equal results with and without FMA hardware
     $<$<BOOL:${SURFELAO_WERROR}>:-Werror>
     $<$<BOOL:${SURFELAO_SANITIZE}>:-fsanitize=address,undefined;-fno-sanitize-recover=undefined;-fno-omit-frame-pointer>
+    $<$<BOOL:${SURFELAO_FUZZ}>:-fsanitize=fuzzer-no-link>
     $<$<BOOL:${SURFELAO_TSAN}>:-fsanitize=thread>)
 target_link_options(surfelao_options INTERFACE
     $<$<BOOL:${SURFELAO_SANITIZE}>:-fsanitize=address,undefined>

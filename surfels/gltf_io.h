@@ -29,8 +29,8 @@ namespace surfelao {
 /// A scene may have kInstancingBase + kInstancingPerByte * (bytes of the file and its buffers)
 /// vertices, and as many triangles. Nodes that use a mesh again and again can multiply a small file
 /// without end; beyond this it is refused.
-inline constexpr std::uint64_t kInstancingBase = 1u << 24;
-inline constexpr std::uint64_t kInstancingPerByte = 8;
+inline constexpr std::uint64_t kInstancingBase = 1u << 22;
+inline constexpr std::uint64_t kInstancingPerByte = 16;
 
 /// `contents` is the file at `path`; the path is for messages, and its folder is where external
 /// buffers are looked for. Throws InputError with one sentence that names file, element and fault.

@@ -1,0 +1,59 @@
+// The glTF reader on any bytes: refuses them in one sentence, or gives a scene that keeps its
+// promises and that survives being written and read again.
+#include "surfels/errors.h"
+#include "surfels/gltf_io.h"
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace surfelao;
+
+void check_invariants(const Scene& scene)
+{
+    SURFELAO_CHECK(!scene.triangles.empty());
+    for (const glm::dvec3& position : scene.positions)
+        SURFELAO_CHECK(std::isfinite(position.x + position.y + position.z));
+    std::uint64_t vertices = 0;
+    std::uint64_t triangles = 0;
+    for (const Part& part : scene.parts) {
+        SURFELAO_CHECK(part.first_vertex == vertices && part.first_triangle == triangles);
+        vertices += part.vertex_count;
+        triangles += part.triangle_count;
+        for (std::uint64_t t = part.first_triangle; t < triangles; ++t) {
+            for (int corner = 0; corner < 3; ++corner) {
+                const std::uint32_t vertex = scene.triangles[t][corner];
+                SURFELAO_CHECK(vertex >= part.first_vertex && vertex < vertices);
+            }
+        }
+    }
+    SURFELAO_CHECK(vertices == scene.positions.size() && triangles == scene.triangles.size());
+}
+
+void check_round_trip(const Scene& scene)
+{
+    const std::vector<Occlusion> occlusion(scene.positions.size(), {0.5f, {0.0f, 0.0f, 1.0f}});
+    for (const char* path : {"/no folder/a.glb", "/no folder/a.gltf"}) {
+        const Scene again = read_gltf(path, gltf_contents(path, scene, occlusion));
+        SURFELAO_CHECK(again.positions == scene.positions);
+        SURFELAO_CHECK(again.triangles == scene.triangles);
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    try {
+        const Scene scene =
+            read_gltf("/no folder/fuzzed", std::string(reinterpret_cast<const char*>(data), size));
+        check_invariants(scene);
+        if (scene.positions.size() < 10'000)
+            check_round_trip(scene);
+    } catch (const InputError&) {
+    }
+    return 0;
+}

@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# Builds the fuzzers and runs each for SECONDS (default 60); with NAMES only those (gltf ...).
+# What they learn stays in build/fuzz/corpus, findings in build/fuzz/findings. Exit 1 on a finding.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+
+seconds=${1:-60}
+shift || true
+names=("$@")
+if [ ${#names[@]} = 0 ]; then
+    for source in tests/fuzz/*_fuzz.cpp; do
+        name=$(basename "$source" _fuzz.cpp)
+        names+=("$name")
+    done
+fi
+
+cmake --preset fuzz >/dev/null
+cmake --build --preset fuzz | tail -n 1
+./build/fuzz/bin/fuzz_seeds build/fuzz/seeds
+
+failed=0
+mkdir -p build/fuzz/findings
+for name in "${names[@]}"; do
+    corpus=build/fuzz/corpus/$name
+    log=build/fuzz/$name.log
+    mkdir -p "$corpus" "build/fuzz/seeds/$name"
+    options=(-max_total_time="$seconds" -timeout=10 -rss_limit_mb=4096 -max_len=65536
+        -artifact_prefix="build/fuzz/findings/$name-" -print_final_stats=1)
+    if [ -f "tests/fuzz/$name.dict" ]; then
+        options+=(-dict="tests/fuzz/$name.dict")
+    fi
+    if ./build/fuzz/bin/fuzz_"$name" "${options[@]}" "$corpus" "build/fuzz/seeds/$name" \
+        >"$log" 2>&1; then
+        echo "$name: $(grep -o 'number_of_executed_units: [0-9]*' "$log" | grep -o '[0-9]*') runs, no findings"
+    else
+        echo "$name: finding, see $log" >&2
+        tail -n 30 "$log" >&2
+        failed=1
+    fi
+done
+exit $failed
