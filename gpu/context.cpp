@@ -2,9 +2,12 @@
 
 #include "gpu/gl_table.inc"
 #include "gpu/platform.h"
+#include "gpu/program.h"
 
+#include <map>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 namespace surfelao {
 namespace {
@@ -87,8 +90,15 @@ struct GlContext::Impl {
     std::unique_ptr<GlPlatform> platform;
     GlTable gl;
     GlInfo info;
+    std::map<std::string, std::unique_ptr<Program>> programs;
 
-    ~Impl() { release(); }
+    ~Impl()
+    {
+        if (!programs.empty() && current_platform != platform.get())
+            make_current();
+        programs.clear();
+        release();
+    }
 
     void make_current() const
     {
@@ -205,6 +215,18 @@ const GlInfo& GlContext::info() const
 const GlTable& GlContext::gl() const
 {
     return impl_->gl;
+}
+
+Program& GlContext::program(const std::string& vertex_file, const std::string& fragment_file,
+                            const std::vector<std::string>& definitions) const
+{
+    std::string key = vertex_file + ' ' + fragment_file;
+    for (const std::string& definition : definitions)
+        key += ' ' + definition;
+    std::unique_ptr<Program>& kept = impl_->programs[key];
+    if (kept == nullptr)
+        kept = std::make_unique<Program>(*this, vertex_file, fragment_file, definitions);
+    return *kept;
 }
 
 void GlContext::finish(const char* doing) const

@@ -14,10 +14,12 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace surfelao {
 
 struct GlTable;
+class Program;
 
 enum class GlBackend {
     automatic,  ///< EGL, and OSMesa where EGL has nothing to offer
@@ -71,6 +73,12 @@ public:
     /// Waits until everything asked for is done. Throws std::runtime_error naming `doing` when
     /// anything went wrong since the last check, a lost device included (where the driver tells).
     void finish(const char* doing) const;
+
+    /// The program of these two files of shaders/ and definitions (program.h), made when first
+    /// asked for and kept as long as the context: what it was set to by an earlier user is still
+    /// set.
+    Program& program(const std::string& vertex_file, const std::string& fragment_file,
+                     const std::vector<std::string>& definitions = {}) const;
 
     /// For gpu/ alone (gl_table.inc).
     const GlTable& gl() const;

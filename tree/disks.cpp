@@ -32,17 +32,6 @@ void gather_all(const Octree& octree, const EmitterVisibility& visibility,
     });
 }
 
-/// The surfels' far sides as receivers. side: +1 = where the casting normal points, -1 = the other.
-std::vector<Receiver> far_sides(const Octree& octree, float offset, float side)
-{
-    std::vector<Receiver> receivers(octree.surfels.size());
-    for (std::size_t i = 0; i < receivers.size(); ++i) {
-        const glm::vec3 normal = side * octree.surfels[i].normal;
-        receivers[i] = {octree.surfels[i].position + offset * normal, normal};
-    }
-    return receivers;
-}
-
 /// Scaled down where it sums to more than a full hemisphere.
 DiskSum capped(const DiskSum& sum)
 {
@@ -125,13 +114,28 @@ Occlusion to_occlusion(const DiskSum& sum, const glm::vec3& normal, float streng
 
 }  // namespace
 
+void check_disk_options(const DiskOptions& options)
+{
+    SURFELAO_CHECK(options.definition.max_distance > 0.0f && options.definition.offset > 0.0f);
+    SURFELAO_CHECK(options.opening >= 0.0f && options.opening < 1.0f);
+    SURFELAO_CHECK(options.passes >= 1 && options.strength >= 0.0f);
+}
+
+std::vector<Receiver> far_sides(const Octree& octree, float offset, float side)
+{
+    std::vector<Receiver> receivers(octree.surfels.size());
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        const glm::vec3 normal = side * octree.surfels[i].normal;
+        receivers[i] = {octree.surfels[i].position + offset * normal, normal};
+    }
+    return receivers;
+}
+
 DiskResult solve_disks(const Octree& octree, std::span<const Receiver> receivers,
                        const DiskOptions& options, const Progress& progress)
 {
+    check_disk_options(options);
     const Definition& definition = options.definition;
-    SURFELAO_CHECK(definition.max_distance > 0.0f && definition.offset > 0.0f);
-    SURFELAO_CHECK(options.opening >= 0.0f && options.opening < 1.0f);
-    SURFELAO_CHECK(options.passes >= 1 && options.strength >= 0.0f);
 
     // A limit may end inside a body, in front of its back: then every surface casts from both
     // sides, and half the range is what is left, on average, beyond a disk.

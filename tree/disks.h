@@ -69,4 +69,11 @@ inline constexpr double kSettled = 5e-4;
 [[nodiscard]] DiskResult solve_disks(const Octree& octree, std::span<const Receiver> receivers,
                                      const DiskOptions& options, const Progress& progress = {});
 
+/// Aborts where an option is out of its range.
+void check_disk_options(const DiskOptions& options);
+
+/// The surfels' far sides as receivers, one per surfel: what the correcting passes ask.
+/// side: +1 = where the casting normal points, -1 = the other.
+[[nodiscard]] std::vector<Receiver> far_sides(const Octree& octree, float offset, float side);
+
 }  // namespace surfelao

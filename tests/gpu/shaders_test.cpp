@@ -44,6 +44,20 @@ std::vector<std::string> fragment_files()
     return names;
 }
 
+/// The names in the contract's line "Definitions  A B: ...", each as 1: the most code there is.
+std::vector<std::string> all_definitions(const std::string& text)
+{
+    std::smatch line;
+    std::vector<std::string> definitions;
+    if (!std::regex_search(text, line, std::regex("// Definitions +([A-Z_ ]+):")))
+        return definitions;
+    const std::string names = line[1];
+    static const std::regex name("[A-Z_]+");
+    for (std::sregex_iterator it(names.begin(), names.end(), name), end; it != end; ++it)
+        definitions.push_back(it->str() + " 1");
+    return definitions;
+}
+
 // The contract at the top of a .frag names the .vert it is drawn with ("Vertices  x.vert"); every
 // u_ name in the comments of the two is a uniform of the linked program, and the other way round.
 TEST(Shaders, EachFragmentShaderLinksAndUsesTheUniformsOfItsContract)
@@ -52,9 +66,9 @@ TEST(Shaders, EachFragmentShaderLinksAndUsesTheUniformsOfItsContract)
         const std::string text = text_of(name);
         const std::set<std::string> vertex = comment_words(text, std::regex("\\w+\\.vert"));
         ASSERT_EQ(vertex.size(), 1u) << name << " names its vertex shader once, as 'x.vert'";
-        const Program program(test_context(), *vertex.begin(), name);
+        const Program program(test_context(), *vertex.begin(), name, all_definitions(text));
 
-        const std::regex uniform("u_\\w+");
+        const std::regex uniform("\\bu_\\w+");
         std::set<std::string> promised = comment_words(text, uniform);
         promised.merge(comment_words(text_of(*vertex.begin()), uniform));
         const std::vector<std::string> uniforms = program.uniforms();

@@ -1,0 +1,306 @@
+#include "gpu/gpu_disks.h"
+
+#include "gpu/draw.h"
+#include "gpu/receiver_grid.h"
+#include "gpu/rows.h"
+#include "tree/disk_gather.h"
+#include "tree/receiver_group.h"
+
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace surfelao {
+namespace {
+
+/// Records of one chunk of disks_average_chunks.frag.
+constexpr std::uint32_t kChunkRecords = 256;
+
+/// As shaders/disk_record.glsl says.
+struct Record {
+    glm::vec3 center{0.0f};
+    float radius = 0.0f;
+    glm::vec3 normal{0.0f};
+    float flat_area = 0.0f;
+    std::uint32_t next = 0;
+    float area = 0.0f;
+    std::uint32_t first_chunk = 0;
+    std::uint32_t chunk_count = 0;
+};
+static_assert(sizeof(Record) == 48);
+
+constexpr float kSurfelRadius = -1.0f;
+
+/// Neighbours that row_sums.frag adds up.
+constexpr int kRowSumTerms = 64;
+
+/// FarVisibility before the first pass.
+constexpr glm::vec4 kAllVisible(0.0f, 0.0f, 0.0f, 1.0f);
+
+/// The octree as the device walks it.
+struct Records {
+    std::vector<Record> records;
+    std::vector<glm::uvec4> chunks;        ///< node, first and end record, 0
+    std::vector<std::uint32_t> of_surfel;  ///< record of each surfel
+    std::uint32_t two_sided_from = 0;      ///< first record that occludes from both sides
+};
+
+Records make_records(const Octree& octree)
+{
+    const auto node_count = static_cast<std::uint32_t>(octree.nodes.size());
+    const auto total = static_cast<std::uint32_t>(octree.nodes.size() + octree.surfels.size());
+    // all surfels of earlier leaves stand before a node, and those are the ones before its first
+    const auto record_of_node = [&](std::uint32_t node) {
+        return node < node_count ? node + octree.nodes[node].first_surfel : total;
+    };
+    Records result;
+    result.records.resize(total);
+    result.of_surfel.resize(octree.surfels.size());
+    result.two_sided_from = record_of_node(octree.two_sided_nodes);
+    for (std::uint32_t i = 0; i < node_count; ++i) {
+        const OctreeNode& node = octree.nodes[i];
+        const std::uint32_t self = record_of_node(i);
+        const std::uint32_t next = record_of_node(node.next);
+        const auto first_chunk = static_cast<std::uint32_t>(result.chunks.size());
+        for (std::uint32_t at = self + 1; at < next; at += kChunkRecords)
+            result.chunks.emplace_back(self, at, std::min(at + kChunkRecords, next), 0);
+        result.records[self] = {
+            node.center, node.radius,
+            node.normal, node.flat_area,
+            next,        node.area,
+            first_chunk, static_cast<std::uint32_t>(result.chunks.size()) - first_chunk};
+        if (node.next != i + 1)
+            continue;
+        for (std::uint32_t k = 0; k < node.surfel_count; ++k) {
+            const Surfel& surfel = octree.surfels[node.first_surfel + k];
+            const std::uint32_t record = self + 1 + k;
+            result.of_surfel[node.first_surfel + k] = record;
+            result.records[record] = {surfel.position, kSurfelRadius, surfel.normal,
+                                      surfel.area,     record + 1,    surfel.area};
+        }
+    }
+    return result;
+}
+
+TextureBuffer upload_slots(const GlContext& context, std::vector<std::uint32_t> slots)
+{
+    slots.resize(padded_to_rows(slots.size()), kNoSlot);
+    return TextureBuffer(context, TexelFormat::r32ui, std::span<const std::uint32_t>(slots));
+}
+
+/// One side of all surfels: where they are asked, and what they find.
+struct FarSide {
+    float sign;  ///< +1: the side of the casting normal
+    std::vector<ReceiverGroup> groups;
+    ReceiverGrid grid;
+    TextureBuffer slots;  ///< of each record in the grid
+    Framebuffer found;    ///< disks_fit.frag: visibility and its change
+    Framebuffer before;   ///< the same of the pass before
+
+    FarSide(const GlContext& context, const Octree& octree, const Records& records, float offset,
+            float side)
+        : sign(side),
+          groups(group_receivers(far_sides(octree, offset, side))),
+          grid(context, groups),
+          slots(upload_slots(context, slots_of_records(records))),
+          found(make_rows(context, records.records.size(), kFormats)),
+          before(make_rows(context, records.records.size(), kFormats))
+    {
+        found.clear_color(kAllVisible);
+    }
+
+private:
+    inline static const std::vector<TexelFormat> kFormats = {TexelFormat::rgba32f,
+                                                             TexelFormat::r32f};
+    std::vector<std::uint32_t> slots_of_records(const Records& records) const
+    {
+        const std::vector<std::uint32_t> of_surfel =
+            slots_of_receivers(groups, records.of_surfel.size());
+        std::vector<std::uint32_t> slots_of(records.records.size(), kNoSlot);
+        for (std::size_t s = 0; s < of_surfel.size(); ++s)
+            slots_of[records.of_surfel[s]] = of_surfel[s];
+        return slots_of;
+    }
+};
+
+/// What the passes share.
+class Solver {
+public:
+    Solver(const GlContext& context, const Octree& octree, const DiskOptions& options)
+        : context_(context),
+          options_(options),
+          limited_(std::isfinite(options.definition.max_distance)),
+          two_sided_(limited_ || octree.two_sided_surfels < octree.surfels.size()),
+          records_(make_records(octree)),
+          records_texture_(context, TexelFormat::rgba32ui,
+                           std::span<const Record>(records_.records)),
+          empty_(context)
+    {
+        for (int side = 0; side < side_count(); ++side) {
+            visibility_.push_back(
+                make_rows(context, records_.records.size(), {TexelFormat::rgba32f}));
+            visibility_.back().clear_color(kAllVisible);
+        }
+    }
+
+    DiskResult solve(const Octree& octree, std::span<const Receiver> receivers,
+                     const Progress& progress)
+    {
+        std::vector<FarSide> sides;
+        for (int side = 0; side < side_count() && options_.passes > 1; ++side)
+            sides.emplace_back(context_, octree, records_, options_.definition.offset,
+                               side == 0 ? 1.0f : -1.0f);
+        const std::vector<ReceiverGroup> groups = group_receivers(receivers);
+        std::uint64_t work = groups.size();
+        for (const FarSide& side : sides)
+            work += side.groups.size() * static_cast<std::uint64_t>(options_.passes - 1);
+        ProgressMeter meter(progress, work);
+
+        DiskResult result;
+        for (int pass = 1; pass < options_.passes; ++pass) {
+            double change = 0.0;
+            for (FarSide& side : sides) {
+                gather(side.grid, 0.5f * options_.definition.max_distance, meter);
+                change += fit(side);
+            }
+            average(sides);
+            const auto count = static_cast<double>(sides.size() * octree.surfels.size());
+            result.residuals.push_back(count > 0.0 ? std::sqrt(change / count) : 0.0);
+            if (result.residuals.back() <= kSettled)
+                break;
+        }
+        result.occlusion = answer(groups, receivers.size(), meter);
+        return result;
+    }
+
+private:
+    int side_count() const { return two_sided_ ? 2 : 1; }
+
+    std::string two_sided_definition() const
+    {
+        return std::string("TWO_SIDED ") + (two_sided_ ? "1" : "0");
+    }
+
+    void gather(ReceiverGrid& grid, float max_distance, ProgressMeter& meter)
+    {
+        const bool bunnell = options_.definition.kernel == Kernel::bunnell;
+        Program& program = context_.program(
+            "fullscreen.vert", "disks_gather.frag",
+            {two_sided_definition(), std::string("LIMITED ") + (limited_ ? "1" : "0"),
+             std::string("BUNNELL ") + (bunnell ? "1" : "0")});
+        program.set("u_records", records_texture_);
+        program.set("u_record_count", static_cast<int>(records_.records.size()));
+        program.set("u_opening", options_.opening);
+        program.set("u_far_front", visibility_[0].color());
+        if (two_sided_) {
+            const std::uint32_t from = limited_ ? 0 : records_.two_sided_from;
+            program.set("u_two_sided_from", static_cast<int>(from));
+            program.set("u_far_back", visibility_[1].color());
+        }
+        if (limited_) {
+            program.set("u_max_distance", max_distance);
+            program.set("u_smooth", options_.definition.falloff == Falloff::smooth ? 1 : 0);
+        }
+        grid.compute(program, meter);
+    }
+
+    /// From the sums in the side's grid. Returns the sum of the squared changes.
+    double fit(FarSide& side)
+    {
+        std::swap(side.found, side.before);
+        Program& program = context_.program("fullscreen.vert", "disks_fit.frag");
+        program.set("u_sums", side.grid.values());
+        program.set("u_blocks_per_row", side.grid.blocks_per_row());
+        program.set("u_records", records_texture_);
+        program.set("u_slots", side.slots);
+        program.set("u_side", side.sign);
+        program.set("u_before", side.before.color());
+        draw_fullscreen(side.found, program, empty_);
+
+        const Framebuffer sums(context_, {.width = kRowTexels / kRowSumTerms,
+                                          .height = side.found.height(),
+                                          .colors = {TexelFormat::r32f}});
+        Program& summing = context_.program("fullscreen.vert", "row_sums.frag");
+        summing.set("u_values", side.found.color(1));
+        draw_fullscreen(sums, summing, empty_);
+        const std::vector<float> parts = sums.read_red(sums.rect());
+        return std::accumulate(parts.begin(), parts.end(), 0.0);
+    }
+
+    /// From what the surfels found to the visibility of all records.
+    void average(const std::vector<FarSide>& sides)
+    {
+        const TextureBuffer chunks(context_, TexelFormat::rgba32ui,
+                                   std::span<const glm::uvec4>(records_.chunks));
+        const Framebuffer sums =
+            make_rows(context_, records_.chunks.size(),
+                      std::vector<TexelFormat>(sides.size(), TexelFormat::rgba32f));
+        Program& chunked = context_.program("fullscreen.vert", "disks_average_chunks.frag",
+                                            {two_sided_definition()});
+        chunked.set("u_chunks", chunks);
+        chunked.set("u_chunk_count", static_cast<int>(records_.chunks.size()));
+        chunked.set("u_records", records_texture_);
+        chunked.set("u_far_front", sides[0].found.color());
+        if (two_sided_)
+            chunked.set("u_far_back", sides[1].found.color());
+        draw_fullscreen(sums, chunked, empty_);
+
+        Program& whole = context_.program("fullscreen.vert", "disks_average.frag");
+        whole.set("u_records", records_texture_);
+        whole.set("u_record_count", static_cast<int>(records_.records.size()));
+        for (std::size_t side = 0; side < sides.size(); ++side) {
+            whole.set("u_far", sides[side].found.color());
+            whole.set("u_chunks", sums.color(side));
+            draw_fullscreen(visibility_[side], whole, empty_);
+        }
+        context_.finish("averaging visibility");
+    }
+
+    std::vector<Occlusion> answer(std::span<const ReceiverGroup> groups, std::size_t count,
+                                  ProgressMeter& meter)
+    {
+        ReceiverGrid grid(context_, groups);
+        gather(grid, options_.definition.max_distance, meter);
+        const TextureBuffer slots = upload_slots(context_, slots_of_receivers(groups, count));
+        const Framebuffer rows = make_rows(context_, count, {TexelFormat::rgba32f});
+        Program& program = context_.program("fullscreen.vert", "disks_result.frag");
+        program.set("u_sums", grid.values());
+        program.set("u_blocks_per_row", grid.blocks_per_row());
+        program.set("u_receivers", grid.receivers());
+        program.set("u_slots", slots);
+        program.set("u_strength", options_.strength);
+        draw_fullscreen(rows, program, empty_);
+
+        const std::vector<glm::vec4> values = rows.read_color(rows.rect());
+        std::vector<Occlusion> result(count);
+        for (std::size_t i = 0; i < count; ++i)
+            result[i] = {values[i].w, glm::vec3(values[i])};
+        return result;
+    }
+
+    const GlContext& context_;
+    DiskOptions options_;
+    bool limited_;
+    bool two_sided_;
+    Records records_;
+    TextureBuffer records_texture_;
+    VertexArray empty_;
+    std::vector<Framebuffer> visibility_;  ///< per side: FarVisibility of each record
+};
+
+}  // namespace
+
+DiskResult solve_disks_gpu(const GlContext& context, const Octree& octree,
+                           std::span<const Receiver> receivers, const DiskOptions& options,
+                           const Progress& progress)
+{
+    check_disk_options(options);
+    return Solver(context, octree, options).solve(octree, receivers, progress);
+}
+
+}  // namespace surfelao

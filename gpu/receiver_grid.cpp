@@ -1,0 +1,109 @@
+#include "gpu/receiver_grid.h"
+
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace surfelao {
+namespace {
+
+/// One draw is to take about this long, and grows by no more than that factor over the last.
+constexpr double kPieceSeconds = 0.05;
+constexpr double kMaxGrowth = 4.0;
+
+std::vector<glm::vec4> receiver_texels(std::span<const ReceiverGroup> groups)
+{
+    std::vector<glm::vec4> texels;
+    texels.reserve(groups.size() * kGroupSize * 2);
+    for (const ReceiverGroup& group : groups) {
+        for (std::uint32_t lane = 0; lane < kGroupSize; ++lane) {
+            for (const auto& vector : {group.position, group.normal})
+                texels.emplace_back(vector[0][lane], vector[1][lane], vector[2][lane], 0.0f);
+        }
+    }
+    return texels;
+}
+
+std::vector<glm::vec4> group_texels(std::span<const ReceiverGroup> groups)
+{
+    std::vector<glm::vec4> texels;
+    texels.reserve(groups.size());
+    for (const ReceiverGroup& group : groups)
+        texels.emplace_back(group.center, group.radius);
+    return texels;
+}
+
+/// Blocks in one row of a picture that is about square.
+int square_side(std::uint64_t blocks)
+{
+    return std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(blocks)))));
+}
+
+std::uint64_t divide_up(std::uint64_t a, std::uint64_t b)
+{
+    return (a + b - 1) / b;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> slots_of_receivers(std::span<const ReceiverGroup> groups,
+                                              std::size_t receiver_count)
+{
+    std::vector<std::uint32_t> slots(receiver_count, kNoSlot);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        for (std::uint32_t lane = 0; lane < groups[g].count; ++lane)
+            slots[groups[g].receiver[lane]] = static_cast<std::uint32_t>(g * kGroupSize + lane);
+    }
+    return slots;
+}
+
+ReceiverGrid::ReceiverGrid(const GlContext& context, std::span<const ReceiverGroup> groups)
+    : context_(&context),
+      group_count_(groups.size()),
+      blocks_per_row_(square_side(divide_up(groups.size(), kBlockGroups))),
+      receivers_(context, TexelFormat::rgba32f,
+                 std::span<const glm::vec4>(receiver_texels(groups))),
+      groups_(context, TexelFormat::rgba32f, std::span<const glm::vec4>(group_texels(groups))),
+      empty_(context),
+      target_(context, {.width = blocks_per_row_ * kBlockSide,
+                        .height = blocks_per_row_ * kBlockSide,
+                        .colors = {TexelFormat::rgba32f}})
+{
+}
+
+void ReceiverGrid::compute(Program& program, ProgressMeter& meter)
+{
+    using Clock = std::chrono::steady_clock;
+    program.set("u_receivers", receivers_);
+    program.set("u_groups", groups_);
+    program.set("u_slot_count", static_cast<int>(group_count_ * kGroupSize));
+    program.set("u_blocks_per_row", blocks_per_row_);
+
+    const std::uint64_t row = static_cast<std::uint64_t>(blocks_per_row_);
+    const std::uint64_t block_count = divide_up(group_count_, kBlockGroups);
+    double wanted = 1.0;  // blocks in the next piece
+    for (std::uint64_t first = 0; first < block_count;) {
+        // whole rows where a piece begins with a row and is at least that long, else part of a row
+        const std::uint64_t column = first % row;
+        const std::uint64_t blocks = static_cast<std::uint64_t>(wanted);
+        const std::uint64_t rows = column == 0 ? std::max<std::uint64_t>(1, blocks / row) : 1;
+        const std::uint64_t columns = rows > 1 ? row : std::min(blocks, row - column);
+        const Rect piece = {
+            static_cast<int>(column) * kBlockSide, static_cast<int>(first / row) * kBlockSide,
+            static_cast<int>(columns) * kBlockSide, static_cast<int>(rows) * kBlockSide};
+        const Clock::time_point start = Clock::now();
+        draw_fullscreen(target_, program, empty_, {.scissor = piece});
+        context_->finish("computing occlusion");
+        const std::chrono::duration<double> seconds = Clock::now() - start;
+
+        const std::uint64_t end = std::min(first + rows * columns, block_count);
+        meter.add(std::min(end * kBlockGroups, group_count_) - first * kBlockGroups);
+        first = end;
+        const double growth = kPieceSeconds / std::max(seconds.count(), 1e-6);
+        wanted = std::clamp(wanted * std::min(growth, kMaxGrowth), 1.0, 1e9);
+    }
+}
+
+}  // namespace surfelao

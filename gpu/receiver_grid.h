@@ -1,0 +1,56 @@
+/// receiver_grid.h: receivers as the pixels of a picture, computed one piece at a time.
+///
+/// A fragment shader that computes one value per receiver finds it by slot_at_pixel() of
+/// shaders/receiver_grid.glsl: slot = 16 * group + lane. The pieces are sized by the clock, so that
+/// no draw is long enough for a driver's watchdog (often two seconds), and progress and cancelling
+/// stay prompt. The sizes change nothing in the results.
+#pragma once
+
+#include "gpu/draw.h"
+#include "gpu/objects.h"
+#include "gpu/program.h"
+#include "surfels/progress.h"
+#include "tree/receiver_group.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace surfelao {
+
+/// Slot of a receiver that stands in no group: it has no normal.
+inline constexpr std::uint32_t kNoSlot = 0xFFFFFFFF;
+
+/// slots[i] is the place of receiver i in the groups, or kNoSlot.
+[[nodiscard]] std::vector<std::uint32_t> slots_of_receivers(std::span<const ReceiverGroup> groups,
+                                                            std::size_t receiver_count);
+
+class ReceiverGrid {
+public:
+    /// Throws std::runtime_error when the device cannot hold so many.
+    ReceiverGrid(const GlContext& context, std::span<const ReceiverGroup> groups);
+
+    /// Runs the program over all slots and counts finished groups into `meter`. Sets the program's
+    /// u_receivers, u_groups, u_slot_count and u_blocks_per_row. Throws Cancelled.
+    void compute(Program& program, ProgressMeter& meter);
+
+    /// What compute() found, RGBA32F, at pixel_of_slot().
+    const Texture2D& values() const { return target_.color(); }
+    int blocks_per_row() const { return blocks_per_row_; }
+
+    /// RGBA32F, 2 texels a slot: position.xyz 0 | normal.xyz 0
+    const TextureBuffer& receivers() const { return receivers_; }
+
+private:
+    static constexpr int kBlockSide = 32;
+    static constexpr std::uint64_t kBlockGroups = kBlockSide * kBlockSide / kGroupSize;
+    const GlContext* context_;
+    std::uint64_t group_count_;
+    int blocks_per_row_;
+    TextureBuffer receivers_;
+    TextureBuffer groups_;
+    VertexArray empty_;
+    Framebuffer target_;
+};
+
+}  // namespace surfelao

@@ -1,0 +1,137 @@
+#version 330 core
+#include "disk_record.glsl"
+#include "receiver_grid.glsl"
+#include "rows.glsl"
+// disks_gather.frag: one fragment is one receiver; it walks the octree and sums what each disk covers.
+//
+// Vertices     fullscreen.vert
+// Drawn by     gpu/gpu_disks.cpp, in pieces (gpu/receiver_grid.h)
+// Definitions  TWO_SIDED LIMITED BUNNELL: 0 or 1. Some surfels occlude from both sides; max_distance
+//              is finite; Kernel::bunnell
+// Reads        u_records         octree, 3 texels a record (disk_record.glsl)
+//              u_record_count
+//              u_two_sided_from  records from here on occlude from both sides   (TWO_SIDED)
+//              u_far_front       per record, in rows: FarVisibility of tree/disk_form_factor.h on the
+//                                side that the casting normal points to: slope.xyz constant
+//              u_far_back        the same for the other side                    (TWO_SIDED)
+//              u_receivers       RGBA32F, 2 texels a slot: position.xyz 0 | normal.xyz 0
+//              u_groups          RGBA32F, 1 texel a group of 16 slots: center.xyz radius
+//              u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
+//              u_opening         as DiskOptions::opening
+//              u_max_distance    in diagonals                                   (LIMITED)
+//              u_smooth          1: Falloff::smooth, 0: none                    (LIMITED)
+// Writes       out_sum           RGBA32F: sum of form factors times direction | sum of form factors
+// CPU twin     tree/disk_gather.cpp; formulas: tree/disk_form_factor.h;
+//              tests/gpu/gpu_disks_test.cpp holds them together
+#ifndef TWO_SIDED
+#define TWO_SIDED 0
+#endif
+#ifndef LIMITED
+#define LIMITED 0
+#endif
+#ifndef BUNNELL
+#define BUNNELL 0
+#endif
+
+uniform usamplerBuffer u_records;
+uniform int u_record_count;
+uniform sampler2D u_far_front;
+uniform samplerBuffer u_receivers;
+uniform samplerBuffer u_groups;
+uniform int u_slot_count;
+uniform int u_blocks_per_row;
+uniform float u_opening;
+#if TWO_SIDED
+uniform int u_two_sided_from;
+uniform sampler2D u_far_back;
+#endif
+#if LIMITED
+uniform float u_max_distance;
+uniform int u_smooth;
+#endif
+
+out vec4 out_sum;
+
+const float kPi         = 3.14159265358979;
+const float kTinyLength = 1e-12;
+const float kNearDisk   = 1.0 / 9.0;
+
+void main()
+{
+    out_sum = vec4(0.0);
+    int slot = slot_at_pixel(ivec2(gl_FragCoord.xy), u_blocks_per_row);
+    if (slot >= u_slot_count)
+        return;
+    vec3 position = texelFetch(u_receivers, slot * 2).xyz;
+    vec3 normal   = texelFetch(u_receivers, slot * 2 + 1).xyz;
+    vec4 group    = texelFetch(u_groups, slot / 16);
+
+    vec4 sum = vec4(0.0);
+    int  at  = 0;
+    while (at < u_record_count) {
+        // the short loop: to the next record that counts as one disk. All receivers of a group take
+        // the same way, and open for the nearest place where one of them could be
+        vec4 ball;
+        bool found = false;
+        do {
+            ball           = fetch_ball(u_records, at);
+            float distance = length(ball.xyz - group.xyz) - group.w;
+#if LIMITED
+            if (ball.w >= 0.0 && distance - ball.w > u_max_distance) {
+                at = int(fetch_links(u_records, at).x);
+                continue;
+            }
+#endif
+            found = ball.w < u_opening * distance || ball.w < 0.0;
+            at += found ? 0 : 1;
+        } while (!found && at < u_record_count);
+        if (!found)
+            break;
+
+        vec4  shape     = fetch_normal_and_flat_area(u_records, at);
+        uvec4 links     = fetch_links(u_records, at);
+        float area      = uintBitsToFloat(links.y);
+        vec4  far_front = texelFetch(u_far_front, texel_of_index(at), 0);
+        vec3  c         = ball.xyz - position;
+        float inverse   = inversesqrt(dot(c, c) + kTinyLength * kTinyLength);
+        vec3  w         = c * inverse;
+        float inverse2  = inverse * inverse / kPi;
+        float at_receiver = max(0.0, dot(normal, w));
+        float at_disk     = dot(shape.xyz, w);
+        float seen        = far_front.w + dot(far_front.xyz, w);
+        float facing      = max(0.0, at_disk);
+        float spread      = 0.25;
+#if TWO_SIDED
+        if (at >= u_two_sided_from) {
+            facing = abs(at_disk);
+            spread = 0.5;
+            vec4 far_back = texelFetch(u_far_back, texel_of_index(at), 0);
+            seen = at_disk >= 0.0 ? seen : far_back.w + dot(far_back.xyz, w);
+        }
+#endif
+        float x = shape.w * inverse2;
+#if BUNNELL
+        float form_factor = (1.0 - inversesqrt(1.0 + x)) * facing * min(1.0, 4.0 * at_receiver);
+#else
+        float all        = area * inverse2;
+        float second     = x < kNearDisk ? x : 0.0;
+        float correction = at_receiver * (2.0 - 3.0 * at_disk * at_disk) +
+                           at_disk * dot(normal, shape.xyz);
+        float flat_part   = x * facing * max(0.0, at_receiver + second * correction);
+        float spread_part = max(0.0, all - x) * spread * at_receiver;
+        float form_factor = at_receiver > 0.0 ? (flat_part + spread_part) / (1.0 + all) : 0.0;
+#endif
+        form_factor *= clamp(seen, 0.0, 1.0);
+#if LIMITED
+        float distance = 1.0 / inverse;
+        float width    = 2.0 * sqrt(area / kPi);
+        float share    = clamp(0.5 + (u_max_distance - distance) / width, 0.0, 1.0);
+        float t        = distance / u_max_distance;
+        float fading   = max(0.0, 1.0 - t * t);
+        form_factor *= u_smooth != 0 ? fading * fading : share;
+#endif
+        sum += vec4(w, 1.0) * form_factor;
+        at = int(links.x);
+    }
+    out_sum = sum;
+}
