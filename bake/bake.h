@@ -1,0 +1,80 @@
+/// bake.h: the job: a mesh file in, the same mesh with occlusion at every vertex out.
+#pragma once
+
+#include "bake/engine.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace surfelao {
+
+struct BakeSettings {
+    std::filesystem::path input;
+    std::filesystem::path output;
+    EngineSettings engine;  ///< its definition is made from the members below
+    DistanceLimit max_distance;
+    Kernel kernel = Kernel::cosine;
+    bool colors = false;  ///< glTF: COLOR_0 too (surfels/scene_io.h)
+};
+
+/// Wall-clock seconds of each stage.
+struct BakeSeconds {
+    double read = 0.0;     ///< the file, and the clean geometry
+    double surfels = 0.0;  ///< what the engine makes of it first
+    double tree = 0.0;
+    double solve = 0.0;
+    double write = 0.0;
+    double total = 0.0;
+};
+
+struct BakeReport {
+    BakeSettings settings;
+    std::uint64_t vertices = 0;
+    std::uint64_t triangles = 0;
+    std::uint64_t dropped_triangles = 0;        ///< without area: they occlude nothing
+    std::uint64_t vertices_without_normal = 0;  ///< they get occlusion 0
+    std::uint64_t surfels = 0;
+    int threads = 0;
+    BakeSeconds seconds;
+    std::uint64_t peak_rss_bytes = 0;
+    std::optional<double> residual;  ///< of the disk engine's correction
+    double mean_occlusion = 0.0;     ///< over vertices with a normal
+};
+
+/// Told the stage at hand ("read", "solve", ...) and how much of it is done; false stops the job.
+using StageProgress = std::function<bool(std::string_view stage, double done)>;
+
+/// Reads, solves, writes. The output appears complete or not at all: after any exception an older
+/// file is still there untouched. Throws InputError, std::runtime_error, Cancelled.
+/// An output that cannot be written is refused before any work.
+[[nodiscard]] BakeReport bake(const BakeSettings& settings, const StageProgress& progress = {});
+
+/// One file of a batch: done, failed (`error` says why) or, with neither, skipped.
+struct BatchEntry {
+    std::filesystem::path input;
+    std::filesystem::path output;
+    std::optional<BakeReport> report;
+    std::string error;
+};
+
+/// Keys input, output, vertices, triangles, dropped_triangles, vertices_without_normal, surfels,
+/// engine, settings, seconds{read, surfels, tree, solve, write, total}, peak_rss_bytes, residual,
+/// mean_occlusion. What an engine does not have is null. Failed: input, output, error. Skipped:
+/// input, output, skipped. A list of such objects for several files.
+[[nodiscard]] std::string json_of(std::span<const BatchEntry> batch);
+
+/// Where a batch puts the result for `input`: the folder and the input's name; formats that cannot
+/// hold occlusion (STL) become .ply.
+[[nodiscard]] std::filesystem::path output_in_folder(const std::filesystem::path& input,
+                                                     const std::filesystem::path& folder);
+
+/// Whether the output exists and is not older than its input. Outputs are complete when they exist.
+[[nodiscard]] bool is_finished(const std::filesystem::path& input,
+                               const std::filesystem::path& output);
+
+}  // namespace surfelao

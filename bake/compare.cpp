@@ -1,0 +1,217 @@
+#include "bake/compare.h"
+
+#include "bake/sample.h"
+#include "bake/threads.h"
+#include "bake/timing.h"
+#include "reference/reference_cache.h"
+#include "surfels/errors.h"
+#include "surfels/scene_io.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace surfelao {
+namespace {
+
+constexpr std::size_t kWorstCount = 5;
+
+/// What is asked, and the answer that counts.
+struct Question {
+    std::vector<Receiver> receivers;    ///< all vertices: what every engine solves
+    std::vector<std::uint32_t> judged;  ///< into receivers: where errors are taken
+    std::vector<Occlusion> reference;   ///< one per judged
+};
+
+Question ask(const CompareSettings& settings, const Definition& definition, Comparison& comparison,
+             const Progress& progress)
+{
+    Question question;
+    question.receivers = receivers_at_vertices(comparison.geometry, definition.offset);
+    std::vector<std::uint32_t> asked;
+    std::vector<Receiver> places;
+    for (const std::uint32_t i : sample_of(question.receivers.size(), settings.sample)) {
+        if (question.receivers[i].normal == glm::vec3(0.0f)) {
+            ++comparison.without_normal;
+        } else {
+            asked.push_back(i);
+            places.push_back(question.receivers[i]);
+        }
+    }
+    const Reference reference =
+        trace_reference(comparison.geometry, places,
+                        {definition, settings.reference_rays, settings.use_cache}, progress);
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+        if (reference.well_defined(i)) {
+            question.judged.push_back(asked[i]);
+            question.reference.push_back(reference.occlusion[i]);
+        } else {
+            ++comparison.ill_defined;
+        }
+    }
+    comparison.judged = question.judged.size();
+    comparison.reference_rays = settings.reference_rays;
+    comparison.reference_noise = reference.noise;
+    comparison.reference_from_cache = reference.from_cache;
+    return question;
+}
+
+/// Fills in everything about errors. They are the same in every round.
+void judge(const Question& question, const std::vector<Occlusion>& answer, CompareRow& row)
+{
+    std::vector<Occlusion> judged;
+    judged.reserve(question.judged.size());
+    for (const std::uint32_t i : question.judged)
+        judged.push_back(answer[i]);
+    row.error = error_statistics(judged, question.reference);
+
+    const auto error_at = [&](std::size_t i) {
+        return std::fabs(judged[i].occlusion - question.reference[i].occlusion);
+    };
+    std::vector<std::uint32_t> order(judged.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        order[i] = static_cast<std::uint32_t>(i);
+    const std::size_t worst = std::min(kWorstCount, order.size());
+    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(worst),
+                      order.end(), [&](std::uint32_t a, std::uint32_t b) {
+                          return error_at(a) != error_at(b) ? error_at(a) > error_at(b) : a < b;
+                      });
+    for (std::size_t i = 0; i < worst; ++i) {
+        row.worst.push_back({question.judged[order[i]], judged[order[i]].occlusion,
+                             question.reference[order[i]].occlusion});
+    }
+    if (row.settings.engine == Engine::rays)
+        return;
+    row.errors.assign(answer.size(), std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t i = 0; i < judged.size(); ++i)
+        row.errors[question.judged[i]] = judged[i].occlusion - question.reference[i].occlusion;
+}
+
+CompareRow row_of_rays(const Definition& definition, std::uint32_t rays, bool smoothed)
+{
+    CompareRow row;
+    row.settings.engine = Engine::rays;
+    row.settings.definition = definition;
+    row.settings.rays = rays;
+    row.settings.smoothed = smoothed;
+    return row;
+}
+
+bool is_opponent(const CompareRow& row)
+{
+    return row.settings.engine == Engine::rays && !row.settings.smoothed;
+}
+
+/// Whether a candidate is beyond the most exact row of the opponent.
+bool wants_more_rays(const std::vector<CompareRow>& rows)
+{
+    double candidates = 1.0, opponent = 1.0;
+    for (const CompareRow& row : rows) {
+        double& least = is_opponent(row) ? opponent : candidates;
+        if (row.settings.engine != Engine::rays || is_opponent(row))
+            least = std::min(least, row.error.rmse);
+    }
+    return candidates < opponent;
+}
+
+std::optional<EmbreeRatio> ratio_at(const Comparison& comparison, const CompareRow& row,
+                                    bool with_builds)
+{
+    const double ours = row.solve_s + (with_builds ? row.build_s : 0.0);
+    const auto theirs = time_at(embree_curve(comparison, with_builds), row.error.rmse);
+    if (!theirs || !(ours > 0.0))
+        return std::nullopt;
+    return EmbreeRatio{theirs->seconds / ours, theirs->extrapolated};
+}
+
+}  // namespace
+
+std::vector<CurvePoint> embree_curve(const Comparison& comparison, bool with_builds)
+{
+    std::vector<CurvePoint> curve;
+    for (const CompareRow& row : comparison.rows) {
+        if (is_opponent(row))
+            curve.push_back({row.error.rmse, row.solve_s + (with_builds ? row.build_s : 0.0)});
+    }
+    return curve;
+}
+
+Comparison compare(const CompareSettings& settings, const StageProgress& progress)
+{
+    SURFELAO_CHECK(settings.rounds >= 1);
+    const auto stage = [&](std::string name) -> Progress {
+        if (!progress)
+            return {};
+        if (!progress(name, 0.0))
+            throw Cancelled();
+        return [&progress, name = std::move(name)](double done) { return progress(name, done); };
+    };
+
+    // the scene and the question
+    Comparison comparison;
+    comparison.input = settings.input;
+    comparison.threads = thread_count();
+    comparison.rounds = settings.rounds;
+    stage("read");
+    Stopwatch watch;
+    comparison.scene = read_scene(settings.input);
+    comparison.geometry = make_geometry(comparison.scene);
+    comparison.read_s = watch.lap();
+    const Definition definition =
+        definition_of(settings.max_distance, settings.kernel, comparison.geometry.frame);
+    const Question question = ask(settings, definition, comparison, stage("reference"));
+
+    // who answers
+    std::vector<CompareRow>& rows = comparison.rows;
+    for (const EngineSettings& candidate : settings.candidates) {
+        rows.emplace_back().settings = candidate;
+        rows.back().settings.definition = definition;
+    }
+    for (const std::uint32_t rays : settings.rays)
+        rows.push_back(row_of_rays(definition, rays, false));
+    for (const std::uint32_t rays : settings.smoothed_rays)
+        rows.push_back(row_of_rays(definition, rays, true));
+
+    // rounds: one after the other, so that whatever slows the machine slows all alike
+    std::vector<std::vector<double>> builds(rows.size()), solves(rows.size());
+    const auto run = [&](std::size_t i) {
+        CompareRow& row = rows[i];
+        const EngineResult result =
+            run_engine(comparison.geometry, question.receivers, row.settings,
+                       stage(name_of(row.settings.engine) + " " + setting_of(row.settings)));
+        builds[i].push_back(result.surfels_s + result.tree_s);
+        solves[i].push_back(result.solve_s);
+        if (row.worst.empty())
+            judge(question, result.occlusion, row);
+    };
+    for (int round = 0; round < settings.rounds; ++round) {
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            run(i);
+        if (round == 0 && !settings.rays.empty() && wants_more_rays(rows)) {
+            const std::uint32_t most =
+                *std::max_element(settings.rays.begin(), settings.rays.end());
+            rows.push_back(row_of_rays(definition, 4 * most, false));
+            builds.emplace_back();
+            solves.emplace_back();
+            run(rows.size() - 1);
+        }
+    }
+
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        rows[i].build_s = quantile(builds[i], 0.5);
+        rows[i].solve_s = quantile(solves[i], 0.5);
+        rows[i].us_per_vertex =
+            rows[i].solve_s * 1e6 /
+            static_cast<double>(std::max<std::size_t>(1, question.receivers.size()));
+    }
+    for (CompareRow& row : rows) {
+        if (!is_opponent(row)) {
+            row.solve_ratio = ratio_at(comparison, row, false);
+            row.total_ratio = ratio_at(comparison, row, true);
+        }
+    }
+    return comparison;
+}
+
+}  // namespace surfelao

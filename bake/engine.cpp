@@ -1,0 +1,141 @@
+#include "bake/engine.h"
+
+#include "bake/text.h"
+#include "bake/timing.h"
+#include "reference/rays.h"
+#include "reference/smoothing.h"
+#include "surfels/errors.h"
+#include "surfels/surfel.h"
+#include "surfels/topology.h"
+#include "tree/disks.h"
+
+#include <cmath>
+#include <utility>
+
+namespace surfelao {
+namespace {
+
+/// Between the named qualities the opening changes geometrically.
+float opening_at(float quality)
+{
+    return quality <= kGood ? kDraftOpening * std::pow(kGoodOpening / kDraftOpening, quality)
+                            : kGoodOpening * std::pow(kBestOpening / kGoodOpening, quality - kGood);
+}
+
+/// The side from which each surfel casts, in the order of surfels_at_vertices.
+std::vector<OccluderSide> sides_of_surfels(const Geometry& geometry)
+{
+    const Topology topology = analyse_topology(geometry);
+    std::vector<OccluderSide> sides;
+    for (std::size_t v = 0; v < geometry.areas.size(); ++v) {
+        if (geometry.areas[v] > 0.0f)
+            sides.push_back(topology.sides[v]);
+    }
+    return sides;
+}
+
+EngineResult run_disks(const Geometry& geometry, std::span<const Receiver> receivers,
+                       const EngineSettings& settings, const Progress& progress)
+{
+    EngineResult result;
+    Stopwatch watch;
+    const std::vector<Surfel> surfels = surfels_at_vertices(geometry);
+    const std::vector<OccluderSide> sides = sides_of_surfels(geometry);
+    result.surfels = surfels.size();
+    result.surfels_s = watch.lap();
+    const Octree octree = build_octree(surfels, sides);
+    result.tree_s = watch.lap();
+    DiskOptions options;
+    options.definition = settings.definition;
+    options.opening = opening_at(settings.quality);
+    options.passes = settings.passes;
+    options.strength = settings.strength;
+    DiskResult solved = solve_disks(octree, receivers, options, progress);
+    result.occlusion = std::move(solved.occlusion);
+    if (!solved.residuals.empty())
+        result.residual = solved.residuals.back();
+    result.solve_s = watch.lap();
+    return result;
+}
+
+EngineResult run_rays(const Geometry& geometry, std::span<const Receiver> receivers,
+                      const EngineSettings& settings, const Progress& progress)
+{
+    EngineResult result;
+    Stopwatch watch;
+    const RayScene scene(geometry, RayScene::Build::fast);
+    result.tree_s = watch.lap();
+    RayOptions options;
+    options.definition = settings.definition;
+    options.rays = settings.rays;
+    result.occlusion = trace_occlusion(scene, receivers, options, progress);
+    if (settings.smoothed)
+        result.occlusion = smooth_occlusion(geometry, result.occlusion);
+    result.solve_s = watch.lap();
+    return result;
+}
+
+}  // namespace
+
+EngineResult run_engine(const Geometry& geometry, std::span<const Receiver> receivers,
+                        const EngineSettings& settings, const Progress& progress)
+{
+    switch (settings.engine) {
+        case Engine::disks:
+            return run_disks(geometry, receivers, settings, progress);
+        case Engine::rays:
+            return run_rays(geometry, receivers, settings, progress);
+    }
+    std::abort();
+}
+
+std::string name_of(Engine engine)
+{
+    return engine == Engine::disks ? "disks" : "rays";
+}
+
+std::string name_of_quality(float quality)
+{
+    if (quality == kDraft)
+        return "draft";
+    if (quality == kGood)
+        return "good";
+    if (quality == kBest)
+        return "best";
+    return "quality " + exact(quality);
+}
+
+float most_quality(Engine engine)
+{
+    return engine == Engine::rays ? 0.0f : kBest;
+}
+
+bool knows_kernel(Engine, Kernel)
+{
+    return true;
+}
+
+std::string setting_of(const EngineSettings& settings)
+{
+    if (settings.engine != Engine::rays)
+        return name_of_quality(settings.quality);
+    return std::to_string(settings.rays) + (settings.rays == 1 ? " ray" : " rays") +
+           (settings.smoothed ? ", smoothed" : "");
+}
+
+Definition definition_of(const DistanceLimit& limit, Kernel kernel, const Frame& frame)
+{
+    const double share = limit.percent ? limit.value / 100.0 : limit.value / frame.diagonal;
+    Definition definition;
+    definition.kernel = kernel;
+    definition.max_distance = static_cast<float>(share);
+    if (!std::isfinite(definition.max_distance))
+        return definition;  // no limit, or one that nothing in the scene can reach
+    if (!(definition.max_distance > 0.0f))
+        throw InputError("the distance limit vanishes beside the scene's size of " +
+                         std::to_string(frame.diagonal));
+    definition.falloff = limit.falloff;
+    return definition;
+}
+
+}  // namespace surfelao

@@ -1,0 +1,105 @@
+#include "bake/statistics.h"
+
+#include "surfels/errors.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace surfelao {
+namespace {
+
+/// Nearest rank; 0 for no values. Reorders.
+double p95_of(std::vector<float>& values)
+{
+    if (values.empty())
+        return 0.0;
+    const std::size_t rank = (values.size() * 95 + 99) / 100 - 1;
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank),
+                     values.end());
+    return values[rank];
+}
+
+/// Angle by atan2: exact near 0, where an arc cosine has no digits left.
+double angle_deg(glm::dvec3 a, glm::dvec3 b)
+{
+    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * 180.0 / std::numbers::pi;
+}
+
+}  // namespace
+
+ErrorStatistics error_statistics(std::span<const Occlusion> answer,
+                                 std::span<const Occlusion> reference)
+{
+    SURFELAO_CHECK(answer.size() == reference.size());
+    ErrorStatistics result;
+    result.count = answer.size();
+    if (answer.empty())
+        return result;
+
+    std::vector<float> errors, angles;
+    double sum = 0.0, squares = 0.0, angle_sum = 0.0;
+    for (std::size_t i = 0; i < answer.size(); ++i) {
+        const double error = static_cast<double>(answer[i].occlusion) - reference[i].occlusion;
+        sum += error;
+        squares += error * error;
+        result.max = std::max(result.max, std::fabs(error));
+        errors.push_back(static_cast<float>(std::fabs(error)));
+        if (answer[i].bent_normal != glm::vec3(0.0f) &&
+            reference[i].bent_normal != glm::vec3(0.0f)) {
+            const double angle = angle_deg(answer[i].bent_normal, reference[i].bent_normal);
+            angle_sum += angle;
+            angles.push_back(static_cast<float>(angle));
+        }
+    }
+    const double count = static_cast<double>(answer.size());
+    result.rmse = std::sqrt(squares / count);
+    result.bias = sum / count;
+    result.p95 = p95_of(errors);
+    if (!angles.empty())
+        result.bent_mean_deg = angle_sum / static_cast<double>(angles.size());
+    result.bent_p95_deg = p95_of(angles);
+    return result;
+}
+
+std::optional<CurveTime> time_at(std::vector<CurvePoint> family, double rmse)
+{
+    // from coarse to fine; a finer point must cost more, else the coarser one is beaten
+    std::erase_if(family, [](CurvePoint p) { return !(p.rmse > 0.0) || !(p.seconds > 0.0); });
+    std::sort(family.begin(), family.end(), [](CurvePoint a, CurvePoint b) {
+        return a.rmse != b.rmse ? a.rmse > b.rmse : a.seconds > b.seconds;
+    });
+    std::vector<CurvePoint> front;
+    for (const CurvePoint point : family) {
+        while (!front.empty() && front.back().seconds >= point.seconds)
+            front.pop_back();
+        front.push_back(point);
+    }
+    if (front.size() < 2 || !(rmse > 0.0))
+        return std::nullopt;
+
+    // the segment that holds rmse, or the outermost one
+    std::size_t right = 1;
+    while (right + 1 < front.size() && front[right].rmse > rmse)
+        ++right;
+    const CurvePoint a = front[right - 1], b = front[right];
+    const double position =
+        (std::log(rmse) - std::log(a.rmse)) / (std::log(b.rmse) - std::log(a.rmse));
+    return CurveTime{
+        std::exp(std::log(a.seconds) + position * (std::log(b.seconds) - std::log(a.seconds))),
+        rmse > front.front().rmse || rmse < front.back().rmse};
+}
+
+double quantile(std::vector<double> values, double share)
+{
+    SURFELAO_CHECK(!values.empty());
+    std::sort(values.begin(), values.end());
+    const double rank = share * static_cast<double>(values.size() - 1);
+    const std::size_t low = static_cast<std::size_t>(rank);
+    const std::size_t high = std::min(low + 1, values.size() - 1);
+    return values[low] + (rank - static_cast<double>(low)) * (values[high] - values[low]);
+}
+
+}  // namespace surfelao

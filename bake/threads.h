@@ -1,0 +1,24 @@
+/// threads.h: how many cores everything may use.
+#pragma once
+
+#include <memory>
+
+namespace surfelao {
+
+/// Limits all parallel work of the process while it lives; the smallest limit alive counts.
+class ThreadLimit {
+public:
+    explicit ThreadLimit(int threads);  ///< >= 1
+    ~ThreadLimit();
+    ThreadLimit(const ThreadLimit&) = delete;
+    ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Threads that parallel work uses now.
+[[nodiscard]] int thread_count();
+
+}  // namespace surfelao
