@@ -1,0 +1,178 @@
+#include "bake/bake.h"
+#include "bake/text.h"
+#include "bake/threads.h"
+#include "cli/commands.h"
+#include "cli/engine_options.h"
+#include "cli/output.h"
+#include "cli/progress_bar.h"
+#include "surfels/progress.h"
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <memory>
+
+namespace surfelao {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BakeOptions {
+    std::vector<std::string> inputs;
+    std::string output;
+    EngineOptions engine;
+    MeasureOptions measure;
+    bool colors = false;
+    bool resume = false;
+    std::optional<std::string> json;
+    std::optional<int> threads;
+};
+
+/// One file of the batch.
+struct Job {
+    fs::path input, output;
+};
+
+/// Where every result goes. Two results under one name, or one in the place of its own input, are
+/// refused before anything is overwritten.
+std::vector<Job> jobs_of(const BakeOptions& options)
+{
+    std::error_code error;
+    if (options.inputs.size() > 1 && fs::is_regular_file(options.output, error))
+        throw UsageError(options.output + " is no folder, but several files are to be written.");
+    const bool into_folder = options.inputs.size() > 1 || fs::is_directory(options.output, error);
+    std::vector<Job> jobs;
+    std::map<fs::path, fs::path> taken;
+    for (const std::string& input : options.inputs) {
+        const fs::path output =
+            into_folder ? output_in_folder(input, options.output) : fs::path(options.output);
+        if (fs::equivalent(input, output, error))
+            throw UsageError(input + " would be overwritten by its own result.");
+        const auto [other, is_new] = taken.emplace(fs::weakly_canonical(output, error), input);
+        if (!is_new) {
+            throw UsageError(other->second.string() + " and " + input +
+                             " would both be written to " + output.string() + ".");
+        }
+        jobs.push_back({input, output});
+    }
+    return jobs;
+}
+
+void print(const BakeReport& report)
+{
+    const BakeSeconds& seconds = report.seconds;
+    const auto time = [](double s) { return fixed(s, 3) + " s"; };
+    std::cout << report.settings.input.string() << " -> " << report.settings.output.string() << '\n'
+              << "  " << report.vertices << " vertices, " << report.triangles << " triangles";
+    if (report.dropped_triangles > 0)
+        std::cout << " (" << report.dropped_triangles << " without area dropped)";
+    if (report.vertices_without_normal > 0)
+        std::cout << ", " << report.vertices_without_normal << " vertices without a normal";
+    std::cout << "\n  " << name_of(report.settings.engine.engine) << ", "
+              << setting_of(report.settings.engine) << ": mean occlusion "
+              << fixed(report.mean_occlusion, 4);
+    if (report.residual)
+        std::cout << ", residual " << fixed(*report.residual, 4);
+    std::cout << "\n  read " << time(seconds.read) << ", surfels " << time(seconds.surfels)
+              << ", tree " << time(seconds.tree) << ", solve " << time(seconds.solve) << ", write "
+              << time(seconds.write) << ", total " << time(seconds.total) << "; " << report.threads
+              << (report.threads == 1 ? " thread, " : " threads, ")
+              << report.peak_rss_bytes / (1024 * 1024) << " MiB\n";
+}
+
+BakeSettings settings_for(const BakeOptions& options, const Job& job)
+{
+    BakeSettings settings;
+    settings.input = job.input;
+    settings.output = job.output;
+    settings.engine = settings_of(options.engine);
+    settings.max_distance = distance_limit_of(options.measure);
+    settings.kernel = kernel_of(options.measure);
+    settings.colors = options.colors;
+    return settings;
+}
+
+int run(const BakeOptions& options, const std::vector<Job>& jobs)
+{
+    check_report(options.json);
+    std::optional<ThreadLimit> limit;
+    if (options.threads)
+        limit.emplace(*options.threads);
+    const bool batch = jobs.size() > 1;
+    const bool quiet = options.json == "-";
+    std::size_t failed = 0;
+    std::vector<BatchEntry> entries;
+    for (const Job& job : jobs) {
+        BatchEntry& entry = entries.emplace_back();
+        entry.input = job.input;
+        entry.output = job.output;
+        if (options.resume && is_finished(job.input, job.output)) {
+            if (!quiet)
+                std::cout << job.input.string() << ": finished before, skipped\n";
+            continue;
+        }
+        try {
+            ProgressBar bar(batch ? std::to_string(entries.size()) + "/" +
+                                        std::to_string(jobs.size()) + " " +
+                                        job.input.filename().string() + " "
+                                  : "");
+            entry.report =
+                bake(settings_for(options, job),
+                     [&](std::string_view stage, double done) { return bar.update(stage, done); });
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const std::exception& error) {
+            // the others can still be done
+            std::cerr << "surfelao: " << error.what() << '\n';
+            entry.error = error.what();
+            ++failed;
+        }
+        if (entry.report && !quiet)
+            print(*entry.report);
+    }
+    if (options.json)
+        write_report(*options.json, json_of(entries));
+    if (failed > 0 && batch)
+        std::cerr << "surfelao: " << failed << " of " << jobs.size() << " files failed\n";
+    return failed > 0 ? kFailed : kDone;
+}
+
+}  // namespace
+
+void add_bake_command(CLI::App& app, Work& work)
+{
+    const auto options = std::make_shared<BakeOptions>();
+    CLI::App* command = app.add_subcommand(
+        "bake", "Occlusion and bent normals at every vertex: a mesh file in, the same mesh out");
+    command->add_option("IN", options->inputs, "Mesh files: .obj .ply .off .stl .gltf .glb")
+        ->required()
+        ->type_name("");
+    command
+        ->add_option("-o,--output", options->output,
+                     "Mesh file (.ply .obj .off, .gltf/.glb from glTF), or a folder: there every "
+                     "result has its input's name, .ply for .stl")
+        ->required()
+        ->type_name("OUT|DIR");
+    add_engine_options(*command, options->engine);
+    add_measure_options(*command, options->measure);
+    command->add_flag("--colors", options->colors,
+                      "glTF: visibility as COLOR_0 too (.ply and .obj always have colours)");
+    command->add_flag("--resume", options->resume,
+                      "Skip files whose result exists and is not older than they are");
+    command
+        ->add_option("--json", options->json,
+                     "Write what was done and how long it took; - = "
+                     "standard output; a list for several files")
+        ->type_name("FILE");
+    add_thread_option(*command, options->threads);
+    command->callback([options, &work] {
+        const EngineSettings engine = settings_of(options->engine);
+        static_cast<void>(distance_limit_of(options->measure));
+        check_kernel(engine.engine, kernel_of(options->measure));
+        work = [options, jobs = jobs_of(*options)] { return run(*options, jobs); };
+    });
+}
+
+}  // namespace surfelao

@@ -1,0 +1,180 @@
+#include "cli/engine_options.h"
+
+#include "bake/text.h"
+#include "cli/commands.h"
+#include "reference/rays.h"
+
+#include <CLI/CLI.hpp>
+
+#include <charconv>
+#include <cmath>
+
+namespace surfelao {
+namespace {
+
+constexpr int kMostPasses = 100;
+constexpr int kMostThreads = 1024;
+
+/// The whole text as a finite number.
+std::optional<double> number_of(std::string_view text)
+{
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+        return std::nullopt;
+    return value;
+}
+
+void refuse_unless(bool allowed, const char* option, const char* engines)
+{
+    if (!allowed)
+        throw UsageError(std::string(option) + " is only for --engine " + engines + ".");
+}
+
+}  // namespace
+
+void add_engine_options(CLI::App& command, EngineOptions& options)
+{
+    command.add_option("--engine", options.engine, "Who computes")
+        ->check(CLI::IsMember({"disks", "rays"}))
+        ->type_name("disks|rays")
+        ->default_str("disks")
+        ->group("Engine");
+    command
+        .add_option("--quality", options.quality,
+                    "Exactness against time, for --engine disks: draft, good, best, or a number "
+                    "(0 = draft, 1 = good, 2 = best)")
+        ->type_name("draft|good|best|Q")
+        ->default_str("good")
+        ->group("Engine");
+    command.add_option("--rays", options.rays, "Rays per vertex, for --engine rays")
+        ->check(CLI::Range(1u, kMostRays))
+        ->type_name("N")
+        ->default_str("256")
+        ->group("Engine");
+    command
+        .add_option("--passes", options.passes,
+                    "For --engine disks: 1 = plain sum, more correct it where layers overlap")
+        ->check(CLI::Range(1, kMostPasses))
+        ->type_name("N")
+        ->default_str("2")
+        ->group("Engine");
+    command
+        .add_option("--strength", options.strength,
+                    "For --engine disks: occlusion is multiplied by it (0 to 10)")
+        ->check(CLI::Range(0.0f, 10.0f))
+        ->type_name("S")
+        ->default_str("1")
+        ->group("Engine");
+}
+
+void add_measure_options(CLI::App& command, MeasureOptions& options)
+{
+    command
+        .add_option("--max-distance", options.max_distance,
+                    "Surfaces farther away do not occlude: in the file's units, or with % of the "
+                    "bounding box's diagonal (0.5, 10%)")
+        ->type_name("D|P%")
+        ->group("What is measured");
+    command
+        .add_option("--falloff", options.falloff,
+                    "smooth: near surfaces count more, up to --max-distance")
+        ->check(CLI::IsMember({"none", "smooth"}))
+        ->type_name("none|smooth")
+        ->default_str("none")
+        ->group("What is measured");
+    command
+        .add_option("--kernel", options.kernel,
+                    "Weight of directions; bunnell is that of the classic disk method, for "
+                    "--engine disks and rays: full enclosure gives 7/8")
+        ->check(CLI::IsMember({"cosine", "bunnell"}))
+        ->type_name("cosine|bunnell")
+        ->default_str("cosine")
+        ->group("What is measured");
+}
+
+void add_thread_option(CLI::App& command, std::optional<int>& threads)
+{
+    command.add_option("--threads", threads, "Use at most this many cores (default: all)")
+        ->check(CLI::Range(1, kMostThreads))
+        ->type_name("N");
+}
+
+Engine engine_of(const std::string& name)
+{
+    return name == "disks" ? Engine::disks : Engine::rays;
+}
+
+float quality_of(const std::string& text, Engine engine)
+{
+    if (text == "draft")
+        return kDraft;
+    if (text == "good")
+        return kGood;
+    if (text == "best")
+        return kBest;
+    const std::optional<double> number = number_of(text);
+    const float most = most_quality(engine);
+    if (!number || *number < kDraft || *number > most) {
+        throw UsageError("--quality: \"" + text +
+                         "\" is not draft, good, best or a number from 0 to " + exact(most) + ".");
+    }
+    return static_cast<float>(*number);
+}
+
+EngineSettings settings_of(const EngineOptions& options)
+{
+    EngineSettings settings;
+    if (options.engine)
+        settings.engine = engine_of(*options.engine);
+    const bool disks = settings.engine == Engine::disks;
+    const bool rays = settings.engine == Engine::rays;
+    refuse_unless(!options.quality || !rays, "--quality", "disks");
+    refuse_unless(!options.rays || rays, "--rays", "rays");
+    refuse_unless(!options.passes || disks, "--passes", "disks");
+    refuse_unless(!options.strength || disks, "--strength", "disks");
+
+    if (options.quality)
+        settings.quality = quality_of(*options.quality, settings.engine);
+    settings.rays = options.rays.value_or(settings.rays);
+    settings.passes = options.passes.value_or(settings.passes);
+    settings.strength = options.strength.value_or(settings.strength);
+    return settings;
+}
+
+DistanceLimit distance_limit_of(const MeasureOptions& options)
+{
+    DistanceLimit limit;
+    if (options.max_distance) {
+        std::string_view text = *options.max_distance;
+        if (text.ends_with('%')) {
+            limit.percent = true;
+            text.remove_suffix(1);
+        }
+        const std::optional<double> value = number_of(text);
+        if (!value || !(*value > 0.0)) {
+            throw UsageError("--max-distance: \"" + *options.max_distance +
+                             "\" is not a number above 0, with or without %.");
+        }
+        limit.value = *value;
+    }
+    if (options.falloff == "smooth") {
+        if (!options.max_distance)
+            throw UsageError("--falloff smooth needs --max-distance.");
+        limit.falloff = Falloff::smooth;
+    }
+    return limit;
+}
+
+void check_kernel(Engine engine, Kernel kernel)
+{
+    if (!knows_kernel(engine, kernel))
+        throw UsageError("--kernel bunnell is only for --engine disks or rays.");
+}
+
+Kernel kernel_of(const MeasureOptions& options)
+{
+    return options.kernel == "bunnell" ? Kernel::bunnell : Kernel::cosine;
+}
+
+}  // namespace surfelao

@@ -1,0 +1,49 @@
+/// engine_options.h: the options that say what is computed, for every command that computes.
+#pragma once
+
+#include "bake/engine.h"
+
+#include <optional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace surfelao {
+
+/// What was asked for: empty where an option was not given.
+struct EngineOptions {
+    std::optional<std::string> engine;
+    std::optional<std::string> quality;
+    std::optional<std::uint32_t> rays;
+    std::optional<int> passes;
+    std::optional<float> strength;
+};
+
+/// What is measured, apart from who measures it.
+struct MeasureOptions {
+    std::optional<std::string> max_distance;
+    std::optional<std::string> falloff;
+    std::optional<std::string> kernel;
+};
+
+void add_engine_options(CLI::App& command, EngineOptions& options);
+void add_measure_options(CLI::App& command, MeasureOptions& options);
+
+/// Adds `--threads N`.
+void add_thread_option(CLI::App& command, std::optional<int>& threads);
+
+/// Throw UsageError for what contradicts itself; nothing is dropped silently.
+[[nodiscard]] EngineSettings settings_of(const EngineOptions& options);
+[[nodiscard]] DistanceLimit distance_limit_of(const MeasureOptions& options);
+[[nodiscard]] Kernel kernel_of(const MeasureOptions& options);
+
+/// Throws UsageError where this engine does not know this kernel.
+void check_kernel(Engine engine, Kernel kernel);
+
+/// "draft", "good", "best", or a number in the engine's range.
+[[nodiscard]] float quality_of(const std::string& text, Engine engine);
+[[nodiscard]] Engine engine_of(const std::string& name);
+
+}  // namespace surfelao

@@ -1,0 +1,44 @@
+#include "bake/info.h"
+#include "cli/commands.h"
+#include "cli/output.h"
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+#include <memory>
+
+namespace surfelao {
+namespace {
+
+struct InfoOptions {
+    std::string input;
+    std::optional<std::string> json;
+};
+
+int run(const InfoOptions& options)
+{
+    check_report(options.json);
+    const Info info = inspect(options.input);
+    if (options.json != "-")
+        std::cout << text_of(info);
+    if (options.json)
+        write_report(*options.json, json_of(info));
+    return kDone;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, Work& work)
+{
+    const auto options = std::make_shared<InfoOptions>();
+    CLI::App* command =
+        app.add_subcommand("info", "What a mesh file holds, and what is odd about it");
+    command->add_option("IN", options->input, "Mesh file: .obj .ply .off .stl .gltf .glb")
+        ->required()
+        ->type_name("");
+    command->add_option("--json", options->json, "Write it as JSON; - = standard output")
+        ->type_name("FILE");
+    command->callback([options, &work] { work = [options] { return run(*options); }; });
+}
+
+}  // namespace surfelao
