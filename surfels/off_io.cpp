@@ -25,18 +25,26 @@ void next_word_line(TextCursor& cursor, const std::string& wanted)
         cursor.fail("the file ends, but " + wanted);
 }
 
-/// Refuses a count for which the file is too short before anything of that size is reserved.
-std::uint64_t read_count(TextCursor& cursor, const std::string& what, std::size_t least_bytes)
+std::uint64_t read_count(TextCursor& cursor, const std::string& what)
 {
     next_word_line(cursor, "the number of " + what + " is missing");
     const std::int64_t count = cursor.integer({});
     if (count < 0)
         cursor.fail("the number of " + what + " is " + std::to_string(count));
-    if (static_cast<std::uint64_t>(count) > (cursor.remaining() + 1) / least_bytes) {
-        cursor.fail(std::to_string(count) + " " + what +
-                    " are more than the rest of the file can hold");
-    }
     return static_cast<std::uint64_t>(count);
+}
+
+/// Refuses counts for which the file is too short before anything of that size is reserved.
+void check_room(const TextCursor& cursor, const Counts& counts)
+{
+    const std::size_t most_vertices =
+        cursor.remaining() / 6 + 1;                             // "0 0 0" and the end of the line
+    const std::size_t most_faces = cursor.remaining() / 4 + 1;  // "1 0"
+    if (counts.vertices > most_vertices || counts.faces > most_faces) {
+        cursor.fail(std::to_string(counts.vertices) + " vertices and " +
+                    std::to_string(counts.faces) +
+                    " faces are more than the rest of the file can hold");
+    }
 }
 
 Counts read_header(const std::string& file_name, TextCursor& cursor)
@@ -62,12 +70,13 @@ Counts read_header(const std::string& file_name, TextCursor& cursor)
             cursor.fail("binary OFF files are not read");
     }
     Counts counts;
-    counts.vertices = read_count(cursor, "vertices", 6);  // "0 0 0\n"
-    counts.faces = read_count(cursor, "faces", 2);        // "0\n"
+    counts.vertices = read_count(cursor, "vertices");
+    counts.faces = read_count(cursor, "faces");
     if (!cursor.at_line_end())
         cursor.integer({});  // edges
     if (!cursor.at_line_end())
         cursor.fail(quoted(cursor.word()) + " stands behind the counts");
+    check_room(cursor, counts);
     return counts;
 }
 

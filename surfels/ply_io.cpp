@@ -213,9 +213,8 @@ public:
     {
         element_ = &element;
         row_ = row;
-        if (!cursor_.next_line()) {
-            fail("is missing: the file ends, but the header says " + std::to_string(element.count));
-        }
+        if (!cursor_.next_line())
+            fail("of " + std::to_string(element.count) + " is missing: the file ends");
     }
     void end_row()
     {
@@ -349,7 +348,7 @@ private:
     }
     [[noreturn]] void fail_at_end() const
     {
-        fail("is cut: the file ends, but the header says " + std::to_string(element_->count));
+        fail("of " + std::to_string(element_->count) + " is cut: the file ends");
     }
 
     const std::string& file_name_;

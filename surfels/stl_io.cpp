@@ -71,6 +71,12 @@ std::uint32_t read_u32(const std::string& contents, std::size_t offset)
 
 bool is_ascii(const std::string& contents)
 {
+    // wide text is refused as such by the reader of text
+    for (const std::string_view wide :
+         {std::string_view("\xFF\xFEs"), std::string_view("\xFE\xFF\0s", 4)}) {
+        if (contents.starts_with(wide))
+            return true;
+    }
     const std::size_t word = contents.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
     if (word == std::string::npos || contents.compare(word, 5, "solid") != 0)
         return false;
