@@ -1,0 +1,164 @@
+#include "tests/stability/judge.h"
+
+#include "reference/rays.h"
+#include "reference/well_defined.h"
+
+#include <tbb/task_arena.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <exception>
+
+namespace surfelao::stability {
+namespace {
+
+/// Bent normals are sums of thousands of float directions.
+constexpr float kUnitLength = 1e-4f;
+
+std::vector<Occlusion> solve(const World& world, const Engine& engine, int threads)
+{
+    std::vector<Occlusion> result;
+    tbb::task_arena arena(threads);
+    arena.execute(
+        [&] { result = engine.solve(world.geometry, world.receivers, world.definition); });
+    return result;
+}
+
+/// Empty where every number is what it may be.
+std::string fault_in_numbers(std::span<const Receiver> receivers,
+                             const std::vector<Occlusion>& answers)
+{
+    if (answers.size() != receivers.size())
+        return "not one answer per receiver";
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+        const Occlusion a = answers[i];
+        const glm::vec3 n = receivers[i].normal;
+        if (!std::isfinite(a.occlusion) || !std::isfinite(glm::dot(a.bent_normal, a.bent_normal)))
+            return "not a number";
+        if (a.occlusion < 0.0f || a.occlusion > 1.0f)
+            return "outside [0, 1]";
+        if (n == glm::vec3(0.0f)) {
+            if (a.occlusion != 0.0f || a.bent_normal != glm::vec3(0.0f))
+                return "no normal, yet an answer";
+            continue;
+        }
+        if (std::abs(glm::length(a.bent_normal) - 1.0f) > kUnitLength)
+            return "bent normal not of unit length";
+        if (glm::dot(a.bent_normal, n) < -kUnitLength)
+            return "bent normal below the horizon";
+    }
+    return {};
+}
+
+bool same_bytes(const std::vector<Occlusion>& a, const std::vector<Occlusion>& b)
+{
+    return a.size() == b.size() &&
+           std::memcmp(a.data(), b.data(), a.size() * sizeof(Occlusion)) == 0;
+}
+
+/// Over the receivers that have an answer and a hemisphere.
+Bound error_of(const Trial& trial, const std::vector<Occlusion>& answers,
+               const std::vector<Occlusion>& like)
+{
+    Bound error;
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+        if (!trial.has_answer[i])
+            continue;
+        const double right = trial.world.like ? double(like[trial.world.like_receiver[i]].occlusion)
+                                              : trial.truth[i];
+        const double off = std::abs(double(answers[i].occlusion) - right);
+        error.worst = std::max(error.worst, off);
+        sum += off * off;
+        ++count;
+    }
+    if (count > 0)
+        error.rms = std::sqrt(sum / static_cast<double>(count));
+    return error;
+}
+
+Finding examine(const Trial& trial, const Engine& engine, const std::string& excuse)
+{
+    Finding finding;
+    finding.verdict = Verdict::fail;
+    finding.bound = engine.bound;
+
+    const std::vector<Occlusion> answers = solve(trial.world, engine, 1);
+    finding.fault = fault_in_numbers(trial.world.receivers, answers);
+    if (!finding.fault.empty())
+        return finding;
+    if (!same_bytes(answers, solve(trial.world, engine, tbb::task_arena::automatic))) {
+        finding.fault = "two runs differ";
+        return finding;
+    }
+
+    std::vector<Occlusion> like;
+    if (trial.world.like) {
+        like = solve(*trial.world.like, engine, tbb::task_arena::automatic);
+        finding.bound = {2.0 * engine.bound.rms, 2.0 * engine.bound.worst};
+    }
+    finding.error = error_of(trial, answers, like);
+    if (trial.undefined == trial.has_answer.size()) {
+        finding.verdict = Verdict::undefined;
+    } else if (finding.error.rms <= finding.bound.rms &&
+               finding.error.worst <= finding.bound.worst) {
+        finding.verdict = Verdict::pass;
+    } else if (engine.may_be_excused && !excuse.empty()) {
+        finding.verdict = Verdict::excused;
+    } else {
+        finding.fault = "error above its bound";
+    }
+    return finding;
+}
+
+}  // namespace
+
+Trial prepare(World world)
+{
+    Trial trial;
+    trial.world = std::move(world);
+    const RayScene rays(trial.world.geometry, RayScene::Build::robust);
+    const auto changes_of = [](const RayScene& scene, const World& of) {
+        return placement_change(scene, of.receivers, of.definition);
+    };
+    const std::vector<float> change = changes_of(rays, trial.world);
+    trial.has_answer.resize(change.size());
+    std::transform(change.begin(), change.end(), trial.has_answer.begin(),
+                   [](float c) { return c <= kIllDefined; });
+    if (trial.world.like) {
+        const World& like = *trial.world.like;
+        const std::vector<float> there =
+            changes_of(RayScene(like.geometry, RayScene::Build::robust), like);
+        for (std::size_t i = 0; i < change.size(); ++i) {
+            if (there[trial.world.like_receiver[i]] > kIllDefined)
+                trial.has_answer[i] = false;
+        }
+    } else if (trial.world.answer) {
+        for (const Receiver& receiver : trial.world.receivers)
+            trial.truth.push_back(
+                receiver.normal == glm::vec3(0.0f) ? 0.0 : trial.world.answer(receiver));
+    } else {
+        RayOptions options;
+        options.definition = trial.world.definition;
+        options.rays = 4096;
+        for (const Occlusion& answer : trace_occlusion(rays, trial.world.receivers, options))
+            trial.truth.push_back(answer.occlusion);
+    }
+    trial.undefined = static_cast<std::size_t>(
+        std::count(trial.has_answer.begin(), trial.has_answer.end(), false));
+    return trial;
+}
+
+Finding judge(const Trial& trial, const Engine& engine, const std::string& excuse)
+{
+    try {
+        return examine(trial, engine, excuse);
+    } catch (const std::exception& error) {
+        return {Verdict::fail, {}, engine.bound, error.what()};
+    }
+}
+
+}  // namespace surfelao::stability

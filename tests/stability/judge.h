@@ -1,0 +1,59 @@
+/// judge.h: runs one hard case through one engine and says whether the answer stands.
+#pragma once
+
+#include "tests/stability/world.h"
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace surfelao::stability {
+
+/// Error in occlusion over the well-defined receivers of one case.
+struct Bound {
+    double rms = 0.0;
+    double worst = 0.0;
+};
+
+/// An engine at one setting. solve builds its tree anew at every call.
+struct Engine {
+    std::string name;
+    Bound bound;
+    bool may_be_excused = false;  ///< by Case::disks_excused
+    std::function<std::vector<Occlusion>(const Geometry&, std::span<const Receiver>,
+                                         const Definition&)>
+        solve;
+};
+
+enum class Verdict { pass, excused, undefined, fail };
+
+/// What one engine made of one case.
+struct Finding {
+    Verdict verdict = Verdict::pass;
+    Bound error;
+    Bound bound;
+    std::string fault;  ///< one phrase where the verdict is `fail`
+};
+
+/// A case with its right answers, made once for all engines.
+struct Trial {
+    World world;
+    std::vector<double> truth;  ///< one per receiver; empty where the case is compared with `like`
+    std::vector<bool> has_answer;  ///< one per receiver: well-defined (reference/well_defined.h)
+    std::size_t undefined = 0;     ///< receivers that are not
+};
+
+/// Traces what is needed: the rule for every receiver, and 4096 robust rays where there is no
+/// closed form.
+[[nodiscard]] Trial prepare(World world);
+
+/// Solves twice, on one thread and on several, and checks in this order: it did not throw, one
+/// answer per receiver, all numbers finite, occlusion in [0, 1], bent normals of unit length and
+/// not below the horizon (receivers without a normal: occlusion 0, bent normal zero), both runs
+/// equal in every byte, errors within the bound. Against `like` the bound is doubled: both sides
+/// may be off. `excuse`: Case::disks_excused; it forgives the error only.
+[[nodiscard]] Finding judge(const Trial& trial, const Engine& engine, const std::string& excuse);
+
+}  // namespace surfelao::stability

@@ -1,0 +1,135 @@
+// stability: every hard case through every engine, as one table on stdout.
+//
+//     stability [--quick] [TEXT...]    --quick: without the slow cases; TEXT: only cases whose
+//     group
+//                                      or name contains one of the texts
+//
+// Exit 0: all within their bounds; 1: at least one FAIL; 2: wrong usage.
+#include "tests/stability/engines.h"
+#include "tests/stability/judge.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+
+using namespace surfelao::stability;
+
+namespace {
+
+struct Totals {
+    std::size_t verdicts[4] = {};
+    Bound worst;  ///< over the cases that the engine is held to
+    std::string worst_case;
+};
+
+char mark(Verdict verdict)
+{
+    return " ~?!"[static_cast<int>(verdict)];
+}
+
+bool asked_for(const Case& item, const std::vector<std::string>& texts)
+{
+    return texts.empty() || std::any_of(texts.begin(), texts.end(), [&](const std::string& text) {
+               return (item.group + " " + item.name).find(text) != std::string::npos;
+           });
+}
+
+const char* source_of(const World& world)
+{
+    return world.like ? "like" : world.answer ? "form" : "rays";
+}
+
+void print_header(const std::vector<Engine>& engines)
+{
+    std::printf("%-52s %5s %6s %5s", "case", "truth", "points", "undef");
+    for (const Engine& engine : engines)
+        std::printf("  %-13s", engine.name.c_str());
+    std::printf("\n%-52s %5s %6s %5s", "bound (rms worst)", "", "", "");
+    for (const Engine& engine : engines)
+        std::printf("  %5.3f %5.3f  ", engine.bound.rms, engine.bound.worst);
+    std::printf("\n");
+}
+
+void print_summary(const std::vector<Engine>& engines, const std::vector<Totals>& totals)
+{
+    std::printf("\n%-14s %5s %8s %10s %5s  %s\n", "engine", "pass", "excused", "undefined", "FAIL",
+                "worst error where held to a bound");
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+        const Totals& t = totals[e];
+        std::printf("%-14s %5zu %8zu %10zu %5zu  rms %.4f, worst %.4f (%s)\n",
+                    engines[e].name.c_str(), t.verdicts[0], t.verdicts[1], t.verdicts[2],
+                    t.verdicts[3], t.worst.rms, t.worst.worst, t.worst_case.c_str());
+    }
+}
+
+int run(bool quick, const std::vector<std::string>& texts)
+{
+    const std::vector<Engine> engines = all_engines();
+    std::vector<Totals> totals(engines.size());
+    std::vector<std::string> faults;
+    std::size_t cases = 0, receivers = 0, undefined = 0;
+
+    print_header(engines);
+    for (const Case& item : all_cases()) {
+        if ((quick && item.slow) || !asked_for(item, texts))
+            continue;
+        const std::string title = item.group + ": " + item.name;
+        const Trial trial = prepare(item.make());
+        std::printf("%-52s %5s %6zu %5zu", title.c_str(), source_of(trial.world),
+                    trial.world.receivers.size(), trial.undefined);
+        for (std::size_t e = 0; e < engines.size(); ++e) {
+            const Finding finding = judge(trial, engines[e], item.disks_excused);
+            std::printf("  %5.3f %5.3f %c", finding.error.rms, finding.error.worst,
+                        mark(finding.verdict));
+            std::fflush(stdout);
+            Totals& total = totals[e];
+            ++total.verdicts[static_cast<int>(finding.verdict)];
+            if (finding.verdict == Verdict::fail)
+                faults.push_back(title + ", " + engines[e].name + ": " + finding.fault);
+            if (finding.verdict != Verdict::excused) {
+                total.worst.rms = std::max(total.worst.rms, finding.error.rms);
+                if (finding.error.worst > total.worst.worst) {
+                    total.worst.worst = finding.error.worst;
+                    total.worst_case = title;
+                }
+            }
+        }
+        std::printf("\n");
+        ++cases;
+        receivers += trial.world.receivers.size();
+        undefined += trial.undefined;
+    }
+    print_summary(engines, totals);
+    std::printf(
+        "\n%zu cases, %zu receivers, of which %zu have no answer by the definition "
+        "(reference/well_defined.h)\n",
+        cases, receivers, undefined);
+    for (const std::string& fault : faults)
+        std::printf("FAIL %s\n", fault.c_str());
+    return faults.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    bool quick = false;
+    std::vector<std::string> texts;
+    for (int i = 1; i < argc; ++i) {
+        if (std::strcmp(argv[i], "--quick") == 0) {
+            quick = true;
+        } else if (argv[i][0] == '-') {
+            std::fprintf(stderr, "usage: stability [--quick] [TEXT...]\n");
+            return 2;
+        } else {
+            texts.push_back(argv[i]);
+        }
+    }
+    try {
+        return run(quick, texts);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "stability: %s\n", error.what());
+        return 1;
+    }
+}
