@@ -10,12 +10,12 @@
 namespace surfelao::scenes {
 namespace {
 
-/// Quads between (cells + 1)^2 vertices that `index(i, j)` names.
+/// Quads between (cells_i + 1)(cells_j + 1) vertices that `index(i, j)` names.
 template <class Index>
-void add_quads(Scene& scene, int cells, const Index& index)
+void add_quads(Scene& scene, int cells_i, int cells_j, const Index& index)
 {
-    for (int j = 0; j < cells; ++j) {
-        for (int i = 0; i < cells; ++i) {
+    for (int j = 0; j < cells_j; ++j) {
+        for (int i = 0; i < cells_i; ++i) {
             const std::uint32_t a = index(i, j);
             const std::uint32_t b = index(i + 1, j);
             const std::uint32_t c = index(i + 1, j + 1);
@@ -35,27 +35,35 @@ Scene cover(Scene scene)
     return scene;
 }
 
-Scene grid(int cells, const std::function<glm::dvec3(double, double)>& point)
+}  // namespace
+
+Scene grid(int cells_u, int cells_v, const std::function<glm::dvec3(double s, double t)>& point)
 {
     Scene scene;
-    for (int j = 0; j <= cells; ++j)
-        for (int i = 0; i <= cells; ++i)
-            scene.positions.push_back(point(double(i) / cells, double(j) / cells));
-    add_quads(scene, cells,
-              [&](int i, int j) { return static_cast<std::uint32_t>(j * (cells + 1) + i); });
+    for (int j = 0; j <= cells_v; ++j)
+        for (int i = 0; i <= cells_u; ++i)
+            scene.positions.push_back(point(double(i) / cells_u, double(j) / cells_v));
+    add_quads(scene, cells_u, cells_v,
+              [&](int i, int j) { return static_cast<std::uint32_t>(j * (cells_u + 1) + i); });
     return cover(std::move(scene));
 }
 
-}  // namespace
+Scene triangle(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c)
+{
+    Scene scene;
+    scene.positions = {a, b, c};
+    scene.triangles = {{0, 1, 2}};
+    return cover(std::move(scene));
+}
 
 Scene sheet(glm::dvec3 corner, glm::dvec3 u, glm::dvec3 v, int cells)
 {
-    return grid(cells, [&](double s, double t) { return corner + s * u + t * v; });
+    return grid(cells, cells, [&](double s, double t) { return corner + s * u + t * v; });
 }
 
 Scene height_field(int cells, const std::function<double(double, double)>& height)
 {
-    return grid(cells, [&](double x, double y) { return glm::dvec3(x, y, height(x, y)); });
+    return grid(cells, cells, [&](double x, double y) { return glm::dvec3(x, y, height(x, y)); });
 }
 
 Scene box(glm::dvec3 low, glm::dvec3 high, int cells)
@@ -72,7 +80,7 @@ Scene box(glm::dvec3 low, glm::dvec3 high, int cells)
     };
     for (int axis = 0; axis < 3; ++axis) {
         for (int end = 0; end < 2; ++end) {
-            add_quads(scene, cells, [&](int i, int j) {
+            add_quads(scene, cells, cells, [&](int i, int j) {
                 glm::ivec3 at(0);
                 at[axis] = end * cells;
                 at[(axis + 1) % 3] = end == 1 ? i : j;  // the low side looks the other way
@@ -122,7 +130,7 @@ Scene nested_shells(int count, double gap, int cells)
 Scene wall_and_floor(double size, int cells)
 {
     // the first half of the columns goes down the wall, the second out over the floor
-    return grid(2 * cells, [&](double s, double t) {
+    return grid(2 * cells, 2 * cells, [&](double s, double t) {
         const double y = size * (t - 0.5);
         return s < 0.5 ? glm::dvec3(0.0, y, size * (1.0 - 2.0 * s))
                        : glm::dvec3(size * (2.0 * s - 1.0), y, 0.0);
@@ -135,6 +143,12 @@ Scene room(glm::dvec3 low, glm::dvec3 high, int cells)
 }
 
 Scene operator+(Scene a, const Scene& b)
+{
+    a += b;
+    return a;
+}
+
+Scene& operator+=(Scene& a, const Scene& b)
 {
     const auto first = static_cast<std::uint32_t>(a.positions.size());
     const auto first_triangle = static_cast<std::uint32_t>(a.triangles.size());

@@ -12,6 +12,14 @@
 
 namespace surfelao::scenes {
 
+/// cells_u * cells_v quads over point(s, t), s and t in [0, 1]; vertices row by row along s. Faces
+/// along du x dv.
+[[nodiscard]] Scene grid(int cells_u, int cells_v,
+                         const std::function<glm::dvec3(double s, double t)>& point);
+
+/// One triangle.
+[[nodiscard]] Scene triangle(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c);
+
 /// A grid of cells * cells quads over corner + s u + t v, s and t in [0, 1]; faces along u x v.
 [[nodiscard]] Scene sheet(glm::dvec3 corner, glm::dvec3 u, glm::dvec3 v, int cells);
 
@@ -40,6 +48,7 @@ namespace surfelao::scenes {
 
 /// Appends b to a.
 [[nodiscard]] Scene operator+(Scene a, const Scene& b);
+Scene& operator+=(Scene& a, const Scene& b);
 
 /// Every vertex through `place`.
 [[nodiscard]] Scene moved(Scene scene, const std::function<glm::dvec3(glm::dvec3)>& place);

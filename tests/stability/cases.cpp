@@ -1,5 +1,7 @@
 #include "tests/stability/cases.h"
 
+#include "tests/scenes.h"
+
 #include <cstdio>
 
 namespace surfelao::stability {
@@ -9,6 +11,13 @@ std::string label(const char* format, double value)
     char text[128];
     std::snprintf(text, sizeof text, format, value);
     return text;
+}
+
+Scene two_faced(Scene scene)
+{
+    const Scene back = scenes::flipped(scene);
+    scene.triangles.insert(scene.triangles.end(), back.triangles.begin(), back.triangles.end());
+    return scene;
 }
 
 std::vector<Case> all_cases()

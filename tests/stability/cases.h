@@ -26,6 +26,9 @@ void add_clutter_cases(std::vector<Case>& cases);
 /// A name with one number in it (printf's %g).
 [[nodiscard]] std::string label(const char* format, double value);
 
+/// Every triangle once more the other way round, over the same vertices.
+[[nodiscard]] Scene two_faced(Scene scene);
+
 // why the disk engine may fail, by design section 5
 inline constexpr const char* kLayers = "layers";
 inline constexpr const char* kOpenMesh = "open mesh";

@@ -1,13 +1,17 @@
+#include "tests/scenes.h"
 #include "tests/stability/cases.h"
-#include "tests/stability/shapes.h"
+#include "tests/stability/random.h"
 
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
 #include <cmath>
 #include <numbers>
 
 namespace surfelao::stability {
 namespace {
+
+using namespace scenes;
 
 /// Square cards in a ball, each with a front and a back over the same vertices.
 World foliage(int count, double size)
@@ -18,12 +22,7 @@ World foliage(int count, double size)
         const glm::dvec3 u = random.direction();
         const glm::dvec3 v = glm::normalize(glm::cross(u, random.direction()));
         const glm::dvec3 place = std::cbrt(random.share()) * random.direction();
-        const std::size_t first = scene.triangles.size();
-        add_sheet(scene, place, size * u, size * v, 1);
-        const std::vector<glm::uvec3> front(scene.triangles.begin() + static_cast<long>(first),
-                                            scene.triangles.end());
-        scene.triangles.insert(scene.triangles.end(), front.begin(), front.end());
-        flip(scene, scene.triangles.size() - front.size());
+        scene += two_faced(sheet(place, size * u, size * v, 1));
     }
     return sampled(at_vertices(scene), 400);
 }
@@ -36,9 +35,9 @@ World spiral()
         const double a = 2.0 * std::numbers::pi * 4.0 * v;
         return glm::dvec2(std::cos(a), std::sin(a)) * (0.1 + 0.9 * v);
     };
-    add_grid(scene, 4, 160, [&](double u, double v) { return glm::dvec3(on_wall(v), 0.4 * u); });
-    add_sheet(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 16);
-    add_sheet(scene, {-1, -1, 0.4}, {0, 2, 0}, {2, 0, 0}, 16);
+    scene += grid(4, 160, [&](double u, double v) { return glm::dvec3(on_wall(v), 0.4 * u); });
+    scene += sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 16);
+    scene += sheet({-1, -1, 0.4}, {0, 2, 0}, {2, 0, 0}, 16);
     return sampled(at_vertices(scene), 600);
 }
 
@@ -46,9 +45,9 @@ World spiral()
 World comb(int plates, double gap)
 {
     Scene scene;
-    add_sheet(scene, {-0.1, 0, 0}, {plates * gap + 0.1, 0, 0}, {0, 1, 0}, 24);
+    scene += sheet({-0.1, 0, 0}, {plates * gap + 0.1, 0, 0}, {0, 1, 0}, 24);
     for (int i = 0; i < plates; ++i)
-        add_box(scene, {i * gap, 0, 0}, {(i + 0.3) * gap, 1, 1}, 5);
+        scene += box({i * gap, 0, 0}, {(i + 0.3) * gap, 1, 1}, 5);
     return sampled(at_vertices(scene), 600);
 }
 
@@ -59,8 +58,8 @@ Scene soup(std::uint32_t count, double size)
     Random random(5);
     for (std::uint32_t i = 0; i < count; ++i) {
         const glm::dvec3 place = random.in_cube();
-        add_triangle(scene, place, place + size * random.direction(),
-                     place + size * random.direction());
+        scene +=
+            triangle(place, place + size * random.direction(), place + size * random.direction());
     }
     return scene;
 }
@@ -69,9 +68,9 @@ Scene soup(std::uint32_t count, double size)
 World model_on_vast_ground()
 {
     Scene scene;
-    add_sheet(scene, {-500, -500, 0}, {1000, 0, 0}, {0, 1000, 0}, 1);
-    add_sphere(scene, {0.1, 0.2, 0.7}, 0.5, 8);
-    add_box(scene, {-0.9, -0.6, 0.05}, {-0.3, 0.2, 0.9}, 4);
+    scene += sheet({-500, -500, 0}, {1000, 0, 0}, {0, 1000, 0}, 1);
+    scene += sphere({0.1, 0.2, 0.7}, 0.5, 8);
+    scene += box({-0.9, -0.6, 0.05}, {-0.3, 0.2, 0.9}, 4);
     Definition definition;
     definition.offset = 1e-6f;
     return at_vertices(scene, definition);
@@ -81,13 +80,13 @@ World model_on_vast_ground()
 World specks_at_a_wall()
 {
     Scene scene;
-    add_sheet(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 16);
-    add_sheet(scene, {0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 16);
+    scene += sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 16);
+    scene += sheet({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 16);
     Random random(9);
     for (int i = 0; i < 300; ++i) {
         const glm::dvec3 place = glm::dvec3(0.01) + 0.9 * random.in_cube();
-        add_triangle(scene, place, place + 1e-5 * random.direction(),
-                     place + 1e-5 * random.direction());
+        scene +=
+            triangle(place, place + 1e-5 * random.direction(), place + 1e-5 * random.direction());
     }
     return at_vertices(scene);
 }
@@ -96,9 +95,9 @@ World specks_at_a_wall()
 World limited(float max_distance, Falloff falloff)
 {
     Scene scene;
-    add_sheet(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 16);
-    add_sphere(scene, {0.31, 0.22, 0.47}, 0.3, 8);
-    add_box(scene, {-0.6, -0.77, 0.05}, {-0.1, -0.2, 0.4}, 4);
+    scene += sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 16);
+    scene += sphere({0.31, 0.22, 0.47}, 0.3, 8);
+    scene += box({-0.6, -0.77, 0.05}, {-0.1, -0.2, 0.4}, 4);
     Definition definition;
     definition.max_distance = max_distance;
     definition.falloff = falloff;

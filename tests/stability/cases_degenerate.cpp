@@ -1,5 +1,6 @@
+#include "tests/scenes.h"
 #include "tests/stability/cases.h"
-#include "tests/stability/shapes.h"
+#include "tests/stability/random.h"
 
 #include <glm/geometric.hpp>
 
@@ -8,6 +9,8 @@
 
 namespace surfelao::stability {
 namespace {
+
+using namespace scenes;
 
 World nothing_occludes(const Scene& scene)
 {
@@ -18,8 +21,8 @@ World nothing_occludes(const Scene& scene)
 Scene ball_under_sheet()
 {
     Scene scene;
-    add_sphere(scene, {0, 0, 0}, 0.5, 8);
-    add_sheet(scene, {-0.7, -0.7, 0.75}, {0, 1.4, 0}, {1.4, 0, 0}, 6);
+    scene += sphere({0, 0, 0}, 0.5, 8);
+    scene += sheet({-0.7, -0.7, 0.75}, {0, 1.4, 0}, {1.4, 0, 0}, 6);
     return scene;
 }
 
@@ -28,7 +31,7 @@ void add_flat_triangles(Scene& scene, int count, bool collinear)
 {
     for (int i = 0; i < count; ++i) {
         const glm::dvec3 a(0.01 * i, 0.02 * i, 0.03), step(0.001, 0.002, 0.003);
-        add_triangle(scene, a, collinear ? a + step : a, collinear ? a + 2.5 * step : a);
+        scene += triangle(a, collinear ? a + step : a, collinear ? a + 2.5 * step : a);
     }
 }
 
@@ -42,17 +45,17 @@ void add_degenerate_cases(std::vector<Case>& cases)
     };
     add("one triangle", [] {
         Scene scene;
-        add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        scene += triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
         return nothing_occludes(scene);
     });
     add("one needle 1 : 1e+06", [] {
         Scene scene;
-        add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0.5, 1e-6, 0});
+        scene += triangle({0, 0, 0}, {1, 0, 0}, {0.5, 1e-6, 0});
         return nothing_occludes(scene);
     });
     add("one triangle and its back", [] {
         Scene scene;
-        add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        scene += triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
         scene.triangles.push_back({0, 2, 1});
         return nothing_occludes(scene);
     });
@@ -63,8 +66,8 @@ void add_degenerate_cases(std::vector<Case>& cases)
             const glm::dvec3 lift(0, 0, 0.4);
             const Polygon low{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
             const Polygon high{lift, glm::dvec3(0, 1, 0) + lift, glm::dvec3(1, 0, 0) + lift};
-            add_triangle(scene, low[0], low[1], low[2]);
-            add_triangle(scene, high[0], high[1], high[2]);
+            scene += triangle(low[0], low[1], low[2]);
+            scene += triangle(high[0], high[1], high[2]);
             return with_polygons(at_vertices(scene), {low, high});
         },
         kCoarse);
@@ -114,7 +117,7 @@ void add_degenerate_cases(std::vector<Case>& cases)
         "a fan of 10^4 triangles around one vertex",
         [] {
             Scene scene;
-            add_sphere(scene, {0, 0, 0.4}, 0.2, 8);
+            scene += sphere({0, 0, 0.4}, 0.2, 8);
             const auto kept = scene.positions.size();
             constexpr std::uint32_t kCount = 10000;
             const auto first = static_cast<std::uint32_t>(kept);
@@ -136,7 +139,7 @@ void add_degenerate_cases(std::vector<Case>& cases)
             Scene scene;
             for (int i = 0; i < 3; ++i) {
                 const double a = 2.0 * std::numbers::pi * (i + 0.1) / 3;
-                add_sheet(scene, {0, -1, 0}, {0, 2, 0}, {std::cos(a), 0, std::sin(a)}, 10);
+                scene += sheet({0, -1, 0}, {0, 2, 0}, {std::cos(a), 0, std::sin(a)}, 10);
             }
             return at_vertices(scene);
         },
@@ -145,7 +148,7 @@ void add_degenerate_cases(std::vector<Case>& cases)
         "Moebius strip",
         [] {
             Scene scene;
-            add_grid(scene, 4, 60, [](double u, double v) {
+            scene += grid(4, 60, [](double u, double v) {
                 const double a = 2.0 * std::numbers::pi * v, w = 0.6 * (u - 0.5);
                 return glm::dvec3((1 + w * std::cos(a / 2)) * std::cos(a),
                                   (1 + w * std::cos(a / 2)) * std::sin(a), w * std::sin(a / 2));
@@ -157,7 +160,7 @@ void add_degenerate_cases(std::vector<Case>& cases)
         "two cones tip to tip",
         [] {
             Scene scene;
-            add_grid(scene, 24, 12, [](double u, double v) {
+            scene += grid(24, 12, [](double u, double v) {
                 const double a = 2.0 * std::numbers::pi * u, r = v - 0.5;
                 return glm::dvec3(r * std::cos(a), r * std::sin(a),
                                   2.0 * std::abs(r) * (r < 0 ? -1 : 1));

@@ -1,5 +1,6 @@
+#include "tests/scenes.h"
 #include "tests/stability/cases.h"
-#include "tests/stability/shapes.h"
+#include "tests/stability/random.h"
 
 #include <glm/geometric.hpp>
 
@@ -8,6 +9,8 @@
 
 namespace surfelao::stability {
 namespace {
+
+using namespace scenes;
 
 constexpr glm::dvec3 kX{1, 0, 0}, kY{0, 1, 0}, kZ{0, 0, 1};
 
@@ -21,8 +24,8 @@ World facing_sheets(double gap, float offset)
 {
     const double height = gap * std::sqrt(2.0 / (1.0 - gap * gap));
     Scene scene;
-    add_sheet(scene, {0, 0, 0}, kX, kY, 12);
-    add_sheet(scene, {0, 0, height}, kY, kX, 12);
+    scene += sheet({0, 0, 0}, kX, kY, 12);
+    scene += sheet({0, 0, height}, kY, kX, 12);
     Definition definition;
     definition.offset = offset;
     return with_polygons(at_vertices(scene, definition),
@@ -33,7 +36,7 @@ World facing_sheets(double gap, float offset)
 World under_ceiling(const std::function<void(Scene&)>& add_ceiling)
 {
     Scene scene;
-    add_sheet(scene, {0, 0, 0}, kX, kY, 12);
+    scene += sheet({0, 0, 0}, kX, kY, 12);
     add_ceiling(scene);
     return with_polygons(
         at_vertices(scene),
@@ -43,7 +46,7 @@ World under_ceiling(const std::function<void(Scene&)>& add_ceiling)
 /// The ceiling of under_ceiling, facing down.
 void add_ceiling(Scene& scene, int cells)
 {
-    add_sheet(scene, {0.25, 0.25, 0.3}, 0.5 * kY, 0.5 * kX, cells);
+    scene += sheet({0.25, 0.25, 0.3}, 0.5 * kY, 0.5 * kX, cells);
 }
 
 /// A valley between two flanks of width 1 along y.
@@ -53,8 +56,8 @@ World crease(double angle_deg)
     const glm::dvec3 left(-std::sin(half), 0, std::cos(half));
     const glm::dvec3 right(std::sin(half), 0, std::cos(half));
     Scene scene;
-    add_sheet(scene, {0, -1, 0}, 2.0 * kY, left, 12);
-    add_sheet(scene, {0, -1, 0}, right, 2.0 * kY, 12);
+    scene += sheet({0, -1, 0}, 2.0 * kY, left, 12);
+    scene += sheet({0, -1, 0}, right, 2.0 * kY, 12);
     return with_polygons(at_vertices(scene), {parallelogram({0, -1, 0}, 2.0 * kY, left),
                                               parallelogram({0, -1, 0}, 2.0 * kY, right)});
 }
@@ -64,8 +67,8 @@ World ridge(double angle_deg)
 {
     const double half = angle_deg / 360.0 * std::numbers::pi;
     Scene scene;
-    add_sheet(scene, {0, -1, 0}, {-std::sin(half), 0, -std::cos(half)}, 2.0 * kY, 12);
-    add_sheet(scene, {0, -1, 0}, 2.0 * kY, {std::sin(half), 0, -std::cos(half)}, 12);
+    scene += sheet({0, -1, 0}, 2.0 * kY, {-std::sin(half), 0, -std::cos(half)}, 12);
+    scene += sheet({0, -1, 0}, {std::sin(half), 0, -std::cos(half)}, 2.0 * kY, 12);
     return with_constant(at_vertices(scene), 0.0);
 }
 
@@ -79,7 +82,7 @@ void add_slivered_ceiling(Scene& scene, double aspect)
     }
     cuts.push_back(0.75);
     const int strips = static_cast<int>(cuts.size()) - 1;
-    add_grid(scene, 1, strips, [&](double u, double v) {
+    scene += grid(1, strips, [&](double u, double v) {
         return glm::dvec3(cuts[static_cast<std::size_t>(std::lround(v * strips))], 0.25 + 0.5 * u,
                           0.3);
     });
@@ -90,9 +93,9 @@ World lone_sliver(double aspect)
 {
     const double width = 0.5 / aspect;
     Scene scene;
-    add_sheet(scene, {0, 0, 0}, kX, kY, 12);
+    scene += sheet({0, 0, 0}, kX, kY, 12);
     const glm::dvec3 corner(0.25, 0.4999, 0.01);
-    add_sheet(scene, corner, width * kY, 0.5 * kX, 1);
+    scene += sheet(corner, width * kY, 0.5 * kX, 1);
     return with_polygons(at_vertices(scene), {parallelogram({0, 0, 0}, kX, kY),
                                               parallelogram(corner, width * kY, 0.5 * kX)});
 }
@@ -101,7 +104,7 @@ World lone_sliver(double aspect)
 World needle_fan(int spokes)
 {
     Scene scene;
-    add_sheet(scene, {0, 0, 0}, kX, kY, 12);
+    scene += sheet({0, 0, 0}, kX, kY, 12);
     Polygon rim;
     const glm::dvec3 centre(0.5, 0.5, 0.3);
     for (int i = 0; i < spokes; ++i) {
@@ -123,7 +126,7 @@ void add_sheet_cases(std::vector<Case>& cases)
 {
     cases.push_back({"sheets", "lone sheet", [] {
                          Scene scene;
-                         add_sheet(scene, {0, 0, 0}, kX, kY, 16);
+                         scene += sheet({0, 0, 0}, kX, kY, 16);
                          return with_constant(at_vertices(scene), 0.0);
                      }});
     for (const double gap : {1e-1, 1e-2, 1e-3, 2e-4, 1e-4, 5e-5, 1e-5, 1e-6, 1e-7})
@@ -157,11 +160,7 @@ void add_sheet_cases(std::vector<Case>& cases)
                      [] {
                          return under_ceiling([](Scene& scene) {
                              add_ceiling(scene, 6);
-                             const std::vector<glm::uvec3> front = scene.triangles;
-                             const std::size_t first = front.size();
-                             scene.triangles.insert(scene.triangles.end(), front.begin(),
-                                                    front.end());
-                             flip(scene, first);
+                             scene = two_faced(std::move(scene));
                          });
                      },
                      kLayers});
@@ -169,8 +168,8 @@ void add_sheet_cases(std::vector<Case>& cases)
                      [] {
                          return under_ceiling([](Scene& scene) {
                              add_ceiling(scene, 6);
-                             add_sheet(scene, {0.25, 0.25, 0.3}, 0.5 * kX, 0.5 * kY, 6);
-                             add_sheet(scene, {0, 0, 0}, kY, kX, 12);
+                             scene += sheet({0.25, 0.25, 0.3}, 0.5 * kX, 0.5 * kY, 6);
+                             scene += sheet({0, 0, 0}, kY, kX, 12);
                          });
                      },
                      kLayers});
@@ -178,7 +177,7 @@ void add_sheet_cases(std::vector<Case>& cases)
                      [] {
                          return under_ceiling([](Scene& scene) {
                              add_ceiling(scene, 6);
-                             add_sheet(scene, {0, 0, 0}, kX, kY, 1);
+                             scene += sheet({0, 0, 0}, kX, kY, 1);
                          });
                      },
                      kLayers});

@@ -1,5 +1,6 @@
+#include "tests/scenes.h"
 #include "tests/stability/cases.h"
-#include "tests/stability/shapes.h"
+#include "tests/stability/random.h"
 
 #include <glm/geometric.hpp>
 
@@ -7,6 +8,8 @@
 
 namespace surfelao::stability {
 namespace {
+
+using namespace scenes;
 
 constexpr glm::dvec3 kX{1, 0, 0}, kY{0, 1, 0}, kZ{0, 0, 1};
 
@@ -21,10 +24,9 @@ World convex(const std::function<void(Scene&)>& add)
 World pit(double depth)
 {
     Scene scene;
-    add_box(scene, {0, 0, 0}, {1, 1, depth}, 8);
-    // the lid is the second face of the box: 2 * 8 * 8 triangles a face
-    scene.triangles.erase(scene.triangles.begin() + 128, scene.triangles.begin() + 256);
-    flip(scene);
+    scene += box({0, 0, 0}, {1, 1, depth}, 8);
+    scene.triangles.resize(scene.triangles.size() - 2 * 8 * 8);  // the lid is the last face
+    scene = flipped(std::move(scene));
     World world = where(at_vertices(scene), [depth](glm::dvec3 p) { return p.z < depth - 0.01; });
     return with_openings(std::move(world),
                          {{{0, 0, depth}, {1, 0, depth}, {1, 1, depth}, {0, 1, depth}}});
@@ -34,19 +36,19 @@ World pit(double depth)
 World room(double window)
 {
     Scene scene;
-    add_sheet(scene, {0, 0, 0}, 2.0 * kX, kY, 8);
-    add_sheet(scene, {0, 0, 1}, kY, 2.0 * kX, 8);
-    add_sheet(scene, {0, 0, 0}, kZ, 2.0 * kX, 8);
-    add_sheet(scene, {0, 1, 0}, 2.0 * kX, kZ, 8);
-    add_sheet(scene, {0, 0, 0}, kY, kZ, 8);
+    scene += sheet({0, 0, 0}, 2.0 * kX, kY, 8);
+    scene += sheet({0, 0, 1}, kY, 2.0 * kX, 8);
+    scene += sheet({0, 0, 0}, kZ, 2.0 * kX, 8);
+    scene += sheet({0, 1, 0}, 2.0 * kX, kZ, 8);
+    scene += sheet({0, 0, 0}, kY, kZ, 8);
     const double low = 0.5 - 0.5 * window, high = 0.5 + 0.5 * window;
     const double cuts[] = {0.0, low, high, 1.0};
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column) {
             if (row == 1 && column == 1 && window > 0.0)
                 continue;
-            add_sheet(scene, {2, cuts[column], cuts[row]}, {0, 0, cuts[row + 1] - cuts[row]},
-                      {0, cuts[column + 1] - cuts[column], 0}, 3);
+            scene += sheet({2, cuts[column], cuts[row]}, {0, 0, cuts[row + 1] - cuts[row]},
+                           {0, cuts[column + 1] - cuts[column], 0}, 3);
         }
     }
     World world = where(at_vertices(scene), [](glm::dvec3 p) { return p.x < 1.99; });
@@ -60,7 +62,7 @@ World nested_shells(double gap)
     const double step = gap * 2.0 * std::sqrt(3.0);
     Scene scene;
     for (int shell = 0; shell < 3; ++shell)
-        add_sphere(scene, {0, 0, 0}, 1.0 - shell * step, 12);
+        scene += sphere({0, 0, 0}, 1.0 - shell * step, 8);
     World world = at_vertices(scene);
     const double outer = 1.0 / world.geometry.frame.diagonal;
     world.answer = [outer](const Receiver& receiver) {
@@ -75,8 +77,8 @@ World floor_under_sphere()
     Scene scene;
     const glm::dvec3 centre(0.5, 0.5, 0.4);
     const double radius = 0.3;
-    add_sphere(scene, centre, radius, 158);
-    add_sheet(scene, {0, 0, 0}, kX, kY, 1);
+    scene += sphere(centre, radius, 91);
+    scene += sheet({0, 0, 0}, kX, kY, 1);
     World world = sampled(at_vertices(scene), 300);
     std::vector<glm::dvec3> points;
     for (int y = 0; y < 16; ++y) {
@@ -102,34 +104,33 @@ World floor_under_sphere()
 
 void add_solid_cases(std::vector<Case>& cases)
 {
-    cases.push_back(
-        {"solids", "box", [] {
-             return convex([](Scene& scene) { add_box(scene, {0, 0, 0}, {1, 1, 1}, 8); });
-         }});
+    cases.push_back({"solids", "box", [] {
+                         return convex([](Scene& scene) { scene += box({0, 0, 0}, {1, 1, 1}, 8); });
+                     }});
     cases.push_back({"solids", "sphere", [] {
-                         return convex([](Scene& scene) { add_sphere(scene, {0, 0, 0}, 1, 16); });
+                         return convex([](Scene& scene) { scene += sphere({0, 0, 0}, 1, 16); });
                      }});
     for (const double thickness : {1e-2, 1e-4, 1e-6, 1e-8})
         cases.push_back({"solids", label("slab %g thick", thickness),
                          [thickness] {
                              return convex([thickness](Scene& scene) {
-                                 add_box(scene, {0, 0, 0}, {1, 1, thickness}, 8);
+                                 scene += box({0, 0, 0}, {1, 1, thickness}, 8);
                              });
                          },
                          kThinParts});
     cases.push_back({"solids", "box turned inside out",
                      [] {
                          Scene scene;
-                         add_box(scene, {0, 0, 0}, {1, 1, 1}, 8);
-                         flip(scene);
+                         scene += box({0, 0, 0}, {1, 1, 1}, 8);
+                         scene = flipped(std::move(scene));
                          return with_constant(at_vertices(scene), 1.0);
                      },
                      kRoom});
     cases.push_back({"solids", "sphere turned inside out",
                      [] {
                          Scene scene;
-                         add_sphere(scene, {0, 0, 0}, 1, 16);
-                         flip(scene);
+                         scene += sphere({0, 0, 0}, 1, 16);
+                         scene = flipped(std::move(scene));
                          return with_constant(at_vertices(scene), 1.0);
                      },
                      kRoom});
@@ -147,32 +148,32 @@ void add_solid_cases(std::vector<Case>& cases)
     cases.push_back({"crossing", "two boxes through each other",
                      [] {
                          Scene scene;
-                         add_box(scene, {0, 0, 0}, {1, 1, 1}, 8);
-                         add_box(scene, {0.4, 0.3, 0.2}, {1.6, 0.7, 0.6}, 8);
+                         scene += box({0, 0, 0}, {1, 1, 1}, 8);
+                         scene += box({0.4, 0.3, 0.2}, {1.6, 0.7, 0.6}, 8);
                          return at_vertices(scene);
                      },
                      kLayers});
     cases.push_back({"crossing", "sphere through a floor",
                      [] {
                          Scene scene;
-                         add_sheet(scene, {-1, -1, 0}, 2.0 * kX, 2.0 * kY, 16);
-                         add_sphere(scene, {0.03, 0.02, 0.11}, 0.5, 12);
+                         scene += sheet({-1, -1, 0}, 2.0 * kX, 2.0 * kY, 16);
+                         scene += sphere({0.03, 0.02, 0.11}, 0.5, 8);
                          return at_vertices(scene);
                      },
                      kLayers});
     cases.push_back({"crossing", "box standing in the floor's plane",
                      [] {
                          Scene scene;
-                         add_sheet(scene, {-1, -1, 0}, 2.0 * kX, 2.0 * kY, 16);
-                         add_box(scene, {-0.5, -0.5, 0}, {0.25, 0.25, 0.5}, 6);
+                         scene += sheet({-1, -1, 0}, 2.0 * kX, 2.0 * kY, 16);
+                         scene += box({-0.5, -0.5, 0}, {0.25, 0.25, 0.5}, 5);
                          return at_vertices(scene);
                      },
                      kLayers});
     cases.push_back({"crossing", "two boxes with one face in common",
                      [] {
                          Scene scene;
-                         add_box(scene, {0, 0, 0}, {1, 1, 1}, 6);
-                         add_box(scene, {1, 0.25, 0.25}, {1.5, 0.75, 0.75}, 6);
+                         scene += box({0, 0, 0}, {1, 1, 1}, 6);
+                         scene += box({1, 0.25, 0.25}, {1.5, 0.75, 0.75}, 6);
                          return at_vertices(scene);
                      },
                      kLayers});

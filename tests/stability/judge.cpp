@@ -30,8 +30,6 @@ std::vector<Occlusion> solve(const World& world, const Engine& engine, int threa
 std::string fault_in_numbers(std::span<const Receiver> receivers,
                              const std::vector<Occlusion>& answers)
 {
-    if (answers.size() != receivers.size())
-        return "not one answer per receiver";
     for (std::size_t i = 0; i < answers.size(); ++i) {
         const Occlusion a = answers[i];
         const glm::vec3 n = receivers[i].normal;
@@ -87,20 +85,24 @@ Finding examine(const Trial& trial, const Engine& engine, const std::string& exc
     finding.bound = engine.bound;
 
     const std::vector<Occlusion> answers = solve(trial.world, engine, 1);
-    finding.fault = fault_in_numbers(trial.world.receivers, answers);
-    if (!finding.fault.empty())
-        return finding;
-    if (!same_bytes(answers, solve(trial.world, engine, tbb::task_arena::automatic))) {
-        finding.fault = "two runs differ";
+    if (answers.size() != trial.world.receivers.size()) {
+        finding.fault = "not one answer per receiver";
         return finding;
     }
-
     std::vector<Occlusion> like;
     if (trial.world.like) {
         like = solve(*trial.world.like, engine, tbb::task_arena::automatic);
         finding.bound = {2.0 * engine.bound.rms, 2.0 * engine.bound.worst};
     }
     finding.error = error_of(trial, answers, like);
+
+    finding.fault = fault_in_numbers(trial.world.receivers, answers);
+    if (finding.fault.empty() &&
+        !same_bytes(answers, solve(trial.world, engine, tbb::task_arena::automatic)))
+        finding.fault = "two runs differ";
+    if (!finding.fault.empty())
+        return finding;
+
     if (trial.undefined == trial.has_answer.size()) {
         finding.verdict = Verdict::undefined;
     } else if (finding.error.rms <= finding.bound.rms &&
