@@ -50,6 +50,9 @@ Question ask(const CompareSettings& settings, const Definition& definition, Comp
             ++comparison.ill_defined;
         }
     }
+    comparison.reference.assign(question.receivers.size(), std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t i = 0; i < question.judged.size(); ++i)
+        comparison.reference[question.judged[i]] = question.reference[i].occlusion;
     comparison.judged = question.judged.size();
     comparison.reference_rays = settings.reference_rays;
     comparison.reference_noise = reference.noise;
@@ -58,7 +61,8 @@ Question ask(const CompareSettings& settings, const Definition& definition, Comp
 }
 
 /// Fills in everything about errors. They are the same in every round.
-void judge(const Question& question, const std::vector<Occlusion>& answer, CompareRow& row)
+void judge(const Question& question, const Scene& scene, const std::vector<Occlusion>& answer,
+           CompareRow& row)
 {
     std::vector<Occlusion> judged;
     judged.reserve(question.judged.size());
@@ -78,7 +82,8 @@ void judge(const Question& question, const std::vector<Occlusion>& answer, Compa
                           return error_at(a) != error_at(b) ? error_at(a) > error_at(b) : a < b;
                       });
     for (std::size_t i = 0; i < worst; ++i) {
-        row.worst.push_back({question.judged[order[i]], judged[order[i]].occlusion,
+        const std::uint32_t vertex = question.judged[order[i]];
+        row.worst.push_back({vertex, scene.positions[vertex], judged[order[i]].occlusion,
                              question.reference[order[i]].occlusion});
     }
     if (row.settings.engine == Engine::rays)
@@ -96,11 +101,6 @@ CompareRow row_of_rays(const Definition& definition, std::uint32_t rays, bool sm
     row.settings.rays = rays;
     row.settings.smoothed = smoothed;
     return row;
-}
-
-bool is_opponent(const CompareRow& row)
-{
-    return row.settings.engine == Engine::rays && !row.settings.smoothed;
 }
 
 /// Whether a candidate is beyond the most exact row of the opponent.
@@ -126,6 +126,20 @@ std::optional<EmbreeRatio> ratio_at(const Comparison& comparison, const CompareR
 }
 
 }  // namespace
+
+const CompareRow& shown_row(const Comparison& comparison)
+{
+    for (const CompareRow& row : comparison.rows) {
+        if (!row.errors.empty() && row.settings.quality == kGood)
+            return row;
+    }
+    return comparison.rows.front();
+}
+
+bool is_opponent(const CompareRow& row)
+{
+    return row.settings.engine == Engine::rays && !row.settings.smoothed;
+}
 
 std::vector<CurvePoint> embree_curve(const Comparison& comparison, bool with_builds)
 {
@@ -153,11 +167,14 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     comparison.input = settings.input;
     comparison.threads = thread_count();
     comparison.rounds = settings.rounds;
-    stage("read");
+    static_cast<void>(stage("read"));
     Stopwatch watch;
     comparison.scene = read_scene(settings.input);
     comparison.geometry = make_geometry(comparison.scene);
     comparison.read_s = watch.lap();
+    comparison.vertices = comparison.scene.positions.size();
+    comparison.triangles = comparison.scene.triangles.size();
+    comparison.dropped_triangles = comparison.geometry.dropped_triangles;
     const Definition definition =
         definition_of(settings.max_distance, settings.kernel, comparison.geometry.frame);
     const Question question = ask(settings, definition, comparison, stage("reference"));
@@ -183,7 +200,7 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
         builds[i].push_back(result.surfels_s + result.tree_s);
         solves[i].push_back(result.solve_s);
         if (row.worst.empty())
-            judge(question, result.occlusion, row);
+            judge(question, comparison.scene, result.occlusion, row);
     };
     for (int round = 0; round < settings.rounds; ++round) {
         for (std::size_t i = 0; i < rows.size(); ++i)

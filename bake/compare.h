@@ -41,7 +41,8 @@ struct EmbreeRatio {
 };
 
 struct WorstVertex {
-    std::uint64_t vertex = 0;  ///< index in the file
+    std::uint64_t vertex = 0;  ///< index in the scene
+    glm::dvec3 position{0.0};  ///< the file's units
     float occlusion = 0.0f;
     float reference = 0.0f;
 };
@@ -63,6 +64,10 @@ struct Comparison {
     std::filesystem::path input;
     Scene scene;
     Geometry geometry;
+    std::vector<float> reference;  ///< occlusion, one per vertex; NaN where not judged
+    std::uint64_t vertices = 0;
+    std::uint64_t triangles = 0;
+    std::uint64_t dropped_triangles = 0;
     int threads = 0;
     int rounds = 0;
     double read_s = 0.0;  ///< file and clean geometry: everyone's
@@ -79,6 +84,12 @@ struct Comparison {
 /// is added, so that the ratio needs no extrapolation. Throws InputError, Cancelled.
 [[nodiscard]] Comparison compare(const CompareSettings& settings,
                                  const StageProgress& progress = {});
+
+/// The row that pictures show: the first candidate at `good`, else the first row.
+[[nodiscard]] const CompareRow& shown_row(const Comparison& comparison);
+
+/// Whether the row is plain ray tracing, the opponent.
+[[nodiscard]] bool is_opponent(const CompareRow& row);
 
 /// The opponent's rows as a family of (error, seconds), with or without builds.
 [[nodiscard]] std::vector<CurvePoint> embree_curve(const Comparison& comparison, bool with_builds);

@@ -1,5 +1,7 @@
-#include "bake/compare.h"
+#include "bake/compare_text.h"
+
 #include "bake/json.h"
+#include "bake/picture.h"
 #include "bake/text.h"
 #include "surfels/atomic_file.h"
 
@@ -17,27 +19,6 @@ Json json_of(const std::optional<EmbreeRatio>& ratio)
     return ratio ? Json(ratio->ratio) : Json();
 }
 
-std::string text_of(const std::optional<EmbreeRatio>& ratio)
-{
-    if (!ratio)
-        return "-";
-    return fixed(ratio->ratio, 2) + (ratio->extrapolated ? "*" : "");
-}
-
-/// Blue to white to red; grey where nothing is known.
-void color_of(float error, std::uint8_t (&rgb)[3])
-{
-    if (std::isnan(error)) {
-        std::fill_n(rgb, 3, std::uint8_t{128});
-        return;
-    }
-    const float strength = std::min(1.0f, std::fabs(error) / kFullColorError);
-    const std::uint8_t faded = static_cast<std::uint8_t>(std::lround(255.0f * (1.0f - strength)));
-    rgb[0] = error > 0.0f ? 255 : faded;
-    rgb[1] = faded;
-    rgb[2] = error < 0.0f ? 255 : faded;
-}
-
 template <class T>
 void put(std::ofstream& file, T value)
 {
@@ -47,13 +28,13 @@ void put(std::ofstream& file, T value)
 
 }  // namespace
 
-std::string json_of(const Comparison& comparison)
+Json json_object_of(const Comparison& comparison)
 {
     Json json;
     json["input"] = comparison.input.string();
-    json["vertices"] = comparison.scene.positions.size();
-    json["triangles"] = comparison.scene.triangles.size();
-    json["dropped_triangles"] = comparison.geometry.dropped_triangles;
+    json["vertices"] = comparison.vertices;
+    json["triangles"] = comparison.triangles;
+    json["dropped_triangles"] = comparison.dropped_triangles;
     json["threads"] = comparison.threads;
     json["rounds"] = comparison.rounds;
     json["read_s"] = comparison.read_s;
@@ -67,9 +48,11 @@ std::string json_of(const Comparison& comparison)
     for (const CompareRow& row : comparison.rows) {
         Json worst = Json::array();
         for (const WorstVertex& vertex : row.worst) {
-            worst.push_back({{"vertex", vertex.vertex},
-                             {"occlusion", vertex.occlusion},
-                             {"reference", vertex.reference}});
+            worst.push_back(
+                {{"vertex", vertex.vertex},
+                 {"position", {vertex.position.x, vertex.position.y, vertex.position.z}},
+                 {"occlusion", vertex.occlusion},
+                 {"reference", vertex.reference}});
         }
         json["rows"].push_back({{"engine", name_of(row.settings.engine)},
                                 {"setting", setting_of(row.settings)},
@@ -88,30 +71,51 @@ std::string json_of(const Comparison& comparison)
                                 {"extrapolated", row.solve_ratio && row.solve_ratio->extrapolated},
                                 {"worst", worst}});
     }
-    return json.dump(2);
+    return json;
+}
+
+std::string json_of(const Comparison& comparison)
+{
+    return json_object_of(comparison).dump(2) + '\n';
+}
+
+std::string csv_head()
+{
+    return "input,vertices,triangles,engine,setting,build_s,solve_s,us_per_vertex,rmse,bias,p95,"
+           "max,"
+           "bent_mean_deg,bent_p95_deg,embree_ratio,embree_ratio_with_builds,extrapolated\n";
 }
 
 std::string csv_of(const Comparison& comparison)
 {
-    std::string text =
-        "input,vertices,triangles,engine,setting,build_s,solve_s,us_per_vertex,rmse,bias,p95,max,"
-        "bent_mean_deg,bent_p95_deg,embree_ratio,embree_ratio_with_builds,extrapolated\n";
+    return csv_head() + csv_rows_of(comparison);
+}
+
+std::string csv_rows_of(const Comparison& comparison)
+{
+    std::string text;
     for (const CompareRow& row : comparison.rows) {
         const auto number = [](double value) { return ',' + exact(value); };
         const auto ratio = [](const std::optional<EmbreeRatio>& value) {
             return ',' + (value ? exact(value->ratio) : std::string());
         };
-        text += csv_field(comparison.input.string()) + ',' +
-                std::to_string(comparison.scene.positions.size()) + ',' +
-                std::to_string(comparison.scene.triangles.size()) + ',' +
-                name_of(row.settings.engine) + ',' + csv_field(setting_of(row.settings)) +
-                number(row.build_s) + number(row.solve_s) + number(row.us_per_vertex) +
-                number(row.error.rmse) + number(row.error.bias) + number(row.error.p95) +
-                number(row.error.max) + number(row.error.bent_mean_deg) +
-                number(row.error.bent_p95_deg) + ratio(row.solve_ratio) + ratio(row.total_ratio) +
+        text += csv_field(comparison.input.string()) + ',' + std::to_string(comparison.vertices) +
+                ',' + std::to_string(comparison.triangles) + ',' + name_of(row.settings.engine) +
+                ',' + csv_field(setting_of(row.settings)) + number(row.build_s) +
+                number(row.solve_s) + number(row.us_per_vertex) + number(row.error.rmse) +
+                number(row.error.bias) + number(row.error.p95) + number(row.error.max) +
+                number(row.error.bent_mean_deg) + number(row.error.bent_p95_deg) +
+                ratio(row.solve_ratio) + ratio(row.total_ratio) +
                 (row.solve_ratio && row.solve_ratio->extrapolated ? ",1\n" : ",0\n");
     }
     return text;
+}
+
+std::string text_of(const std::optional<EmbreeRatio>& ratio)
+{
+    if (!ratio)
+        return "-";
+    return fixed(ratio->ratio, 2) + (ratio->extrapolated ? "*" : "");
 }
 
 std::string table_of(const Comparison& comparison)
@@ -125,9 +129,8 @@ std::string table_of(const Comparison& comparison)
                    fixed(row.error.max, 3), fixed(row.error.bent_mean_deg, 2),
                    text_of(row.solve_ratio), text_of(row.total_ratio)});
     }
-    std::string text = comparison.input.string() + ": " +
-                       std::to_string(comparison.scene.positions.size()) + " vertices, " +
-                       std::to_string(comparison.scene.triangles.size()) + " triangles, " +
+    std::string text = comparison.input.string() + ": " + std::to_string(comparison.vertices) +
+                       " vertices, " + std::to_string(comparison.triangles) + " triangles, " +
                        std::to_string(comparison.threads) + " threads, median of " +
                        std::to_string(comparison.rounds) +
                        "\nreference: " + std::to_string(comparison.reference_rays) +
@@ -164,11 +167,9 @@ void write_difference(const std::filesystem::path& path, const Comparison& compa
                 "property float error\nelement face "
              << scene.triangles.size() << "\nproperty list uchar uint vertex_indices\nend_header\n";
         for (std::size_t v = 0; v < scene.positions.size(); ++v) {
-            std::uint8_t rgb[3];
-            color_of(row.errors[v], rgb);
             for (int axis = 0; axis < 3; ++axis)
                 put(file, scene.positions[v][axis]);
-            for (const std::uint8_t channel : rgb)
+            for (const std::uint8_t channel : color_of_error(row.errors[v], kFullColorError))
                 put(file, channel);
             put(file, std::isnan(row.errors[v]) ? 0.0f : row.errors[v]);
         }

@@ -1,4 +1,5 @@
 #include "bake/compare.h"
+#include "bake/frontier.h"
 #include "bake/threads.h"
 #include "cli/commands.h"
 #include "cli/engine_options.h"
@@ -21,8 +22,9 @@ namespace fs = std::filesystem;
 struct CompareOptions {
     std::vector<std::string> inputs;
     std::string output = ".";
-    std::vector<std::string> engines;
-    std::vector<std::string> qualities;
+    bool frontier = false;
+    std::vector<std::string> engines = {"disks"};
+    std::optional<std::vector<std::string>> qualities;
     MeasureOptions measure;
     std::uint32_t reference_rays = 4096;
     std::uint64_t sample = 0;
@@ -32,50 +34,125 @@ struct CompareOptions {
     std::optional<int> threads;
 };
 
-CompareSettings settings_for(const CompareOptions& options, const std::string& input)
+/// All but the input and the candidates.
+CompareSettings common_settings(const CompareOptions& options)
 {
     CompareSettings settings;
-    settings.input = input;
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
     settings.reference_rays = options.reference_rays;
     settings.sample = options.sample;
     settings.rounds = options.rounds;
     settings.use_cache = !options.no_cache;
+    return settings;
+}
+
+CompareSettings compare_settings(const CompareOptions& options)
+{
+    CompareSettings settings = common_settings(options);
+    settings.input = options.inputs.front();
+    settings.smoothed_rays = {16};
     for (const std::string& engine : options.engines) {
-        for (const std::string& quality : options.qualities) {
+        for (const std::string& quality :
+             options.qualities.value_or(std::vector<std::string>{"draft", "good", "best"})) {
             EngineSettings& candidate = settings.candidates.emplace_back();
             candidate.engine = engine_of(engine);
             candidate.quality = quality_of(quality, candidate.engine);
-            check_kernel(candidate.engine, settings.kernel);
         }
     }
     return settings;
 }
 
-int run(const CompareOptions& options, const CompareSettings& settings)
+FrontierSettings frontier_settings(const CompareOptions& options)
+{
+    FrontierSettings settings;
+    settings.compare = common_settings(options);
+    settings.inputs.assign(options.inputs.begin(), options.inputs.end());
+    for (const std::string& engine : options.engines)
+        settings.engines.push_back(engine_of(engine));
+    return settings;
+}
+
+template <class Result>
+void print_or_write(const CompareOptions& options, const Result& result)
+{
+    if (options.json != "-" && options.csv != "-")
+        std::cout << table_of(result);
+    if (options.json)
+        write_report(*options.json, json_of(result));
+    if (options.csv)
+        write_report(*options.csv, csv_of(result));
+}
+
+int run_compare(const CompareOptions& options, const fs::path& difference, const fs::path& report)
+{
+    check_writable(difference);
+    Comparison comparison = [&] {
+        ProgressBar bar;
+        return compare(compare_settings(options), [&](std::string_view stage, double done) {
+            return bar.update(stage, done);
+        });
+    }();
+    print_or_write(options, comparison);
+    write_difference(difference, comparison, shown_row(comparison));
+    Frontier frontier;
+    for (const std::string& engine : options.engines)
+        frontier.engines.push_back(engine_of(engine));
+    frontier.scenes.push_back(frontier_scene(std::move(comparison)));
+    write_atomically(report, html_of(frontier));
+    return kDone;
+}
+
+int run_frontier(const CompareOptions& options, const fs::path& report)
+{
+    const Frontier result = [&] {
+        ProgressBar bar;
+        return frontier(frontier_settings(options), [&](std::string_view stage, double done) {
+            return bar.update(stage, done);
+        });
+    }();
+    print_or_write(options, result);
+    write_atomically(report, html_of(result));
+    int code = kDone;
+    for (const FrontierScene& scene : result.scenes) {
+        if (!scene.comparison) {
+            std::cerr << "surfelao: " << scene.error << '\n';
+            code = kFailed;
+        }
+    }
+    return code;
+}
+
+int run(const CompareOptions& options)
 {
     check_report(options.json);
     check_report(options.csv);
-    const fs::path difference = fs::path(options.output) / "difference.ply";
-    check_writable(difference);
+    const fs::path folder = options.output;
+    const fs::path report = folder / "report.html";
+    check_writable(report);
     std::optional<ThreadLimit> limit;
     if (options.threads)
         limit.emplace(*options.threads);
+    return options.frontier ? run_frontier(options, report)
+                            : run_compare(options, folder / "difference.ply", report);
+}
 
-    const Comparison comparison = [&] {
-        ProgressBar bar;
-        return compare(
-            settings, [&](std::string_view stage, double done) { return bar.update(stage, done); });
-    }();
-    if (options.json != "-" && options.csv != "-")
-        std::cout << table_of(comparison);
-    if (options.json)
-        write_report(*options.json, json_of(comparison));
-    if (options.csv)
-        write_report(*options.csv, csv_of(comparison));
-    write_difference(difference, comparison, comparison.rows.front());
-    return kDone;
+/// Contradictions, before any work.
+void check(const CompareOptions& options)
+{
+    if (options.inputs.size() > 1 && !options.frontier)
+        throw UsageError("several files need --frontier.");
+    if (options.frontier && options.qualities)
+        throw UsageError("--frontier runs all qualities: it does not go with --qualities.");
+    if (options.frontier && options.rounds < 3)
+        throw UsageError("--frontier needs at least 3 rounds.");
+    if (options.reference_rays % 2 != 0)
+        throw UsageError("--reference-rays must be even: two halves tell the noise.");
+    if (options.json == "-" && options.csv == "-")
+        throw UsageError("--json and --csv cannot both go to standard output.");
+    const CompareSettings settings = compare_settings(options);
+    for (const EngineSettings& candidate : settings.candidates)
+        check_kernel(candidate.engine, settings.kernel);
 }
 
 }  // namespace
@@ -83,11 +160,12 @@ int run(const CompareOptions& options, const CompareSettings& settings)
 void add_compare_command(CLI::App& app, Work& work)
 {
     const auto options = std::make_shared<CompareOptions>();
-    options->engines = {"disks"};
-    options->qualities = {"draft", "good", "best"};
     CLI::App* command = app.add_subcommand(
         "compare", "One scene by our engines and by ray tracing: how long, how wrong");
-    command->add_option("IN", options->inputs, "Mesh file: .obj .ply .off .stl .gltf .glb")
+    command
+        ->add_option("IN", options->inputs,
+                     "Mesh file: .obj .ply .off .stl .gltf .glb; several with "
+                     "--frontier")
         ->required()
         ->type_name("");
     command
@@ -95,6 +173,9 @@ void add_compare_command(CLI::App& app, Work& work)
                      "Folder for difference.ply, the scene with the error as colour")
         ->type_name("DIR")
         ->capture_default_str();
+    command->add_flag("--frontier", options->frontier,
+                      "Every engine's whole curve of speed against error, for any number of files, "
+                      "with the ratio to Embree at RMSE 0.010 and 0.005 and a summary");
     command->add_option("--engines", options->engines, "Engines to compare with rays")
         ->delimiter(',')
         ->check(CLI::IsMember({"disks"}))
@@ -105,7 +186,7 @@ void add_compare_command(CLI::App& app, Work& work)
                      "Settings of each engine: draft, good, best or numbers")
         ->delimiter(',')
         ->type_name("Q,...")
-        ->capture_default_str();
+        ->default_str("draft,good,best");
     add_measure_options(*command, options->measure);
     command
         ->add_option("--reference-rays", options->reference_rays,
@@ -131,15 +212,8 @@ void add_compare_command(CLI::App& app, Work& work)
         ->type_name("FILE");
     add_thread_option(*command, options->threads);
     command->callback([options, &work] {
-        if (options->inputs.size() > 1)
-            throw UsageError("compare takes one file.");
-        if (options->reference_rays % 2 != 0)
-            throw UsageError("--reference-rays must be even: two halves tell the noise.");
-        if (options->json == "-" && options->csv == "-")
-            throw UsageError("--json and --csv cannot both go to standard output.");
-        work = [options, settings = settings_for(*options, options->inputs.front())] {
-            return run(*options, settings);
-        };
+        check(*options);
+        work = [options] { return run(*options); };
     });
 }
 

@@ -8,4 +8,5 @@ find_package(TinyGLTF CONFIG REQUIRED)   # Debian ships it compiled: no implemen
 find_package(embree 3.13 CONFIG REQUIRED)
 find_package(CLI11 2.1 CONFIG REQUIRED)
 find_package(nlohmann_json 3.11 CONFIG REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(PkgConfig REQUIRED)

@@ -1,0 +1,21 @@
+/// compare_text.h: parts of a comparison's reports. For the .cpp files of this folder.
+#pragma once
+
+#include "bake/compare.h"
+#include "bake/json.h"
+
+#include <optional>
+#include <string>
+
+namespace surfelao {
+
+[[nodiscard]] Json json_object_of(const Comparison& comparison);
+
+/// The line of column names, and the lines of one comparison.
+[[nodiscard]] std::string csv_head();
+[[nodiscard]] std::string csv_rows_of(const Comparison& comparison);
+
+/// "4.81"; "4.81*" where extrapolated, "-" where there is none.
+[[nodiscard]] std::string text_of(const std::optional<EmbreeRatio>& ratio);
+
+}  // namespace surfelao

@@ -1,0 +1,286 @@
+#include "bake/frontier.h"
+
+#include "bake/compare_text.h"
+#include "bake/json.h"
+#include "bake/picture.h"
+#include "bake/text.h"
+#include "surfels/errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace surfelao {
+namespace {
+
+constexpr int kPictureWidth = 400, kPictureHeight = 300;
+
+/// Settings of one engine from coarse to fine: its family, the same for every scene.
+std::vector<float> qualities_of(Engine)
+{
+    return {0.0f, 0.5f, 1.0f, 1.5f, 2.0f};
+}
+
+double seconds_of(const Comparison& comparison, const CompareRow& row, Cost cost)
+{
+    double seconds = row.solve_s;
+    if (cost != Cost::solve)
+        seconds += row.build_s;
+    if (cost == Cost::file)
+        seconds += comparison.read_s;
+    return seconds;
+}
+
+/// The most exact answers' error, and what the reference looks like.
+std::vector<std::pair<std::string, std::string>> pictures_of(const Comparison& comparison)
+{
+    const Geometry& geometry = comparison.geometry;
+    std::vector<std::pair<std::string, std::string>> pictures;
+    const auto add = [&](std::string caption, const std::vector<Rgb>& colors) {
+        pictures.emplace_back(
+            std::move(caption),
+            png_of(draw_vertices(geometry, colors, kPictureWidth, kPictureHeight)));
+    };
+    std::vector<Rgb> colors;
+    for (const float occlusion : comparison.reference) {
+        const float visibility = std::isnan(occlusion) ? 0.5f : 1.0f - occlusion;
+        const auto grey = static_cast<std::uint8_t>(std::lround(255.0f * visibility));
+        colors.push_back({grey, grey, grey});
+    }
+    add("visibility by rays", colors);
+    for (const CompareRow& row : comparison.rows) {
+        if (row.errors.empty() || row.settings.quality != kGood)
+            continue;
+        colors.clear();
+        for (const float error : row.errors)
+            colors.push_back(color_of_error(error, kFullColorError));
+        add("error of " + name_of(row.settings.engine) + ", " + setting_of(row.settings), colors);
+    }
+    return pictures;
+}
+
+Json json_of(const RatioSummary& summary)
+{
+    if (summary.scenes == 0) {
+        return {{"median_ratio", nullptr},
+                {"worst_ratio", nullptr},
+                {"best_ratio", nullptr},
+                {"quartiles", nullptr},
+                {"scenes", 0},
+                {"left_out", summary.left_out}};
+    }
+    return {{"median_ratio", summary.median},
+            {"worst_ratio", summary.worst},
+            {"best_ratio", summary.best},
+            {"quartiles", {summary.low_quartile, summary.high_quartile}},
+            {"scenes", summary.scenes},
+            {"left_out", summary.left_out}};
+}
+
+/// at_010 and at_005, filled by what `value` gives for (rmse, cost), and the same with builds and
+/// with files.
+template <class Value>
+Json by_target(const Value& value)
+{
+    const auto targets = [&](Cost cost) {
+        return Json{{"at_010", value(kTargets[0], cost)}, {"at_005", value(kTargets[1], cost)}};
+    };
+    Json json = targets(Cost::solve);
+    json["with_builds"] = targets(Cost::build);
+    json["with_files"] = targets(Cost::file);
+    return json;
+}
+
+}  // namespace
+
+std::optional<EmbreeRatio> ratio_at(const Comparison& comparison, Engine engine, double rmse,
+                                    Cost cost)
+{
+    std::vector<CurvePoint> ours, theirs;
+    for (const CompareRow& row : comparison.rows) {
+        const CurvePoint point{row.error.rmse, seconds_of(comparison, row, cost)};
+        if (is_opponent(row))
+            theirs.push_back(point);
+        else if (row.settings.engine == engine)
+            ours.push_back(point);
+    }
+    const std::optional<CurveTime> their_time = time_at(theirs, rmse);
+    std::optional<CurveTime> our_time = time_at(ours, rmse);
+    if (!their_time || ours.empty())
+        return std::nullopt;
+
+    // all our settings are more exact than asked: the cheapest one does
+    const auto by_error = [](CurvePoint a, CurvePoint b) { return a.rmse < b.rmse; };
+    const auto by_time = [](CurvePoint a, CurvePoint b) { return a.seconds < b.seconds; };
+    if (std::max_element(ours.begin(), ours.end(), by_error)->rmse <= rmse)
+        our_time = CurveTime{std::min_element(ours.begin(), ours.end(), by_time)->seconds, false};
+    if (!our_time || !(our_time->seconds > 0.0))
+        return std::nullopt;
+    return EmbreeRatio{their_time->seconds / our_time->seconds,
+                       their_time->extrapolated || our_time->extrapolated};
+}
+
+RatioSummary summary_of(const Frontier& frontier, Engine engine, double rmse, Cost cost)
+{
+    RatioSummary summary;
+    std::vector<double> ratios;
+    for (const FrontierScene& scene : frontier.scenes) {
+        if (!scene.comparison)
+            continue;
+        const std::optional<EmbreeRatio> ratio = ratio_at(*scene.comparison, engine, rmse, cost);
+        if (ratio && !ratio->extrapolated)
+            ratios.push_back(ratio->ratio);
+        else
+            ++summary.left_out;
+    }
+    summary.scenes = ratios.size();
+    if (ratios.empty())
+        return summary;
+    summary.median = quantile(ratios, 0.5);
+    summary.low_quartile = quantile(ratios, 0.25);
+    summary.high_quartile = quantile(ratios, 0.75);
+    summary.worst = quantile(ratios, 0.0);
+    summary.best = quantile(ratios, 1.0);
+    return summary;
+}
+
+FrontierScene frontier_scene(Comparison comparison)
+{
+    FrontierScene scene;
+    scene.input = comparison.input;
+    scene.pictures = pictures_of(comparison);
+    comparison.scene = {};
+    comparison.geometry = {};
+    comparison.reference = {};
+    for (CompareRow& row : comparison.rows)
+        row.errors = {};
+    scene.comparison = std::move(comparison);
+    return scene;
+}
+
+Frontier frontier(const FrontierSettings& settings, const StageProgress& progress)
+{
+    CompareSettings compare_settings = settings.compare;
+    compare_settings.candidates.clear();
+    for (const Engine engine : settings.engines) {
+        for (const float quality : qualities_of(engine)) {
+            EngineSettings& candidate = compare_settings.candidates.emplace_back();
+            candidate.engine = engine;
+            candidate.quality = quality;
+        }
+    }
+    compare_settings.rays = {4, 16, 64, 256, 1024};
+    compare_settings.smoothed_rays = {4, 16, 64, 256};
+
+    Frontier result;
+    result.engines = settings.engines;
+    for (const std::filesystem::path& input : settings.inputs) {
+        compare_settings.input = input;
+        StageProgress named;
+        if (progress) {
+            named = [&](std::string_view stage, double done) {
+                return progress(input.filename().string() + " " + std::string(stage), done);
+            };
+        }
+        try {
+            result.scenes.push_back(frontier_scene(compare(compare_settings, named)));
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const std::exception& error) {
+            result.scenes.emplace_back().input = input;
+            result.scenes.back().error = error.what();
+        }
+    }
+    return result;
+}
+
+std::string json_of(const Frontier& frontier)
+{
+    const auto summary = [&](Engine engine) {
+        return by_target([&](double rmse, Cost cost) {
+            return json_of(summary_of(frontier, engine, rmse, cost));
+        });
+    };
+    Json json;
+    json["summary"] = summary(frontier.engines.front());
+    json["summary"]["engine"] = name_of(frontier.engines.front());
+    for (const Engine engine : frontier.engines)
+        json["summary_of_engines"][name_of(engine)] = summary(engine);
+    json["scenes"] = Json::array();
+    for (const FrontierScene& scene : frontier.scenes) {
+        if (!scene.comparison) {
+            json["scenes"].push_back({{"input", scene.input.string()}, {"error", scene.error}});
+            continue;
+        }
+        Json entry = json_object_of(*scene.comparison);
+        for (const Engine engine : frontier.engines) {
+            entry["ratios"][name_of(engine)] = by_target([&](double rmse, Cost cost) {
+                const auto ratio = ratio_at(*scene.comparison, engine, rmse, cost);
+                return ratio ? Json{{"ratio", ratio->ratio}, {"extrapolated", ratio->extrapolated}}
+                             : Json();
+            });
+        }
+        json["scenes"].push_back(entry);
+    }
+    return json.dump(2) + '\n';
+}
+
+std::string csv_of(const Frontier& frontier)
+{
+    std::string text = csv_head();
+    for (const FrontierScene& scene : frontier.scenes) {
+        if (scene.comparison)
+            text += csv_rows_of(*scene.comparison);
+    }
+    return text;
+}
+
+std::string table_of(const Frontier& frontier)
+{
+    Table table({"scene", "engine", "vertices", "RMSE good", "0.010 solve", "0.005 solve",
+                 "0.010 +build", "0.005 +build", "0.010 +file", "0.005 +file"});
+    const auto each_ratio = [](std::vector<std::string> cells, const auto& text) {
+        for (const Cost cost : {Cost::solve, Cost::build, Cost::file}) {
+            for (const double rmse : kTargets)
+                cells.push_back(text(rmse, cost));
+        }
+        return cells;
+    };
+    std::string failures;
+    for (const FrontierScene& scene : frontier.scenes) {
+        if (!scene.comparison) {
+            failures += scene.error + '\n';
+            continue;
+        }
+        for (const Engine engine : frontier.engines) {
+            std::string good = "-";
+            for (const CompareRow& row : scene.comparison->rows) {
+                if (row.settings.engine == engine && row.settings.quality == kGood)
+                    good = fixed(row.error.rmse, 4);
+            }
+            table.add(each_ratio({scene.input.filename().string(), name_of(engine),
+                                  std::to_string(scene.comparison->vertices), good},
+                                 [&](double rmse, Cost cost) {
+                                     return text_of(
+                                         ratio_at(*scene.comparison, engine, rmse, cost));
+                                 }));
+        }
+    }
+    for (const Engine engine : frontier.engines) {
+        const auto line = [&](const std::string& name, double RatioSummary::*value) {
+            table.add(each_ratio({name, name_of(engine), "", ""}, [&](double rmse, Cost cost) {
+                const RatioSummary summary = summary_of(frontier, engine, rmse, cost);
+                return summary.scenes > 0 ? fixed(summary.*value, 2) : "-";
+            }));
+        };
+        line("MEDIAN", &RatioSummary::median);
+        line("lower quartile", &RatioSummary::low_quartile);
+        line("upper quartile", &RatioSummary::high_quartile);
+        line("worst", &RatioSummary::worst);
+        line("best", &RatioSummary::best);
+    }
+    return "Embree's time over ours at equal RMSE (* = extrapolated, left out of the summary)\n\n" +
+           table.text() + failures;
+}
+
+}  // namespace surfelao

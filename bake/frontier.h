@@ -1,0 +1,78 @@
+/// frontier.h: the whole speed-against-error curve of every engine and of Embree, over many scenes.
+///
+/// Ratios are Embree's time over ours at equal RMSE, each side interpolated inside its own family
+/// (statistics.h: time_at). Where a family does not reach an RMSE the ratio is extrapolated:
+/// marked, and left out of the summary. Where our coarsest setting is already more exact than
+/// asked, its time counts as it is: the ratio is then a lower bound, not an extrapolation.
+#pragma once
+
+#include "bake/compare.h"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace surfelao {
+
+struct FrontierSettings {
+    std::vector<std::filesystem::path> inputs;
+    std::vector<Engine> engines;  ///< the first one is the one that the summary is about
+    CompareSettings compare;      ///< input, candidates and rays are set by the frontier
+};
+
+/// What is counted on both sides.
+enum class Cost {
+    solve,  ///< solving
+    build,  ///< and the engine's own structures
+    file,   ///< and reading the file and cleaning its geometry, the same for both
+};
+
+/// RMSE at which ratios are stated.
+inline constexpr double kTargets[] = {0.010, 0.005};
+
+/// One scene: its comparison, or why there is none.
+struct FrontierScene {
+    std::filesystem::path input;
+    std::optional<Comparison> comparison;  ///< without its scene and geometry: counts and rows only
+    std::string error;
+    std::vector<std::pair<std::string, std::string>> pictures;  ///< caption, PNG
+};
+
+struct RatioSummary {
+    std::size_t scenes = 0;    ///< that count
+    std::size_t left_out = 0;  ///< extrapolated, or without a curve
+    double median = 0.0, low_quartile = 0.0, high_quartile = 0.0, worst = 0.0, best = 0.0;
+};
+
+struct Frontier {
+    std::vector<Engine> engines;
+    std::vector<FrontierScene> scenes;
+};
+
+/// A scene that fails is kept with its error and does not stop the others. Throws Cancelled.
+[[nodiscard]] Frontier frontier(const FrontierSettings& settings,
+                                const StageProgress& progress = {});
+
+/// One comparison as the frontier of one scene, with pictures; takes its scene and geometry away.
+[[nodiscard]] FrontierScene frontier_scene(Comparison comparison);
+
+/// Empty where either side has no curve.
+[[nodiscard]] std::optional<EmbreeRatio> ratio_at(const Comparison& comparison, Engine engine,
+                                                  double rmse, Cost cost);
+
+/// scenes = 0 and zeros where no ratio counts.
+[[nodiscard]] RatioSummary summary_of(const Frontier& frontier, Engine engine, double rmse,
+                                      Cost cost);
+
+/// Keys summary{at_010{median_ratio, worst_ratio, best_ratio, quartiles, scenes, left_out}, at_005,
+/// with_builds{at_010, at_005}, with_files{...}}, summary_of_engines{NAME{...}}, scenes[...].
+[[nodiscard]] std::string json_of(const Frontier& frontier);
+[[nodiscard]] std::string csv_of(const Frontier& frontier);
+[[nodiscard]] std::string table_of(const Frontier& frontier);
+
+/// A page of its own: plot of RMSE against time, pictures, worst vertices, settings, summary.
+[[nodiscard]] std::string html_of(const Frontier& frontier);
+
+}  // namespace surfelao

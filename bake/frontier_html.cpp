@@ -1,0 +1,301 @@
+#include "bake/compare_text.h"
+#include "bake/frontier.h"
+#include "bake/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace surfelao {
+namespace {
+
+constexpr const char* kStyle =
+    "body{font:15px/1.45 system-ui,sans-serif;max-width:62em;margin:2em auto;padding:0 1em;"
+    "color:#222}"
+    "table{border-collapse:collapse;margin:1em 0;font-variant-numeric:tabular-nums}"
+    "td,th{padding:.15em .6em;text-align:right;border-bottom:1px solid #ddd}"
+    "td:nth-child(-n+2),th:nth-child(-n+2){text-align:left}"
+    "figure{display:inline-block;margin:0 1em 1em 0}figcaption{font-size:13px;color:#555}"
+    "img{border:1px solid #ddd}svg text{font-size:12px;fill:#444}";
+
+std::string escaped(const std::string& text)
+{
+    std::string result;
+    for (const char c : text) {
+        switch (c) {
+            case '<':
+                result += "&lt;";
+                break;
+            case '>':
+                result += "&gt;";
+                break;
+            case '&':
+                result += "&amp;";
+                break;
+            case '"':
+                result += "&quot;";
+                break;
+            default:
+                result += c;
+        }
+    }
+    return result;
+}
+
+std::string base64(const std::string& bytes)
+{
+    constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string result;
+    for (std::size_t at = 0; at < bytes.size(); at += 3) {
+        std::uint32_t group = 0;
+        const std::size_t count = std::min<std::size_t>(3, bytes.size() - at);
+        for (std::size_t i = 0; i < 3; ++i)
+            group = group << 8 | (i < count ? static_cast<unsigned char>(bytes[at + i]) : 0u);
+        for (std::size_t i = 0; i < 4; ++i)
+            result += i <= count ? kDigits[group >> (18 - 6 * i) & 63] : '=';
+    }
+    return result;
+}
+
+/// One line of the plot.
+struct Series {
+    std::string name;
+    std::string color;
+    std::vector<const CompareRow*> rows;
+};
+
+std::vector<Series> series_of(const Comparison& comparison)
+{
+    std::vector<Series> series = {{"masks", "#c0392b", {}},
+                                  {"disks", "#2471a3", {}},
+                                  {"Embree", "#1e8449", {}},
+                                  {"Embree, smoothed", "#b7950b", {}}};
+    for (const CompareRow& row : comparison.rows) {
+        std::string name = name_of(row.settings.engine);
+        if (row.settings.engine == Engine::rays)
+            name = row.settings.smoothed ? "Embree, smoothed" : "Embree";
+        for (Series& one : series) {
+            if (one.name == name && row.error.rmse > 0.0 && row.solve_s > 0.0)
+                one.rows.push_back(&row);
+        }
+    }
+    std::erase_if(series, [](const Series& one) { return one.rows.empty(); });
+    for (Series& one : series) {
+        std::stable_sort(one.rows.begin(), one.rows.end(),
+                         [](const auto* a, const auto* b) { return a->solve_s < b->solve_s; });
+    }
+    return series;
+}
+
+/// A logarithmic axis over whole decades.
+struct Axis {
+    double low = std::numeric_limits<double>::max();
+    double high = 0.0;
+    double from = 0.0, to = 0.0;  ///< pixels
+
+    void include(double value)
+    {
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
+    void to_decades()
+    {
+        low = std::pow(10.0, std::floor(std::log10(low)));
+        high = std::max(10.0 * low, std::pow(10.0, std::ceil(std::log10(high))));
+    }
+    double at(double value) const
+    {
+        return from + (to - from) * std::log(value / low) / std::log(high / low);
+    }
+};
+
+/// RMSE against seconds of solving, log-log. Lower left is better.
+std::string plot_of(const Comparison& comparison)
+{
+    const std::vector<Series> series = series_of(comparison);
+    if (series.empty())
+        return "<p>No errors to plot: everything is open.</p>\n";
+    Axis x, y;
+    for (const Series& one : series) {
+        for (const CompareRow* row : one.rows) {
+            x.include(row->solve_s);
+            y.include(row->error.rmse);
+        }
+    }
+    x.to_decades();
+    y.to_decades();
+    x.from = 60;
+    x.to = 700;
+    y.from = 360;
+    y.to = 20;
+
+    const auto number = [](double value) { return fixed(value, 1); };
+    std::string svg = "<svg viewBox=\"0 0 860 410\" width=\"860\" role=\"img\">\n";
+    const auto line = [&](double x1, double y1, double x2, double y2, const char* color) {
+        svg += "<line x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) +
+               "\" y2=\"" + number(y2) + "\" stroke=\"" + color + "\"/>\n";
+    };
+    const auto text = [&](double px, double py, const char* anchor, const std::string& words) {
+        svg += "<text x=\"" + number(px) + "\" y=\"" + number(py) + "\" text-anchor=\"" + anchor +
+               "\">" + escaped(words) + "</text>\n";
+    };
+    for (double decade = x.low; decade < x.high * 1.01; decade *= 10.0) {
+        for (int i = 1; i < 10 && decade * i < x.high * 1.01; ++i)
+            line(x.at(decade * i), y.from, x.at(decade * i), y.to, i == 1 ? "#bbb" : "#eee");
+        text(x.at(decade), y.from + 16, "middle", exact(decade));
+    }
+    for (double decade = y.low; decade < y.high * 1.01; decade *= 10.0) {
+        for (int i = 1; i < 10 && decade * i < y.high * 1.01; ++i)
+            line(x.from, y.at(decade * i), x.to, y.at(decade * i), i == 1 ? "#bbb" : "#eee");
+        text(x.from - 6, y.at(decade) + 4, "end", exact(decade));
+    }
+    text(0.5 * (x.from + x.to), y.from + 38, "middle", "seconds of solving");
+    text(x.from, 12, "start", "RMSE");
+    double legend = y.to + 16;
+    for (const Series& one : series) {
+        std::string points;
+        for (const CompareRow* row : one.rows)
+            points += number(x.at(row->solve_s)) + ',' + number(y.at(row->error.rmse)) + ' ';
+        svg += "<polyline fill=\"none\" stroke-width=\"2\" stroke=\"" + one.color + "\" points=\"" +
+               points + "\"/>\n";
+        for (const CompareRow* row : one.rows) {
+            svg += "<circle r=\"4\" fill=\"" + one.color + "\" cx=\"" + number(x.at(row->solve_s)) +
+                   "\" cy=\"" + number(y.at(row->error.rmse)) + "\"><title>" +
+                   escaped(one.name + ", " + setting_of(row->settings) + ": RMSE " +
+                           fixed(row->error.rmse, 4) + ", " + fixed(row->solve_s, 4) + " s") +
+                   "</title></circle>\n";
+        }
+        svg += "<circle r=\"4\" fill=\"" + one.color + "\" cx=\"720\" cy=\"" + number(legend - 4) +
+               "\"/>\n";
+        text(730, legend, "start", one.name);
+        legend += 20;
+    }
+    return svg + "</svg>\n";
+}
+
+std::string row_of_cells(const std::vector<std::string>& cells, const char* tag)
+{
+    std::string html = "<tr>";
+    for (const std::string& cell : cells)
+        html += '<' + std::string(tag) + '>' + escaped(cell) + "</" + tag + '>';
+    return html + "</tr>\n";
+}
+
+std::string rows_html(const Comparison& comparison)
+{
+    std::string html = "<table>\n";
+    html += row_of_cells({"engine", "setting", "build s", "solve s", "µs/vertex", "RMSE", "bias",
+                          "p95", "max", "bent mean °", "bent p95 °", "Embree/ours", "with builds"},
+                         "th");
+    for (const CompareRow& row : comparison.rows) {
+        html += row_of_cells(
+            {name_of(row.settings.engine), setting_of(row.settings), fixed(row.build_s, 4),
+             fixed(row.solve_s, 4), fixed(row.us_per_vertex, 3), fixed(row.error.rmse, 4),
+             signed_fixed(row.error.bias, 4), fixed(row.error.p95, 4), fixed(row.error.max, 3),
+             fixed(row.error.bent_mean_deg, 2), fixed(row.error.bent_p95_deg, 2),
+             text_of(row.solve_ratio), text_of(row.total_ratio)},
+            "td");
+    }
+    return html + "</table>\n";
+}
+
+std::string worst_html(const Comparison& comparison)
+{
+    std::string html =
+        "<table>\n" +
+        row_of_cells({"engine", "worst vertex", "position", "occlusion", "by rays", "error"}, "th");
+    for (const CompareRow& row : comparison.rows) {
+        if (row.settings.engine == Engine::rays || row.settings.quality != kGood)
+            continue;
+        for (const WorstVertex& vertex : row.worst) {
+            const glm::dvec3 p = vertex.position;
+            html += row_of_cells(
+                {name_of(row.settings.engine) + ", " + setting_of(row.settings),
+                 std::to_string(vertex.vertex), exact(p.x) + ", " + exact(p.y) + ", " + exact(p.z),
+                 fixed(vertex.occlusion, 3), fixed(vertex.reference, 3),
+                 signed_fixed(vertex.occlusion - vertex.reference, 3)},
+                "td");
+        }
+    }
+    return html + "</table>\n";
+}
+
+std::string scene_html(const FrontierScene& scene)
+{
+    std::string html = "<h2>" + escaped(scene.input.filename().string()) + "</h2>\n";
+    if (!scene.comparison)
+        return html + "<p>Refused: " + escaped(scene.error) + "</p>\n";
+    const Comparison& comparison = *scene.comparison;
+    const Definition& definition = comparison.rows.front().settings.definition;
+    html += "<p>" + std::to_string(comparison.vertices) + " vertices, " +
+            std::to_string(comparison.triangles) + " triangles (" +
+            std::to_string(comparison.dropped_triangles) +
+            " without area dropped). Reference: " + std::to_string(comparison.reference_rays) +
+            " robust rays at " + std::to_string(comparison.judged) + " vertices, noise " +
+            fixed(comparison.reference_noise, 4) + "; " + std::to_string(comparison.ill_defined) +
+            " ill-defined and " + std::to_string(comparison.without_normal) +
+            " without a normal left out. " + std::to_string(comparison.threads) +
+            " threads, medians of " + std::to_string(comparison.rounds) + " rounds. Offset " +
+            exact(definition.offset) + ", distance limit " +
+            (std::isfinite(definition.max_distance) ? exact(definition.max_distance) : "none") +
+            (definition.falloff == Falloff::smooth ? " with smooth falloff" : "") +
+            " (in diagonals).</p>\n";
+    html += plot_of(comparison) + rows_html(comparison);
+    for (const auto& [caption, png] : scene.pictures) {
+        html += "<figure><img alt=\"" + escaped(caption) + "\" src=\"data:image/png;base64," +
+                base64(png) + "\"><figcaption>" + escaped(caption) + "</figcaption></figure>\n";
+    }
+    return html + worst_html(comparison);
+}
+
+std::string summary_html(const Frontier& frontier)
+{
+    std::string html =
+        "<h2>Summary</h2>\n<p>Embree's time over ours at equal RMSE, each side interpolated inside "
+        "its own family of settings; scenes where one side had to be extrapolated are left "
+        "out.</p>\n<table>\n";
+    html += row_of_cells({"engine", "at RMSE", "counted", "median", "quartiles", "worst", "best",
+                          "scenes", "left out"},
+                         "th");
+    for (const Engine engine : frontier.engines) {
+        for (const auto& [cost, words] :
+             {std::pair(Cost::solve, "solve"), std::pair(Cost::build, "with builds"),
+              std::pair(Cost::file, "with builds and file")}) {
+            for (const double rmse : kTargets) {
+                const RatioSummary s = summary_of(frontier, engine, rmse, cost);
+                const auto number = [&](double value) {
+                    return s.scenes > 0 ? fixed(value, 2) : std::string("-");
+                };
+                html += row_of_cells(
+                    {name_of(engine), fixed(rmse, 3), words, number(s.median),
+                     number(s.low_quartile) + " to " + number(s.high_quartile), number(s.worst),
+                     number(s.best), std::to_string(s.scenes), std::to_string(s.left_out)},
+                    "td");
+            }
+        }
+    }
+    return html + "</table>\n";
+}
+
+}  // namespace
+
+std::string html_of(const Frontier& frontier)
+{
+    std::string html =
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>surfelao: speed "
+        "against error</title>\n<style>" +
+        std::string(kStyle) +
+        "</style></head><body>\n<h1>Speed against error</h1>\n"
+        "<p>Occlusion at every vertex by point-based engines and by Embree in its strongest mode, "
+        "against many robust rays; all in one process on the same threads, in turns. In the "
+        "plots lower left is better. In the pictures red is too dark, blue too bright, full colour "
+        "at an error of " +
+        exact(kFullColorError) + ", grey not judged.</p>\n";
+    if (frontier.scenes.size() > 1)
+        html += summary_html(frontier);
+    for (const FrontierScene& scene : frontier.scenes)
+        html += scene_html(scene);
+    return html + "</body></html>\n";
+}
+
+}  // namespace surfelao
