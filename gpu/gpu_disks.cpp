@@ -70,8 +70,8 @@ Records make_records(const Octree& octree)
         for (std::uint32_t at = self + 1; at < next; at += kChunkRecords)
             result.chunks.emplace_back(self, at, std::min(at + kChunkRecords, next), 0);
         result.records[self] = {
-            node.center, node.radius,
-            node.normal, node.flat_area,
+            node.center, opening_size(node),
+            node.normal, node.flatness * node.area,
             next,        node.area,
             first_chunk, static_cast<std::uint32_t>(result.chunks.size()) - first_chunk};
         if (node.next != i + 1)

@@ -53,7 +53,7 @@ uniform int u_smooth;
 out vec4 out_sum;
 
 const float kPi         = 3.14159265358979;
-const float kTinyLength = 1e-12;
+const float kTinyLength = 1e-8;
 const float kNearDisk   = 1.0 / 9.0;
 
 void main()

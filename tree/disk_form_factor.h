@@ -58,8 +58,9 @@ struct DiskShape {
 /// Beyond this ratio of R^2 to d^2 the second-order term is left out: a disk at d < 3R.
 inline constexpr float kNearDisk = 1.0f / 9.0f;
 
-/// Lengths below this are zero, in diagonals: it keeps 1/d finite and is far below the offset.
-inline constexpr float kTinyLength = 1e-12f;
+/// Lengths below this are zero, in diagonals: it keeps 1/d^4 finite in float and is far below the
+/// offset, and below what floats resolve in a unit frame.
+inline constexpr float kTinyLength = 1e-8f;
 
 /// The unweighted form factor in [0, 1 + 1/9]; 0 below the horizon or, one-sided, from in front.
 [[nodiscard]] double disk_form_factor(Kernel kernel, const glm::dvec3& receiver,

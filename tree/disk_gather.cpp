@@ -6,7 +6,7 @@
 #include <numbers>
 
 // Three of Highway's instruction sets are enough: what every processor has, AVX2 and AVX-512.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tree/disk_gather.cpp"
 #include <hwy/foreach_target.h>
@@ -65,8 +65,11 @@ HWY_INLINE void add_disk(const Disk& disk, const Definition& definition, Sums& s
                     hn::Sub(hn::Set(tag, disk.center.y), sums.position.y),
                     hn::Sub(hn::Set(tag, disk.center.z), sums.position.z)};
     const Vec d2 = hn::Add(dot(c, c), hn::Set(tag, kTinyLength * kTinyLength));
-    const Vec inverse = hn::Div(one, hn::Sqrt(d2));
-    const Vec inverse2 = hn::Mul(inverse, inverse);
+    // one division for both 1 / d^2 and 1 / (d^2 + area / pi)
+    const Vec d2_and_area = hn::Add(d2, hn::Set(tag, disk.all));
+    const Vec reciprocal = hn::Div(one, hn::Mul(d2, d2_and_area));
+    const Vec inverse2 = hn::Mul(d2_and_area, reciprocal);
+    const Vec inverse = hn::Mul(hn::Sqrt(d2), inverse2);
     const Vec at_receiver = hn::Max(zero, hn::Mul(dot(c, sums.normal), inverse));
     const Vec at_disk = hn::Mul(dot(c, disk.normal), inverse);
     const Vec facing = kTwoSided ? hn::Abs(at_disk) : hn::Max(zero, at_disk);
@@ -84,11 +87,10 @@ HWY_INLINE void add_disk(const Disk& disk, const Definition& definition, Sums& s
         const Vec correction =
             hn::Add(hn::Mul(at_receiver, steep), hn::Mul(at_disk, dot(sums.normal, disk.normal)));
         const Vec height = hn::Max(zero, hn::Add(at_receiver, hn::Mul(second, correction)));
-        const Vec flat = hn::Mul(hn::Mul(x, facing), height);
-        const Vec spread = hn::Mul(hn::Mul(hn::Set(tag, disk.spread), inverse2), at_receiver);
-        const Vec all = hn::Add(one, hn::Mul(hn::Set(tag, disk.all), inverse2));
-        form_factor =
-            hn::IfThenElseZero(hn::Gt(at_receiver, zero), hn::Div(hn::Add(flat, spread), all));
+        const Vec flat = hn::Mul(hn::Mul(hn::Set(tag, disk.flat), facing), height);
+        const Vec spread = hn::Mul(hn::Set(tag, disk.spread), at_receiver);
+        form_factor = hn::Mul(hn::Add(flat, spread), hn::Mul(d2, reciprocal));
+        form_factor = hn::IfThenElseZero(hn::Gt(at_receiver, zero), form_factor);
     }
 
     Vec seen =
@@ -122,33 +124,175 @@ HWY_INLINE void add_disk(const Disk& disk, const Definition& definition, Sums& s
     sums.direction.z = hn::Add(sums.direction.z, hn::Mul(along, c.z));
 }
 
-/// The disks that one group sums up, as indices; kept between groups for its memory.
-struct DiskList {
-    std::vector<std::uint32_t> nodes;
-    std::vector<std::uint32_t> leaves;
+/// Indices that grow without a check per element: room() first, then write at end().
+struct IndexList {
+    std::vector<std::uint32_t> items;
+    std::size_t count = 0;
+
+    void room(std::size_t more)
+    {
+        if (count + more > items.size())
+            items.resize(2 * (count + more));
+    }
+    std::uint32_t* end() { return items.data() + count; }
 };
 
-/// Walks the tree once for the whole group, opening for its nearest receiver.
+/// The disks that one group sums up, and the queues that lead there; kept between groups for their
+/// memory.
+struct DiskList {
+    IndexList nodes;
+    IndexList surfels;
+    IndexList open_nodes;
+    IndexList near_surfels;
+};
+
+using IndexTag = hn::RebindToUnsigned<Tag>;
+using OffsetTag = hn::RebindToSigned<Tag>;
+using Indices = hn::Vec<IndexTag>;
+using Mask = hn::Mask<Tag>;
+
+/// The next indices of a queue; lanes from `count` on are 0 and not in `valid`.
+struct Batch {
+    std::size_t count;
+    Indices indices;
+    Mask valid;
+};
+
+HWY_INLINE Batch take_batch(IndexList& queue, std::size_t first)
+{
+    const Tag tag;
+    const IndexTag index_tag;
+    queue.room(hn::Lanes(tag));
+    const std::size_t count = std::min(queue.count - first, hn::Lanes(tag));
+    return {count,
+            hn::IfThenElseZero(hn::FirstN(index_tag, count),
+                               hn::LoadU(index_tag, queue.items.data() + first)),
+            hn::FirstN(tag, count)};
+}
+
+HWY_INLINE void append(IndexList& list, const Indices& indices, const Mask& mask)
+{
+    const IndexTag index_tag;
+    list.room(hn::Lanes(index_tag));
+    list.count +=
+        hn::CompressStore(indices, hn::RebindMask(index_tag, mask), index_tag, list.end());
+}
+
+/// One float of each of an array's elements: `field` points into the first, `stride` is in floats.
+HWY_INLINE Vec gather_field(const float* field, int stride, const Indices& indices)
+{
+    const OffsetTag offset_tag;
+    return hn::GatherIndex(Tag(), field,
+                           hn::Mul(hn::BitCast(offset_tag, indices), hn::Set(offset_tag, stride)));
+}
+
+HWY_INLINE Vec3 gather_field(const glm::vec3& field, int stride, const Indices& indices)
+{
+    return {gather_field(&field.x, stride, indices), gather_field(&field.y, stride, indices),
+            gather_field(&field.z, stride, indices)};
+}
+
+/// Where the balls at these offsets from the group's centre lie below every receiver's horizon
+/// (receiver_group.h: sag).
+HWY_INLINE Mask below_horizons(const ReceiverGroup& group, const Vec3& offset, const Vec& distance2,
+                               const Vec& radius)
+{
+    const Tag tag;
+    const Vec along = dot(offset, group.axis);
+    const Vec top = hn::Add(
+        hn::Add(hn::Mul(along, hn::Set(tag, group.cone_cos)), hn::Set(tag, group.sag)), radius);
+    const Vec across2 = hn::Sub(distance2, hn::Mul(along, along));
+    const Vec reach2 = hn::Mul(across2, hn::Set(tag, group.cone_sin * group.cone_sin));
+    return hn::And(hn::Lt(top, hn::Zero(tag)), hn::Lt(reach2, hn::Mul(top, top)));
+}
+
+HWY_INLINE Vec3 from_center(const ReceiverGroup& group, const Vec3& point)
+{
+    const Tag tag;
+    return {hn::Sub(point.x, hn::Set(tag, group.center.x)),
+            hn::Sub(point.y, hn::Set(tag, group.center.y)),
+            hn::Sub(point.z, hn::Set(tag, group.center.z))};
+}
+
+/// The children of an inner node, or the surfels of a leaf, to their queue.
+HWY_INLINE void open_node(const Octree& octree, std::uint32_t index, DiskList& list)
+{
+    const OctreeNode& node = octree.nodes[index];
+    if (node.next == index + 1) {
+        list.near_surfels.room(node.surfel_count);
+        for (std::uint32_t k = 0; k < node.surfel_count; ++k)
+            list.near_surfels.end()[k] = node.first_surfel + k;
+        list.near_surfels.count += node.surfel_count;
+        return;
+    }
+    list.open_nodes.room(8);
+    for (std::uint32_t child = index + 1; child < node.next; child = octree.nodes[child].next)
+        list.open_nodes.items[list.open_nodes.count++] = child;
+}
+
+/// Fills list.nodes and list.surfels. One walk for the whole group, breadth first: the order does
+/// not depend on how many nodes are tested at once.
 void list_disks(const Octree& octree, const ReceiverGroup& group, const GatherSettings& settings,
                 DiskList& list)
 {
-    list.nodes.clear();
-    list.leaves.clear();
-    const float reach = settings.definition.max_distance;
-    const auto count = static_cast<std::uint32_t>(octree.nodes.size());
-    for (std::uint32_t i = 0; i < count;) {
-        const OctreeNode& node = octree.nodes[i];
-        const float distance = glm::distance(node.center, group.center) - group.radius;
-        if (distance - node.radius > reach) {
-            i = node.next;
-        } else if (node.radius < settings.opening * distance) {
-            list.nodes.push_back(i);
-            i = node.next;
-        } else {
-            if (node.next == i + 1)
-                list.leaves.push_back(i);
-            ++i;
-        }
+    const Tag tag;
+    const IndexTag index_tag;
+    for (IndexList* each : {&list.nodes, &list.surfels, &list.open_nodes, &list.near_surfels})
+        each->count = 0;
+
+    // the roots of the two trees
+    list.open_nodes.room(2);
+    for (std::uint32_t root = 0; root < octree.nodes.size(); root = octree.nodes[root].next)
+        list.open_nodes.items[list.open_nodes.count++] = root;
+
+    const Vec one = hn::Set(tag, 1.0f);
+    const Vec group_radius = hn::Set(tag, group.radius);
+    const Vec reach = hn::Set(tag, settings.definition.max_distance + group.radius);
+    const Vec per_opening = hn::Set(tag, 1.0f / settings.opening);
+    constexpr int kNodeStride = sizeof(OctreeNode) / sizeof(float);
+    for (std::size_t at = 0; at < list.open_nodes.count;) {
+        const Batch batch = take_batch(list.open_nodes, at);
+        at += batch.count;
+        const OctreeNode& first = octree.nodes[0];
+        const Vec3 offset =
+            from_center(group, gather_field(first.center, kNodeStride, batch.indices));
+        const Vec radius = gather_field(&first.radius, kNodeStride, batch.indices);
+        const Vec flatness = gather_field(&first.flatness, kNodeStride, batch.indices);
+        const Vec distance2 = dot(offset, offset);
+        const Vec limit = hn::Add(reach, radius);
+        const Mask out = hn::Or(hn::Gt(distance2, hn::Mul(limit, limit)),
+                                below_horizons(group, offset, distance2, radius));
+        const Vec fold = hn::Mul(hn::Set(tag, kFoldPenalty), hn::Sub(one, flatness));
+        const Vec size = hn::Mul(radius, hn::Add(one, fold));
+        const Vec far = hn::Add(hn::Mul(size, per_opening), group_radius);
+        const Mask is_far = hn::Gt(distance2, hn::Mul(far, far));
+        const Mask alive = hn::AndNot(out, batch.valid);
+        append(list.nodes, batch.indices, hn::And(alive, is_far));
+
+        HWY_ALIGN std::uint32_t near[kGroupSize];
+        const std::size_t near_count = hn::CompressStore(
+            batch.indices, hn::RebindMask(index_tag, hn::AndNot(is_far, alive)), index_tag, near);
+        for (std::size_t i = 0; i < near_count; ++i)
+            open_node(octree, near[i], list);
+    }
+
+    const Vec behind = hn::Set(tag, -group.radius);
+    const std::uint32_t two_sided = settings.all_two_sided ? 0 : octree.two_sided_surfels;
+    constexpr int kSurfelStride = sizeof(Surfel) / sizeof(float);
+    for (std::size_t at = 0; at < list.near_surfels.count;) {
+        const Batch batch = take_batch(list.near_surfels, at);
+        at += batch.count;
+        const Surfel& first = octree.surfels[0];
+        const Vec3 offset =
+            from_center(group, gather_field(first.position, kSurfelStride, batch.indices));
+        const Vec3 normal = gather_field(first.normal, kSurfelStride, batch.indices);
+        // one-sided and facing all receivers: occludes none of them
+        const Mask one_sided =
+            hn::RebindMask(tag, hn::Lt(batch.indices, hn::Set(index_tag, two_sided)));
+        const Mask facing = hn::And(one_sided, hn::Lt(dot(offset, normal), behind));
+        const Mask out =
+            hn::Or(facing, below_horizons(group, offset, dot(offset, offset), hn::Zero(tag)));
+        append(list.surfels, batch.indices, hn::AndNot(out, batch.valid));
     }
 }
 
@@ -159,38 +303,33 @@ HWY_INLINE void add_list(const Octree& octree, const EmitterVisibility& visibili
     constexpr float kInvPi = std::numbers::inv_pi_v<float>;
     const std::uint32_t two_sided_nodes = settings.all_two_sided ? 0 : octree.two_sided_nodes;
     const std::uint32_t two_sided_surfels = settings.all_two_sided ? 0 : octree.two_sided_surfels;
-    for (const std::uint32_t i : list.nodes) {
+    for (std::size_t k = 0; k < list.nodes.count; ++k) {
+        const std::uint32_t i = list.nodes.items[k];
         const OctreeNode& node = octree.nodes[i];
-        const float rest = std::max(0.0f, node.area - node.flat_area) * kInvPi;
-        Disk disk = {node.center,
-                     node.normal,
-                     node.flat_area * kInvPi,
-                     node.area * kInvPi,
-                     0.25f * rest,
-                     &visibility.node_front[i],
+        const float all = node.area * kInvPi;
+        const float flat = node.flatness * all;
+        Disk disk = {node.center, node.normal,          flat,
+                     all,         0.25f * (all - flat), &visibility.node_front[i],
                      nullptr};
         if (i < two_sided_nodes) {
             add_disk<false, kBunnell, kLimited>(disk, settings.definition, sums);
         } else {
-            disk.spread = 0.5f * rest;
+            disk.spread = 0.5f * (all - flat);
             disk.back = &visibility.node_back[i];
             add_disk<true, kBunnell, kLimited>(disk, settings.definition, sums);
         }
     }
-    for (const std::uint32_t leaf : list.leaves) {
-        const std::uint32_t first = octree.nodes[leaf].first_surfel;
-        for (std::uint32_t s = first; s < first + octree.nodes[leaf].surfel_count; ++s) {
-            const Surfel& surfel = octree.surfels[s];
-            const float area = surfel.area * kInvPi;
-            Disk disk = {
-                surfel.position, surfel.normal, area, area, 0.0f, &visibility.surfel_front[s],
-                nullptr};
-            if (s < two_sided_surfels) {
-                add_disk<false, kBunnell, kLimited>(disk, settings.definition, sums);
-            } else {
-                disk.back = &visibility.surfel_back[s];
-                add_disk<true, kBunnell, kLimited>(disk, settings.definition, sums);
-            }
+    for (std::size_t k = 0; k < list.surfels.count; ++k) {
+        const std::uint32_t s = list.surfels.items[k];
+        const Surfel& surfel = octree.surfels[s];
+        const float area = surfel.area * kInvPi;
+        Disk disk = {surfel.position, surfel.normal, area, area, 0.0f, &visibility.surfel_front[s],
+                     nullptr};
+        if (s < two_sided_surfels) {
+            add_disk<false, kBunnell, kLimited>(disk, settings.definition, sums);
+        } else {
+            disk.back = &visibility.surfel_back[s];
+            add_disk<true, kBunnell, kLimited>(disk, settings.definition, sums);
         }
     }
 }

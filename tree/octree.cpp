@@ -141,7 +141,7 @@ void aggregate(const Octree& octree, OctreeNode& node)
     const double flat_area = glm::length(vector_area);
     if (flat_area > 0.0)
         node.normal = glm::vec3(vector_area / flat_area);
-    node.flat_area = static_cast<float>(flat_area);
+    node.flatness = static_cast<float>(std::min(1.0, flat_area / area));
     node.area = static_cast<float>(area);
     for (const Surfel& surfel : surfels) {
         const float rim = std::sqrt(surfel.area * std::numbers::inv_pi_v<float>);

@@ -8,6 +8,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace surfelao {
 namespace {
@@ -20,6 +22,20 @@ void set_lane(ReceiverGroup& group, std::uint32_t lane, std::uint32_t index,
         group.normal[axis][lane] = receiver.normal[axis];
     }
     group.receiver[lane] = index;
+}
+
+/// The cone about the mean of the normals.
+void bound_normals(ReceiverGroup& group, const glm::vec3& sum, std::span<const Receiver> receivers)
+{
+    float cone_cos = 1.0f;
+    if (sum != glm::vec3(0.0f))
+        group.axis = glm::normalize(sum);
+    for (std::uint32_t lane = 0; lane < group.count; ++lane)
+        cone_cos = std::min(cone_cos, glm::dot(group.axis, receivers[group.receiver[lane]].normal));
+    if (cone_cos <= 0.0f)
+        group.sag = std::numeric_limits<float>::infinity();
+    group.cone_cos = std::max(0.0f, cone_cos);
+    group.cone_sin = std::sqrt(std::max(0.0f, 1.0f - group.cone_cos * group.cone_cos));
 }
 
 }  // namespace
@@ -53,10 +69,15 @@ std::vector<ReceiverGroup> group_receivers(std::span<const Receiver> receivers)
             high = glm::max(high, positions[at]);
         }
         group.center = 0.5f * (low + high);
-        for (std::uint32_t lane = 0; lane < group.count; ++lane)
-            group.radius =
-                std::max(group.radius,
-                         glm::distance(group.center, receivers[group.receiver[lane]].position));
+        glm::vec3 sum(0.0f);
+        for (std::uint32_t lane = 0; lane < group.count; ++lane) {
+            const Receiver& receiver = receivers[group.receiver[lane]];
+            const glm::vec3 to_center = group.center - receiver.position;
+            group.radius = std::max(group.radius, glm::length(to_center));
+            group.sag = std::max(group.sag, glm::dot(receiver.normal, to_center));
+            sum += receiver.normal;
+        }
+        bound_normals(group, sum, receivers);
     });
     return groups;
 }

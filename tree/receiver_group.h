@@ -27,6 +27,14 @@ struct alignas(64) ReceiverGroup {
     std::uint32_t count = 0;                         ///< 1 to 16 lanes stand for a receiver
     glm::vec3 center{0.0f};                          ///< the ball that holds all positions
     float radius = 0.0f;
+    glm::vec3 axis{0.0f};   ///< of the cone that holds all normals
+    float cone_cos = 0.0f;  ///< of the cone's half angle
+    float cone_sin = 0.0f;
+    /// >= 0: `center` is nowhere higher than that above a receiver's tangent plane. With v from
+    /// `center` to a point, along = dot(v, axis) and across = |v - along * axis|, no receiver has
+    /// the point higher above its tangent plane than along * cone_cos + across * cone_sin + sag.
+    /// Infinite where the normals spread over a right angle or more to the axis.
+    float sag = 0.0f;
 };
 
 /// Every receiver that has a normal, in exactly one lane. O(n log n), all cores, same bytes for any

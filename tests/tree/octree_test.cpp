@@ -91,7 +91,7 @@ TEST(Octree, EveryNodeHoldsItsDisksAndSumsTheirAreas)
         }
         // one rounding to float of sums that were made in double
         ASSERT_NEAR(node.area, area, 1e-6 * area);
-        ASSERT_NEAR(glm::distance(glm::dvec3(node.flat_area * node.normal), vector_area), 0.0,
+        ASSERT_NEAR(glm::distance(glm::dvec3(node.flatness * node.area * node.normal), vector_area), 0.0,
                     1e-6 * area);
     }
 }
@@ -157,7 +157,7 @@ TEST(Octree, NormalsThatCancelLeaveNoFlatArea)
     const std::vector<Surfel> surfels = {{{0, 0, 0}, 1.0f, kUp, 0.0f},
                                          {{0, 0, 0}, 1.0f, -kUp, 0.0f}};
     const Octree octree = build_octree(surfels);
-    EXPECT_EQ(octree.nodes[0].flat_area, 0.0f);
+    EXPECT_EQ(octree.nodes[0].flatness, 0.0f);
     EXPECT_EQ(octree.nodes[0].normal, glm::vec3(0.0f));
     EXPECT_EQ(octree.nodes[0].area, 2.0f);
 }
