@@ -115,7 +115,7 @@ struct GlContext::Impl {
 
     void release() const
     {
-        if (current_platform != platform.get())
+        if (platform == nullptr || current_platform != platform.get())
             return;
         platform->release();
         current_platform = nullptr;

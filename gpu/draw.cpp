@@ -83,4 +83,23 @@ void draw_fullscreen(const Framebuffer& target, const Program& program, const Ve
     draw(target, program, empty, {.count = 3}, state);
 }
 
+bool any_fragment(const Framebuffer& target, const Program& program, const VertexArray& empty,
+                  const DrawState& state)
+{
+    const GlTable& gl = target.gl();
+    GLuint id = 0;
+    gl.GenQueries(1, &id);
+    const GlHandle query(
+        gl, id, [](const GlTable& table, unsigned name) { table.DeleteQueries(1, &name); });
+    DrawState uncoloured = state;
+    uncoloured.write_color = false;
+    gl.BeginQuery(GL_ANY_SAMPLES_PASSED, query.id());
+    draw_fullscreen(target, program, empty, uncoloured);
+    gl.EndQuery(GL_ANY_SAMPLES_PASSED);
+    GLuint passed = GL_FALSE;
+    gl.GetQueryObjectuiv(query.id(), GL_QUERY_RESULT, &passed);
+    check_gl(gl, "asking for fragments");
+    return passed != GL_FALSE;
+}
+
 }  // namespace surfelao

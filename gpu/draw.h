@@ -51,4 +51,8 @@ void draw(const Framebuffer& target, const Program& program, const VertexArray& 
 void draw_fullscreen(const Framebuffer& target, const Program& program, const VertexArray& empty,
                      const DrawState& state = {});
 
+/// Draws the same, writing no colour, and tells whether any fragment was not discarded. Waits.
+[[nodiscard]] bool any_fragment(const Framebuffer& target, const Program& program,
+                                const VertexArray& empty, const DrawState& state = {});
+
 }  // namespace surfelao

@@ -19,7 +19,7 @@ namespace surfelao {
 namespace {
 
 /// Records of one chunk of disks_average_chunks.frag.
-constexpr std::uint32_t kChunkRecords = 256;
+constexpr std::uint32_t kChunkRecords = 1024;
 
 /// As shaders/disk_record.glsl says.
 struct Record {
@@ -35,6 +35,10 @@ struct Record {
 static_assert(sizeof(Record) == 48);
 
 constexpr float kSurfelRadius = -1.0f;
+
+/// Records that a receiver looks at in one draw: far below what any driver ends loops at, and more
+/// than nearly all receivers need.
+constexpr int kStepLimit = 16384;
 
 /// Neighbours that row_sums.frag adds up.
 constexpr int kRowSumTerms = 64;
@@ -206,7 +210,8 @@ private:
             program.set("u_max_distance", max_distance);
             program.set("u_smooth", options_.definition.falloff == Falloff::smooth ? 1 : 0);
         }
-        grid.compute(program, meter);
+        program.set("u_step_limit", kStepLimit);
+        grid.compute(program, static_cast<std::uint32_t>(records_.records.size()), meter);
     }
 
     /// From the sums in the side's grid. Returns the sum of the squared changes.

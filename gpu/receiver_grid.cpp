@@ -41,6 +41,13 @@ int square_side(std::uint64_t blocks)
     return std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(blocks)))));
 }
 
+Framebuffer make_target(const GlContext& context, int side)
+{
+    return Framebuffer(
+        context,
+        {.width = side, .height = side, .colors = {TexelFormat::rgba32f, TexelFormat::r32ui}});
+}
+
 std::uint64_t divide_up(std::uint64_t a, std::uint64_t b)
 {
     return (a + b - 1) / b;
@@ -67,13 +74,32 @@ ReceiverGrid::ReceiverGrid(const GlContext& context, std::span<const ReceiverGro
                  std::span<const glm::vec4>(receiver_texels(groups))),
       groups_(context, TexelFormat::rgba32f, std::span<const glm::vec4>(group_texels(groups))),
       empty_(context),
-      target_(context, {.width = blocks_per_row_ * kBlockSide,
-                        .height = blocks_per_row_ * kBlockSide,
-                        .colors = {TexelFormat::rgba32f}})
+      targets_{make_target(context, blocks_per_row_ * kBlockSide),
+               make_target(context, blocks_per_row_ * kBlockSide)}
 {
 }
 
-void ReceiverGrid::compute(Program& program, ProgressMeter& meter)
+void ReceiverGrid::compute_piece(Program& program, std::uint32_t end, const Rect& piece)
+{
+    Program& unfinished = context_->program("fullscreen.vert", "unfinished.frag");
+    unfinished.set("u_end", end);
+    const DrawState state = {.scissor = piece};
+    std::size_t latest = 1;
+    bool more = true;
+    for (int continued = 0; more; continued = 1) {
+        program.set("u_sums", targets_[latest].color(0));
+        program.set("u_at", targets_[latest].color(1));
+        program.set("u_continued", continued);
+        latest = 1 - latest;
+        draw_fullscreen(targets_[latest], program, empty_, state);
+        unfinished.set("u_at", targets_[latest].color(1));
+        // what is done is only copied by a further draw: one more brings the end to the first
+        // target
+        more = any_fragment(targets_[1 - latest], unfinished, empty_, state) || latest != 0;
+    }
+}
+
+void ReceiverGrid::compute(Program& program, std::uint32_t end, ProgressMeter& meter)
 {
     using Clock = std::chrono::steady_clock;
     program.set("u_receivers", receivers_);
@@ -94,13 +120,13 @@ void ReceiverGrid::compute(Program& program, ProgressMeter& meter)
             static_cast<int>(column) * kBlockSide, static_cast<int>(first / row) * kBlockSide,
             static_cast<int>(columns) * kBlockSide, static_cast<int>(rows) * kBlockSide};
         const Clock::time_point start = Clock::now();
-        draw_fullscreen(target_, program, empty_, {.scissor = piece});
+        compute_piece(program, end, piece);
         context_->finish("computing occlusion");
         const std::chrono::duration<double> seconds = Clock::now() - start;
 
-        const std::uint64_t end = std::min(first + rows * columns, block_count);
-        meter.add(std::min(end * kBlockGroups, group_count_) - first * kBlockGroups);
-        first = end;
+        const std::uint64_t next = std::min(first + rows * columns, block_count);
+        meter.add(std::min(next * kBlockGroups, group_count_) - first * kBlockGroups);
+        first = next;
         const double growth = kPieceSeconds / std::max(seconds.count(), 1e-6);
         wanted = std::clamp(wanted * std::min(growth, kMaxGrowth), 1.0, 1e9);
     }

@@ -1,9 +1,10 @@
 /// receiver_grid.h: receivers as the pixels of a picture, computed one piece at a time.
 ///
 /// A fragment shader that computes one value per receiver finds it by slot_at_pixel() of
-/// shaders/receiver_grid.glsl: slot = 16 * group + lane. The pieces are sized by the clock, so that
-/// no draw is long enough for a driver's watchdog (often two seconds), and progress and cancelling
-/// stay prompt. The sizes change nothing in the results.
+/// shaders/receiver_grid.glsl: slot = 16 * group + lane. Work is cut twice, so that no draw is long
+/// enough for a driver's watchdog (often two seconds), and progress and cancelling stay prompt:
+/// into pieces of the picture, sized by the clock, and within a piece into draws of so many steps
+/// along the list of things that each receiver looks at. The cuts change nothing in the results.
 #pragma once
 
 #include "gpu/draw.h"
@@ -12,6 +13,7 @@
 #include "surfels/progress.h"
 #include "tree/receiver_group.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -30,18 +32,21 @@ public:
     /// Throws std::runtime_error when the device cannot hold so many.
     ReceiverGrid(const GlContext& context, std::span<const ReceiverGroup> groups);
 
-    /// Runs the program over all slots and counts finished groups into `meter`. Sets the program's
-    /// u_receivers, u_groups, u_slot_count and u_blocks_per_row. Throws Cancelled.
-    void compute(Program& program, ProgressMeter& meter);
+    /// Runs the program over all slots and counts finished groups into `meter`. Each receiver goes
+    /// along a list that ends at `end`. Sets the program's u_receivers, u_groups, u_slot_count,
+    /// u_blocks_per_row and, for going on where the last draw stopped, u_sums, u_at, u_continued
+    /// (disks_gather.frag). Throws Cancelled.
+    void compute(Program& program, std::uint32_t end, ProgressMeter& meter);
 
     /// What compute() found, RGBA32F, at pixel_of_slot().
-    const Texture2D& values() const { return target_.color(); }
+    const Texture2D& values() const { return targets_[0].color(); }
     int blocks_per_row() const { return blocks_per_row_; }
 
     /// RGBA32F, 2 texels a slot: position.xyz 0 | normal.xyz 0
     const TextureBuffer& receivers() const { return receivers_; }
 
 private:
+    void compute_piece(Program& program, std::uint32_t end, const Rect& piece);
     static constexpr int kBlockSide = 32;
     static constexpr std::uint64_t kBlockGroups = kBlockSide * kBlockSide / kGroupSize;
     const GlContext* context_;
@@ -50,7 +55,7 @@ private:
     TextureBuffer receivers_;
     TextureBuffer groups_;
     VertexArray empty_;
-    Framebuffer target_;
+    std::array<Framebuffer, 2> targets_;  ///< value and place in the list; by turns
 };
 
 }  // namespace surfelao

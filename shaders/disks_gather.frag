@@ -4,6 +4,10 @@
 #include "rows.glsl"
 // disks_gather.frag: one fragment is one receiver; it walks the octree and sums what each disk covers.
 //
+// A draw takes a bounded number of steps and leaves off where it stands, for the next draw to go on:
+// no single draw is long, whatever the scene, and llvmpipe ends every loop, without a word, once a
+// shader has gone round 65,535 times.
+//
 // Vertices     fullscreen.vert
 // Drawn by     gpu/gpu_disks.cpp, in pieces (gpu/receiver_grid.h)
 // Definitions  TWO_SIDED LIMITED BUNNELL: 0 or 1. Some surfels occlude from both sides; max_distance
@@ -17,10 +21,14 @@
 //              u_receivers       RGBA32F, 2 texels a slot: position.xyz 0 | normal.xyz 0
 //              u_groups          RGBA32F, 1 texel a group of 16 slots: center.xyz radius
 //              u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
+//              u_sums, u_at      out_sum and out_at of the draw before
+//              u_continued       0: there was none
+//              u_step_limit      records looked at in one draw; each may go round two loops
 //              u_opening         as DiskOptions::opening
 //              u_max_distance    in diagonals                                   (LIMITED)
 //              u_smooth          1: Falloff::smooth, 0: none                    (LIMITED)
 // Writes       out_sum           RGBA32F: sum of form factors times direction | sum of form factors
+//              out_at            R32UI: record to go on with; u_record_count or more: done
 // CPU twin     tree/disk_gather.cpp; formulas: tree/disk_form_factor.h;
 //              tests/gpu/gpu_disks_test.cpp holds them together
 #ifndef TWO_SIDED
@@ -40,6 +48,10 @@ uniform samplerBuffer u_receivers;
 uniform samplerBuffer u_groups;
 uniform int u_slot_count;
 uniform int u_blocks_per_row;
+uniform sampler2D u_sums;
+uniform usampler2D u_at;
+uniform int u_continued;
+uniform int u_step_limit;
 uniform float u_opening;
 #if TWO_SIDED
 uniform int u_two_sided_from;
@@ -50,7 +62,8 @@ uniform float u_max_distance;
 uniform int u_smooth;
 #endif
 
-out vec4 out_sum;
+layout(location = 0) out vec4 out_sum;
+layout(location = 1) out uint out_at;
 
 const float kPi         = 3.14159265358979;
 const float kTinyLength = 1e-8;
@@ -59,21 +72,25 @@ const float kNearDisk   = 1.0 / 9.0;
 void main()
 {
     out_sum = vec4(0.0);
-    int slot = slot_at_pixel(ivec2(gl_FragCoord.xy), u_blocks_per_row);
+    out_at  = 0xFFFFFFFFu;
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    int   slot  = slot_at_pixel(pixel, u_blocks_per_row);
     if (slot >= u_slot_count)
         return;
     vec3 position = texelFetch(u_receivers, slot * 2).xyz;
     vec3 normal   = texelFetch(u_receivers, slot * 2 + 1).xyz;
     vec4 group    = texelFetch(u_groups, slot / 16);
 
-    vec4 sum = vec4(0.0);
-    int  at  = 0;
-    while (at < u_record_count) {
+    vec4 sum = u_continued != 0 ? texelFetch(u_sums, pixel, 0) : vec4(0.0);
+    int  at  = u_continued != 0 ? int(texelFetch(u_at, pixel, 0).x) : 0;
+    int  steps = 0;
+    while (at < u_record_count && steps < u_step_limit) {
         // the short loop: to the next record that counts as one disk. All receivers of a group take
         // the same way, and open for the nearest place where one of them could be
         vec4 ball;
         bool found = false;
         do {
+            ++steps;
             ball           = fetch_ball(u_records, at);
             float distance = length(ball.xyz - group.xyz) - group.w;
 #if LIMITED
@@ -84,7 +101,7 @@ void main()
 #endif
             found = ball.w < u_opening * distance || ball.w < 0.0;
             at += found ? 0 : 1;
-        } while (!found && at < u_record_count);
+        } while (!found && at < u_record_count && steps < u_step_limit);
         if (!found)
             break;
 
@@ -134,4 +151,5 @@ void main()
         at = int(links.x);
     }
     out_sum = sum;
+    out_at  = uint(at);
 }

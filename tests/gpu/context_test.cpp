@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -147,6 +149,23 @@ TEST(GlContext, AContextWithoutTheFunctionsIsRefusedByName)
     const std::string message = message_of([&] { static_cast<void>(GlContext::adopt(foreign)); });
     EXPECT_NE(message.find("window has no function gl"), std::string::npos) << message;
     EXPECT_NE(message.find("OpenGL 3.3 is needed"), std::string::npos) << message;
+}
+
+// In a process of its own, where EGL finds no driver and no display.
+TEST(GlContextDeathTest, NoDriverIsAnErrorThatSaysWhatWasTried)
+{
+    testing::FLAGS_gtest_death_test_style = "threadsafe";
+    EXPECT_EXIT(
+        {
+            setenv("LIBGL_DRIVERS_PATH", "/nowhere", 1);
+            unsetenv("DISPLAY");
+            const std::string message =
+                message_of([] { static_cast<void>(GlContext::create(GlBackend::egl)); });
+            std::fprintf(stderr, "%s\n", message.c_str());
+            std::exit(1);
+        },
+        testing::ExitedWithCode(1),
+        "no OpenGL context can be had: EGL surfaceless: .*; EGL default display: ");
 }
 
 TEST(GlContext, ALostDeviceIsAnErrorThatNamesTheWork)
