@@ -1,0 +1,606 @@
+/// mask_kernel_body.h: the text of the mask kernels, compiled once per instruction set.
+///
+/// Read in this order: bits of one polygon (draw), lists of polygons (Stream), which nodes (walk),
+/// what a mask is worth (sums, fill), one group (solve).
+#pragma once
+
+#include "tree/mask_kernel.h"
+#include "tree/mask_raster.h"
+#include "tree/mask_simd.h"
+
+namespace surfelao::SURFELAO_MASK_ISA {
+namespace {
+
+constexpr float kImportanceFloor = 0.1f;   ///< directions weigh at least this in the opening tests
+constexpr float kFillFrom = 0.4f;          ///< no filling below this occlusion ...
+constexpr float kFillRange = 0.5f;         ///< ... and full weight this much above
+constexpr float kTinyComponent = 1e-30f;   ///< stands for 0 in divisions; edge normals are above 1e-20
+
+struct Vector16 {
+    Float16 x, y, z;
+};
+
+SURFELAO_MASK_INLINE Vector16 operator-(Vector16 a, Vector16 b)
+{
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+SURFELAO_MASK_INLINE Vector16 operator+(Vector16 a, Vector16 b)
+{
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+SURFELAO_MASK_INLINE Float16 dot(Vector16 a, Vector16 b)
+{
+    return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
+}
+SURFELAO_MASK_INLINE Vector16 cross(Vector16 a, Vector16 b)
+{
+    return {fms(a.y, b.z, a.z * b.y), fms(a.z, b.x, a.x * b.z), fms(a.x, b.y, a.y * b.x)};
+}
+SURFELAO_MASK_INLINE Vector16 broadcast(const float* v)
+{
+    return {all(v[0]), all(v[1]), all(v[2])};
+}
+SURFELAO_MASK_INLINE Int16 sign_of(Float16 a) { return as_int(a) & all(0x80000000u); }
+SURFELAO_MASK_INLINE Float16 flip(Float16 a, Int16 sign) { return as_float(as_int(a) ^ sign); }
+SURFELAO_MASK_INLINE Lanes negative(Int16 a) { return nonzero(a & all(0x80000000u)); }
+
+// --- one polygon ---
+
+/// The bits on one side of an edge, for the 16 rows of one face: those with n.d >= 0, where
+/// n.d = na + nu u + nv v. From bit ceil(slope v + start - shift) up where nu > 0, else the others.
+struct Edge {
+    float slope, start;
+    std::uint32_t below;  ///< ~0 where the bits below are meant
+};
+
+SURFELAO_MASK_INLINE Int16 row_bits(const MaskRaster& raster, float slope, float start)
+{
+    return bits_from(fma(all(slope), load(raster.row_v), all(start) - load(raster.row_shift)));
+}
+
+/// Sixteen polygons at once up to the edges, then each by itself, 16 rows at a time.
+/// corner: 3 kCorners rows of `kStride` floats, relative to the receiver; target: word offset of the
+/// receiver's mask in `masks`.
+template <int kCorners, int kStride>
+void draw(const MaskRaster& raster, const float* corner, const std::uint32_t* target, unsigned count,
+          std::uint32_t* masks)
+{
+    Vector16 c[kCorners];
+    for (int i = 0; i < kCorners; ++i) {
+        c[i] = {load(corner + (3 * i) * kStride), load(corner + (3 * i + 1) * kStride),
+                load(corner + (3 * i + 2) * kStride)};
+    }
+
+    // planes through the receiver and each edge, turned inward
+    Vector16 n[kCorners];
+    for (int i = 0; i < kCorners; ++i)
+        n[i] = cross(c[i], c[(i + 1) % kCorners]);
+    const Float16 volume = dot(n[0], c[2]);
+    const Int16 turn = sign_of(volume);
+    for (int i = 0; i < kCorners; ++i)
+        n[i] = {flip(n[i].x, turn), flip(n[i].y, turn), flip(n[i].z, turn)};
+
+    // a face is missed where all corners lie beyond one of the four diagonal planes that bound it
+    const auto beyond = [&](auto difference, Int16& all_negative, Int16& any_negative) {
+        all_negative = any_negative = as_int(difference(c[0]));
+        for (int i = 1; i < kCorners; ++i) {
+            const Int16 d = as_int(difference(c[i]));
+            all_negative = all_negative & d;
+            any_negative = any_negative | d;
+        }
+    };
+    Int16 all_dxy, any_dxy, all_sxy, any_sxy, all_dyz, any_dyz, all_syz, any_syz, all_dzx, any_dzx,
+        all_szx, any_szx;
+    beyond([](Vector16 p) { return p.x - p.y; }, all_dxy, any_dxy);
+    beyond([](Vector16 p) { return p.x + p.y; }, all_sxy, any_sxy);
+    beyond([](Vector16 p) { return p.y - p.z; }, all_dyz, any_dyz);
+    beyond([](Vector16 p) { return p.y + p.z; }, all_syz, any_syz);
+    beyond([](Vector16 p) { return p.z - p.x; }, all_dzx, any_dzx);
+    beyond([](Vector16 p) { return p.z + p.x; }, all_szx, any_szx);
+    const Lanes drawn = first_lanes(count) & (nonzero(as_int(volume) & all(0x7fffffffu)));
+    Lanes in[6] = {without(drawn, negative(all_dxy | all_sxy | ~any_dzx | all_szx)),
+                   without(drawn, negative(~any_sxy | ~any_dxy | all_dzx | ~any_szx)),
+                   without(drawn, negative(~any_dxy | all_sxy | all_dyz | all_syz)),
+                   without(drawn, negative(all_dxy | ~any_sxy | ~any_dyz | ~any_syz)),
+                   without(drawn, negative(all_dzx | all_szx | ~any_dyz | all_syz)),
+                   without(drawn, negative(~any_dzx | ~any_szx | all_dyz | ~any_syz))};
+
+    alignas(64) float slope[kCorners][kLanes];
+    alignas(64) float start[kCorners][kLanes];
+    alignas(64) std::uint32_t below[kCorners][kLanes];
+    alignas(64) std::uint32_t words[kLanes];
+    const Float16 row_v = load(raster.row_v);
+    const Float16 row_shift = load(raster.row_shift);
+
+    // each round takes one face of every lane that has one left
+    for (;;) {
+        Lanes take[6];
+        Lanes left = drawn;
+        for (int f = 0; f < 6; ++f) {
+            take[f] = in[f] & left;
+            left = without(left, take[f]);
+            in[f] = without(in[f], take[f]);
+        }
+        unsigned lanes = bits(without(drawn, left));
+        if (lanes == 0)
+            break;
+        const Lanes on_x = take[0] | take[1];
+        const Lanes on_y = take[2] | take[3];
+        const Int16 backward = select(take[1] | take[3] | take[5], all(0x80000000u), all(0u));
+        Int16 face_word = select(on_x, all(0u), select(on_y, all(32u), all(64u)));
+        face_word = face_word | shift_right<27>(backward);
+        store(words, load(target) | face_word);
+        for (int i = 0; i < kCorners; ++i) {
+            const Float16 na = flip(select(on_x, n[i].x, select(on_y, n[i].y, n[i].z)), backward);
+            const Float16 nu = select(on_x, n[i].y, select(on_y, n[i].z, n[i].x));
+            const Float16 nv = select(on_x, n[i].z, select(on_y, n[i].x, n[i].y));
+            const Int16 sign = sign_of(nu);
+            const Float16 size = max(flip(nu, sign), all(kTinyComponent));
+            const Float16 scale = flip(reciprocal(size) * all(-16.0f), sign);
+            store(slope[i], nv * scale);
+            store(start[i], fma(na, scale, all(16.0f)));
+            store(below[i], select(nonzero(sign), all(~0u), all(0u)));
+        }
+        while (lanes != 0) {
+            const int lane = __builtin_ctz(lanes);
+            lanes &= lanes - 1;
+            Int16 inside = all(~0u);
+            for (int i = 0; i < kCorners; ++i) {
+                const Int16 from =
+                    bits_from(fma(all(slope[i][lane]), row_v, all(start[i][lane])) - row_shift);
+                inside = and_xor(inside, from, all(below[i][lane]));
+            }
+            std::uint32_t* face = masks + words[lane];
+            store(face, load(face) | inside);
+        }
+    }
+}
+
+/// Collects polygons of any receivers until 16 can be drawn at once.
+template <int kCorners>
+class Stream {
+public:
+    Stream(const MaskRaster& raster, std::uint32_t* masks) : raster_(raster), masks_(masks) {}
+
+    /// corner: relative to the receiver whose mask begins at masks[target].
+    SURFELAO_MASK_INLINE void add(const Vector16* corner, std::uint32_t target, Lanes chosen)
+    {
+        for (int i = 0; i < kCorners; ++i) {
+            store(corner_[3 * i] + count_, pack(corner[i].x, chosen));
+            store(corner_[3 * i + 1] + count_, pack(corner[i].y, chosen));
+            store(corner_[3 * i + 2] + count_, pack(corner[i].z, chosen));
+        }
+        store(target_ + count_, all(target));
+        count_ += static_cast<unsigned>(__builtin_popcount(bits(chosen)));
+        if (count_ >= kLanes) {
+            draw<kCorners, 2 * kLanes>(raster_, corner_[0], target_, kLanes, masks_);
+            for (int i = 0; i < 3 * kCorners; ++i)
+                store(corner_[i], load(corner_[i] + kLanes));
+            store(target_, load(target_ + kLanes));
+            count_ -= kLanes;
+        }
+    }
+
+    void finish()
+    {
+        if (count_ > 0)
+            draw<kCorners, 2 * kLanes>(raster_, corner_[0], target_, count_, masks_);
+        count_ = 0;
+    }
+
+private:
+    const MaskRaster& raster_;
+    std::uint32_t* masks_;
+    unsigned count_ = 0;
+    alignas(64) float corner_[3 * kCorners][2 * kLanes] = {};
+    alignas(64) std::uint32_t target_[2 * kLanes] = {};
+};
+
+// --- which nodes ---
+
+/// MaskNode as columns.
+struct Node16 {
+    Float16 field[16];
+
+    Vector16 center() const { return {field[0], field[1], field[2]}; }
+    Float16 radius() const { return field[3]; }
+    Vector16 normal() const { return {field[4], field[5], field[6]}; }
+    Float16 thickness() const { return field[7]; }
+    Vector16 axis_u() const { return {field[8], field[9], field[10]}; }
+    Float16 open_radius() const { return field[11]; }
+    Vector16 axis_v() const { return {field[12], field[13], field[14]}; }
+    Int16 first_child() const { return as_int(field[15]); }
+
+    SURFELAO_MASK_INLINE void quad(Vector16 origin, Vector16* corner) const
+    {
+        const Vector16 c = center() - origin;
+        const Vector16 sum = axis_u() + axis_v();
+        const Vector16 difference = axis_u() - axis_v();
+        corner[0] = c + sum;
+        corner[1] = c - difference;
+        corner[2] = c - sum;
+        corner[3] = c + difference;
+    }
+    SURFELAO_MASK_INLINE void triangle(Vector16 origin, Vector16* corner) const
+    {
+        const Vector16 c = center() - origin;
+        corner[0] = c + axis_u();
+        corner[1] = c + axis_v();
+        corner[2] = c - (axis_u() + axis_v());
+    }
+};
+
+SURFELAO_MASK_INLINE void append(MaskBuffer<std::uint32_t>& list, Int16 index, Lanes chosen)
+{
+    reserve(list, list.count + kLanes);
+    store(list.data + list.count, pack(index, chosen));
+    list.count += static_cast<unsigned>(__builtin_popcount(bits(chosen)));
+}
+
+/// Chunks of 16 polygons, 3 kCorners rows of 16 floats each.
+template <int kCorners>
+SURFELAO_MASK_INLINE void append(MaskBuffer<float>& list, const Vector16* corner, Lanes chosen)
+{
+    constexpr std::size_t kChunk = 3 * kCorners * kLanes;
+    const auto added = static_cast<unsigned>(__builtin_popcount(bits(chosen)));
+    if (added == 0)
+        return;
+    reserve(list, (list.count / kLanes + 2) * kChunk);
+    const unsigned at = static_cast<unsigned>(list.count % kLanes);
+    float* chunk = list.data + list.count / kLanes * kChunk;
+    alignas(64) float spill[2 * kLanes];
+    for (int i = 0; i < 3 * kCorners; ++i) {
+        const Vector16& p = corner[i / 3];
+        const Float16 packed = pack(i % 3 == 0 ? p.x : i % 3 == 1 ? p.y : p.z, chosen);
+        float* row = chunk + i * kLanes;
+        store(spill, load(row));
+        store(spill + at, packed);
+        store(row, load(spill));
+        if (at + added > kLanes)
+            store(row + kChunk, load(spill + kLanes));
+    }
+    list.count += added;
+}
+
+/// From the top of scratch.frontier until it is empty: far nodes are drawn into the group's mask;
+/// a leaf group lists the rest as polygons, an inner group hands it down.
+template <bool kLeaf>
+void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32_t>* out,
+          std::uint32_t* mask, MaskScratch& scratch)
+{
+    const MaskSettings& settings = world.settings;
+    const Vector16 origin = broadcast(group.center);
+    const Vector16 axis = broadcast(group.axis);
+    const Float16 group_radius = all(group.radius);
+    const Float16 cone_cos = all(group.cone_cos);
+    const Float16 cone_sin = all(group.cone_sin);
+    const Float16 zero = all(0.0f);
+    const Float16 share = all(kLeaf ? settings.share_leaf : settings.share_inner);
+    Stream<4> quads(*world.raster, mask);
+    Stream<3> triangles(*world.raster, mask);
+    MaskBuffer<std::uint32_t>& frontier = scratch.frontier;
+
+    while (frontier.count > 0) {
+        // the last 16; where fewer are left the first stands in for the missing
+        const unsigned count =
+            frontier.count < kLanes ? static_cast<unsigned>(frontier.count) : kLanes;
+        frontier.count -= count;
+        alignas(64) std::uint32_t index[kLanes];
+        store(index, load(frontier.data + frontier.count));
+        for (unsigned i = count; i < kLanes; ++i)
+            index[i] = index[0];
+        const Lanes active = first_lanes(count);
+        Node16 node;
+        load_transposed(world.nodes, index, node.field);
+
+        // how high above any of the group's horizons the node may reach, and so how much it may weigh
+        const Vector16 to_node = node.center() - origin;
+        const Float16 distance2 = max(dot(to_node, to_node), all(1e-30f));
+        const Float16 inverse = inverse_sqrt(distance2);
+        const Float16 distance = distance2 * inverse;
+        const Float16 height = dot(to_node, axis);
+        const Float16 aside = sqrt(max(fms(distance, distance, height * height), zero));
+        const Float16 raised = fma(height, cone_cos, aside * cone_sin);
+        const Float16 base = select(height < cone_cos * distance, raised, distance);
+        const Float16 facing = dot(node.normal(), axis);
+        const Float16 tilt = sqrt(max(all(1.0f) - facing * facing, zero)) + cone_sin;
+        const Float16 slab =
+            min(node.radius(), fma(node.radius(), tilt, node.thickness()));
+        const Float16 top = base + slab + all(group.rise);
+        const Float16 nearest = distance - node.radius();
+        const Lanes alive = active & (top > zero) &
+                            (nearest - group_radius < all(settings.max_distance));
+        const Float16 weight = min(max(top * inverse, all(kImportanceFloor)), all(1.0f));
+        const Float16 relax = inverse_sqrt(weight);
+
+        const Float16 cluster = min(all(settings.cluster) * relax, all(settings.cluster_limit));
+        const Lanes is_triangle = without(active, nonzero(node.first_child()));
+        const Lanes small = is_triangle | (node.open_radius() < cluster * distance);
+        const Lanes far = group_radius < share * relax * nearest;
+        const Lanes drawn = alive & small & far;
+        const Lanes rest = without(alive, drawn);
+        if (bits(drawn) != 0) {
+            Vector16 corner[4];
+            node.triangle(origin, corner);
+            triangles.add(corner, 0, drawn & is_triangle);
+            node.quad(origin, corner);
+            quads.add(corner, 0, without(drawn, is_triangle));
+        }
+
+        Lanes opened;
+        if constexpr (kLeaf) {
+            const Lanes listed =
+                rest & (is_triangle | (node.open_radius() < cluster * (distance - group_radius)));
+            opened = without(rest, listed);
+            if (bits(listed) != 0) {
+                const Vector16 world_origin = {zero, zero, zero};
+                Vector16 corner[4];
+                node.triangle(world_origin, corner);
+                append<3>(scratch.triangles, corner, listed & is_triangle);
+                node.quad(world_origin, corner);
+                append<4>(scratch.quads, corner, without(listed, is_triangle));
+            }
+        } else {
+            opened = without(rest, small) & (group_radius < node.radius());
+            const Lanes handed = without(rest, opened);
+            if (bits(handed) != 0)
+                append(*out, load(index), handed);
+        }
+        if (bits(opened) != 0) {
+            reserve(frontier, frontier.count + 2 * kLanes + kLanes);
+            append(frontier, node.first_child(), opened);
+            const auto added = static_cast<unsigned>(__builtin_popcount(bits(opened)));
+            for (unsigned i = 0; i < added; ++i)
+                frontier.data[frontier.count + i] = frontier.data[frontier.count - added + i] + 1;
+            frontier.count += added;
+        }
+    }
+    quads.finish();
+    triangles.finish();
+}
+
+void start_frontier(MaskScratch& scratch, const std::uint32_t* in, std::size_t in_count)
+{
+    MaskBuffer<std::uint32_t>& frontier = scratch.frontier;
+    reserve(frontier, in_count + kLanes);
+    if (in_count > 0)
+        std::memcpy(frontier.data, in, in_count * sizeof(std::uint32_t));
+    frontier.count = in_count;
+}
+
+// --- what a mask is worth ---
+
+struct Sums {
+    std::int32_t first[3] = {};   ///< sum of w over bits, cosine weights
+    std::int32_t second[6] = {};  ///< sum of w w^T: xx yy zz xy yz zx
+};
+
+#if defined(__AVX512VNNI__)
+
+template <bool kSecond>
+SURFELAO_MASK_INLINE Sums sum_bits(const MaskRaster& raster, const std::uint32_t* mask)
+{
+    __m512i first[3] = {};
+    __m512i second[6] = {};
+    const auto word = [](const void* p) { return _mm512_load_si512(p); };
+    for (int face = 0; face < kMaskFaces; ++face) {
+        const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3, back = face % 2;
+        for (int j = 0; j < 8; ++j) {
+            std::uint64_t bits64;
+            std::memcpy(&bits64, mask + kMaskFaceWords * face + 2 * j, sizeof bits64);
+            if (bits64 == 0)
+                continue;
+            const __m512i w1 = _mm512_maskz_mov_epi8(bits64, word(raster.weight1 + 64 * j));
+            first[a] = _mm512_dpbusd_epi32(first[a], w1, word(raster.one[back] + 64 * j));
+            first[u] = _mm512_dpbusd_epi32(first[u], w1, word(raster.u[0] + 64 * j));
+            first[v] = _mm512_dpbusd_epi32(first[v], w1, word(raster.v[0] + 64 * j));
+            if constexpr (kSecond) {
+                const __m512i w2 = _mm512_maskz_mov_epi8(bits64, word(raster.weight2 + 64 * j));
+                second[a] = _mm512_dpbusd_epi32(second[a], w2, word(raster.one[0] + 64 * j));
+                second[u] = _mm512_dpbusd_epi32(second[u], w2, word(raster.uu + 64 * j));
+                second[v] = _mm512_dpbusd_epi32(second[v], w2, word(raster.vv + 64 * j));
+                // products of axes i and i + 1 stand at 3 + i
+                second[3 + a] =
+                    _mm512_dpbusd_epi32(second[3 + a], w2, word(raster.u[back] + 64 * j));
+                second[3 + u] = _mm512_dpbusd_epi32(second[3 + u], w2, word(raster.uv + 64 * j));
+                second[3 + v] =
+                    _mm512_dpbusd_epi32(second[3 + v], w2, word(raster.v[back] + 64 * j));
+            }
+        }
+    }
+    Sums sums;
+    for (int i = 0; i < 3; ++i)
+        sums.first[i] = _mm512_reduce_add_epi32(first[i]);
+    if constexpr (kSecond) {
+        for (int i = 0; i < 6; ++i)
+            sums.second[i] = _mm512_reduce_add_epi32(second[i]);
+    }
+    return sums;
+}
+
+#else
+
+template <bool kSecond>
+SURFELAO_MASK_INLINE Sums sum_bits(const MaskRaster& raster, const std::uint32_t* mask)
+{
+    Sums sums;
+    for (int face = 0; face < kMaskFaces; ++face) {
+        const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
+        const std::int32_t sign = face % 2 == 0 ? 1 : -1;
+        std::int32_t sum1[4] = {};
+        std::int32_t sum2[8] = {};
+        for (int y = 0; y < kMaskRows; ++y) {
+            std::uint32_t word = mask[kMaskFaceWords * face + y];
+            for (int k = 0; word != 0; ++k, word >>= 4) {
+                const std::int32_t* add1 = raster.sum1[y][k][word & 15u];
+                for (int i = 0; i < 4; ++i)
+                    sum1[i] += add1[i];
+                if constexpr (kSecond) {
+                    const std::int32_t* add2 = raster.sum2[y][k][word & 15u];
+                    for (int i = 0; i < 8; ++i)
+                        sum2[i] += add2[i];
+                }
+            }
+        }
+        sums.first[a] += sign * sum1[0];
+        sums.first[u] += sum1[1];
+        sums.first[v] += sum1[2];
+        if constexpr (kSecond) {
+            sums.second[a] += sum2[0];
+            sums.second[u] += sum2[3];
+            sums.second[v] += sum2[5];
+            sums.second[3 + a] += sign * sum2[1];
+            sums.second[3 + u] += sum2[4];
+            sums.second[3 + v] += sign * sum2[2];
+        }
+    }
+    return sums;
+}
+
+#endif
+
+/// Integral of (n.w) over the bits.
+SURFELAO_MASK_INLINE float along(const Sums& sums, const float* n)
+{
+    return static_cast<float>(sums.first[0]) * n[0] + static_cast<float>(sums.first[1]) * n[1] +
+           static_cast<float>(sums.first[2]) * n[2];
+}
+
+/// A clear bit is a crack between two patches where its neighbours left and right are set, or those
+/// above and below, both of the two nearest in direction. No half-plane, nor any convex shape, is
+/// changed by that. Nothing is set outside of the face.
+SURFELAO_MASK_INLINE Int16 fill(const MaskRaster& raster, Int16 m)
+{
+    const Int16 sides = shift_left<1>(m) & shift_right<1>(m);
+    const Int16 low = from_below(m);
+    const Int16 high = from_above(m);
+    const Int16 low_pair =
+        low & select(nonzero(load(raster.below_is_right)), shift_left<1>(low), shift_right<1>(low));
+    const Int16 high_pair =
+        high &
+        select(nonzero(load(raster.above_is_right)), shift_left<1>(high), shift_right<1>(high));
+    return m | sides | (low_pair & high_pair);
+}
+
+/// The bits above the plane through the receiver with normal n.
+void horizon(const MaskRaster& raster, const float* n, std::uint32_t* above)
+{
+    for (int face = 0; face < kMaskFaces; ++face) {
+        const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
+        const float na = face % 2 == 0 ? n[a] : -n[a];
+        const bool turned = n[u] < 0.0f;
+        float size = turned ? -n[u] : n[u];
+        size = size > kTinyComponent ? size : kTinyComponent;
+        const float scale = (turned ? 16.0f : -16.0f) / size;
+        const Int16 from = row_bits(raster, n[v] * scale, 16.0f + na * scale);
+        store(above + kMaskFaceWords * face, turned ? ~from : from);
+    }
+}
+
+// --- one group ---
+
+/// Draws the listed polygons that reach above the receiver's horizon.
+template <int kCorners>
+SURFELAO_MASK_INLINE void draw_near(const MaskBuffer<float>& list, Vector16 position, Vector16 normal,
+                                    std::uint32_t target, Stream<kCorners>& stream)
+{
+    const Float16 ground = dot(position, normal);
+    for (std::size_t first = 0; first < list.count; first += kLanes) {
+        const float* row = list.data + first * (3 * kCorners);
+        Vector16 c[kCorners];
+        for (int i = 0; i < kCorners; ++i) {
+            c[i] = {load(row + (3 * i) * kLanes), load(row + (3 * i + 1) * kLanes),
+                    load(row + (3 * i + 2) * kLanes)};
+        }
+        Float16 top = dot(c[0], normal);
+        for (int i = 1; i < kCorners; ++i)
+            top = max(top, dot(c[i], normal));
+        const std::size_t left = list.count - first;
+        const Lanes above =
+            (top > ground) & first_lanes(left < kLanes ? static_cast<unsigned>(left) : kLanes);
+        if (bits(above) == 0)
+            continue;
+        for (int i = 0; i < kCorners; ++i)
+            c[i] = c[i] - position;
+        stream.add(c, target, above);
+    }
+}
+
+void descend(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* in,
+             std::size_t in_count, MaskBuffer<std::uint32_t>& out, std::uint32_t* mask,
+             MaskScratch& scratch)
+{
+    out.count = 0;
+    start_frontier(scratch, in, in_count);
+    walk<false>(world, group, &out, mask, scratch);
+}
+
+void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* in,
+           std::size_t in_count, const std::uint32_t* shared, const MaskReceivers& receivers,
+           MaskAnswers& answers, MaskScratch& scratch)
+{
+    const MaskRaster& raster = *world.raster;
+    alignas(64) std::uint32_t far_mask[kMaskWords];
+    std::memcpy(far_mask, shared, sizeof far_mask);
+    scratch.quads.count = 0;
+    scratch.triangles.count = 0;
+    start_frontier(scratch, in, in_count);
+    walk<true>(world, group, nullptr, far_mask, scratch);
+
+    alignas(64) std::uint32_t masks[kLanes * kMaskWords];
+    {
+        Stream<4> quads(raster, masks);
+        Stream<3> triangles(raster, masks);
+        for (unsigned i = 0; i < receivers.count; ++i) {
+            const std::uint32_t target = i * kMaskWords;
+            std::memcpy(masks + target, far_mask, sizeof far_mask);
+            const Vector16 position = {all(receivers.position[0][i]), all(receivers.position[1][i]),
+                                       all(receivers.position[2][i])};
+            const Vector16 normal = {all(receivers.normal[0][i]), all(receivers.normal[1][i]),
+                                     all(receivers.normal[2][i])};
+            draw_near<4>(scratch.quads, position, normal, target, quads);
+            draw_near<3>(scratch.triangles, position, normal, target, triangles);
+        }
+        quads.finish();
+        triangles.finish();
+    }
+
+    for (unsigned i = 0; i < receivers.count; ++i) {
+        const float n[3] = {receivers.normal[0][i], receivers.normal[1][i], receivers.normal[2][i]};
+        std::uint32_t* mask = masks + i * kMaskWords;
+        alignas(64) std::uint32_t above[kMaskWords];
+        alignas(64) std::uint32_t open[kMaskWords];
+        horizon(raster, n, above);
+        const float whole = along(sum_bits<false>(raster, above), n);
+
+        for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
+            store(open + w, load(above + w) & ~load(mask + w));
+        Sums sums = sum_bits<true>(raster, open);
+        float openness = along(sums, n) / whole;
+        const float fill_weight = (1.0f - openness - kFillFrom) / kFillRange;
+        if (world.settings.fill && fill_weight > 0.0f && openness > 0.0f) {
+            for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
+                // what lies below the horizon is no opening
+                const Int16 closed = load(mask + w) | ~load(above + w);
+                store(open + w, ~fill(raster, closed));
+            }
+            sums = sum_bits<true>(raster, open);
+            const float filled = along(sums, n) / whole;
+            openness += (fill_weight < 1.0f ? fill_weight : 1.0f) * (filled - openness);
+        }
+        openness = openness < 0.0f ? 0.0f : openness > 1.0f ? 1.0f : openness;
+        answers.occlusion[i] = 1.0f - openness;
+        float m[6];
+        for (int k = 0; k < 6; ++k)
+            m[k] = static_cast<float>(sums.second[k]);
+        answers.bent[0][i] = m[0] * n[0] + m[3] * n[1] + m[5] * n[2];
+        answers.bent[1][i] = m[3] * n[0] + m[1] * n[1] + m[4] * n[2];
+        answers.bent[2][i] = m[5] * n[0] + m[4] * n[1] + m[2] * n[2];
+    }
+}
+
+}  // namespace
+
+constexpr MaskKernel kKernel = {SURFELAO_MASK_ISA_NAME, descend, solve};
+
+}  // namespace surfelao::SURFELAO_MASK_ISA

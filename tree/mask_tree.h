@@ -1,0 +1,37 @@
+/// mask_tree.h: the scene's triangles as a binary tree in which every node is also one rectangle.
+///
+/// Leaves are single triangles, exact. An inner node stands for its triangles as a rectangle in the
+/// plane of their vector area, with the area of that vector and the axes and aspect of their second
+/// moments: what is seen of the patch from straight ahead.
+///
+/// Internal to the mask engine; masks.h is its door.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace surfelao {
+
+/// 16 floats in the order in which the kernels load them.
+struct alignas(64) MaskNode {
+    glm::vec3 center;            ///< centroid of the triangles, by area
+    float radius;                ///< no point of the node is farther from `center`
+    glm::vec3 normal;            ///< unit; of the triangle, or of the vector area
+    float thickness;             ///< no point is farther from the plane (center, normal)
+    glm::vec3 axis_u;            ///< rectangle: corners at center +- axis_u +- axis_v
+    float open_radius;           ///< the radius as the opening test sees it: larger where not flat;
+                                 ///< 0 for a triangle, which cannot be opened
+    glm::vec3 axis_v;            ///< triangle: corners at center + axis_u, center + axis_v, and
+                                 ///< center - axis_u - axis_v
+    std::uint32_t first_child;   ///< two children stand side by side; 0 = triangle
+};
+static_assert(sizeof(MaskNode) == 64);
+
+/// nodes[0] is the root; empty where the scene has no triangle.
+struct MaskTree {
+    std::vector<MaskNode> nodes;
+};
+
+}  // namespace surfelao

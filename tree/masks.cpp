@@ -1,0 +1,268 @@
+#include "tree/masks.h"
+
+#include "tree/mask_groups.h"
+#include "tree/mask_kernel.h"
+#include "tree/mask_raster.h"
+#include "tree/mask_tree.h"
+
+#include <glm/geometric.hpp>
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <new>
+#include <stdexcept>
+
+namespace surfelao {
+
+namespace {
+
+template <typename T>
+void reserve_buffer(MaskBuffer<T>& buffer, std::size_t count)
+{
+    if (count <= buffer.capacity)
+        return;
+    const std::size_t capacity = std::max<std::size_t>(2 * buffer.capacity, count + 1024);
+    const std::size_t bytes = (capacity * sizeof(T) + 63) / 64 * 64;
+    auto* data = static_cast<T*>(std::aligned_alloc(64, bytes));
+    if (data == nullptr)
+        throw std::bad_alloc();
+    // zeros: lanes beyond the end are loaded, though never used
+    std::memset(data, 0, bytes);
+    if (buffer.data != nullptr)
+        std::memcpy(data, buffer.data, buffer.capacity * sizeof(T));
+    std::free(buffer.data);
+    buffer.data = data;
+    buffer.capacity = capacity;
+}
+
+template <typename T>
+void release_buffer(MaskBuffer<T>& buffer)
+{
+    std::free(buffer.data);
+    buffer = {};
+}
+
+}  // namespace
+
+void reserve(MaskBuffer<std::uint32_t>& buffer, std::size_t count)
+{
+    reserve_buffer(buffer, count);
+}
+void reserve(MaskBuffer<float>& buffer, std::size_t count)
+{
+    reserve_buffer(buffer, count);
+}
+void release(MaskBuffer<std::uint32_t>& buffer)
+{
+    release_buffer(buffer);
+}
+void release(MaskBuffer<float>& buffer)
+{
+    release_buffer(buffer);
+}
+
+namespace {
+
+const MaskKernel* kernel_of(MaskKernelSet set)
+{
+    switch (set) {
+        case MaskKernelSet::best:
+            return kernel_of(available_mask_kernels().front());
+#if defined(__x86_64__)
+        case MaskKernelSet::avx512:
+            return &kMaskKernelAvx512;
+        case MaskKernelSet::avx2:
+            return &kMaskKernelAvx2;
+#endif
+        default:
+            return &kMaskKernelPortable;
+    }
+}
+
+/// The family at draft, good and best, and one step beyond each way of the scale.
+struct FamilyPoint {
+    float cluster, share_leaf, share_inner;
+};
+constexpr FamilyPoint kFamily[] = {
+    {0.9f, 0.3f, 0.2f}, {0.7f, 0.1f, 0.07f}, {0.4f, 0.03f, 0.03f}, {0.2f, 0.015f, 0.015f},
+    {0.1f, 0.007f, 0.007f}};
+constexpr float kRelaxedCluster = 0.9f;  ///< a larger rectangle could swallow its receiver
+
+float between(float a, float b, float t)
+{
+    return a * std::pow(b / a, t);
+}
+
+MaskSettings settings_of(const MaskOptions& options)
+{
+    const float last = static_cast<float>(std::size(kFamily) - 1);
+    if (!(options.quality >= 0.0f && options.quality <= last))
+        throw std::invalid_argument("MaskOptions: quality must be between 0 and 4");
+    if (options.definition.kernel != Kernel::cosine)
+        throw std::invalid_argument("MaskOptions: masks know the cosine kernel only");
+    MaskSettings settings{};
+    settings.max_distance = options.definition.max_distance;
+    settings.fill = !options.exact;
+    if (options.exact)
+        return settings;
+    const auto i = static_cast<std::size_t>(std::min(options.quality, last - 1.0f));
+    const float t = options.quality - static_cast<float>(i);
+    const FamilyPoint &a = kFamily[i], &b = kFamily[i + 1];
+    settings.cluster = between(a.cluster, b.cluster, t);
+    settings.cluster_limit = std::max(settings.cluster, kRelaxedCluster);
+    settings.share_leaf = between(a.share_leaf, b.share_leaf, t);
+    settings.share_inner = between(a.share_inner, b.share_inner, t);
+    return settings;
+}
+
+/// Buffers of one thread: one list of nodes per level of the group tree on the way down.
+struct Workspace {
+    MaskScratch scratch;
+    std::vector<MaskBuffer<std::uint32_t>> lists;
+
+    Workspace() = default;
+    Workspace(const Workspace&) = delete;
+    Workspace& operator=(const Workspace&) = delete;
+    ~Workspace()
+    {
+        release(scratch.frontier);
+        release(scratch.quads);
+        release(scratch.triangles);
+        for (MaskBuffer<std::uint32_t>& list : lists)
+            release(list);
+    }
+};
+
+class Solver {
+public:
+    Solver(const MaskTree& tree, std::span<const Receiver> receivers, const MaskOptions& options,
+           const Progress& progress)
+        : kernel_(*kernel_of(options.kernel)),
+          world_{reinterpret_cast<const float*>(tree.nodes.data()), &mask_raster(),
+                 settings_of(options)},
+          has_triangles_(!tree.nodes.empty()),
+          receivers_(receivers),
+          groups_(group_receivers(receivers)),
+          progress_(progress, groups_.order.size()),
+          answers_(receivers.size())
+    {
+    }
+
+    std::vector<Occlusion> run()
+    {
+        if (!groups_.groups.empty()) {
+            alignas(64) const std::uint32_t empty[kMaskWords] = {};
+            const std::uint32_t root = 0;
+            visit(0, &root, has_triangles_ ? 1 : 0, empty, 0);
+        }
+        return std::move(answers_);
+    }
+
+private:
+    static constexpr std::uint32_t kParallelReceivers = 256;  ///< smaller groups stay on one thread
+
+    void visit(std::uint32_t index, const std::uint32_t* in, std::size_t in_count,
+               const std::uint32_t* mask, std::size_t level)
+    {
+        const MaskGroup& group = groups_.groups[index];
+        if (group.first_child == 0) {
+            solve_leaf(group, in, in_count, mask);
+            return;
+        }
+        alignas(64) std::uint32_t own_mask[kMaskWords];
+        std::memcpy(own_mask, mask, sizeof own_mask);
+        const auto visit_child = [&](std::uint32_t child, const std::uint32_t* list,
+                                     std::size_t count) {
+            visit(group.first_child + child, list, count, own_mask, level + 1);
+        };
+        Workspace& workspace = workspaces_.local();
+        if (group.end - group.begin > kParallelReceivers) {
+            // a thread that waits may take up other groups meanwhile: this list is nobody else's
+            MaskBuffer<std::uint32_t> list;
+            kernel_.descend(world_, group, in, in_count, list, own_mask, workspace.scratch);
+            const std::vector<std::uint32_t> kept(list.data, list.data + list.count);
+            release(list);
+            tbb::parallel_invoke([&] { visit_child(0, kept.data(), kept.size()); },
+                                 [&] { visit_child(1, kept.data(), kept.size()); });
+        } else {
+            if (workspace.lists.size() <= level)
+                workspace.lists.resize(level + 1);
+            kernel_.descend(world_, group, in, in_count, workspace.lists[level], own_mask,
+                            workspace.scratch);
+            const MaskBuffer<std::uint32_t> list = workspace.lists[level];
+            visit_child(0, list.data, list.count);
+            visit_child(1, list.data, list.count);
+        }
+    }
+
+    void solve_leaf(const MaskGroup& group, const std::uint32_t* in, std::size_t in_count,
+                    const std::uint32_t* mask)
+    {
+        MaskReceivers columns{};
+        columns.count = group.end - group.begin;
+        for (std::uint32_t i = 0; i < columns.count; ++i) {
+            const Receiver& receiver = receivers_[groups_.order[group.begin + i]];
+            for (int k = 0; k < 3; ++k) {
+                columns.position[k][i] = receiver.position[k];
+                columns.normal[k][i] = receiver.normal[k];
+            }
+        }
+        MaskAnswers found{};
+        kernel_.solve(world_, group, in, in_count, mask, columns, found,
+                      workspaces_.local().scratch);
+        for (std::uint32_t i = 0; i < columns.count; ++i) {
+            const std::uint32_t index = groups_.order[group.begin + i];
+            const glm::vec3 bent(found.bent[0][i], found.bent[1][i], found.bent[2][i]);
+            const float length = glm::length(bent);
+            answers_[index] = {found.occlusion[i],
+                               length > 0.0f ? bent / length : receivers_[index].normal};
+        }
+        progress_.add(columns.count);
+    }
+
+    const MaskKernel& kernel_;
+    MaskWorld world_;
+    bool has_triangles_;
+    std::span<const Receiver> receivers_;
+    MaskGroups groups_;
+    ProgressMeter progress_;
+    std::vector<Occlusion> answers_;
+    tbb::enumerable_thread_specific<Workspace> workspaces_;
+};
+
+}  // namespace
+
+std::vector<MaskKernelSet> available_mask_kernels()
+{
+    std::vector<MaskKernelSet> sets;
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("avx512vnni"))
+        sets.push_back(MaskKernelSet::avx512);
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+        sets.push_back(MaskKernelSet::avx2);
+#endif
+    sets.push_back(MaskKernelSet::portable);
+    return sets;
+}
+
+std::string_view name_of(MaskKernelSet kernel)
+{
+    return kernel_of(kernel)->name;
+}
+
+std::vector<Occlusion> solve_masks(const MaskTree& tree, std::span<const Receiver> receivers,
+                                   const MaskOptions& options, const Progress& progress)
+{
+    return Solver(tree, receivers, options, progress).run();
+}
+
+}  // namespace surfelao
