@@ -33,9 +33,9 @@ public:
             const glm::vec3 n = receivers[i].normal;
             if (n == glm::vec3(0.0f))
                 continue;
-            keys_.push_back({{p.x, p.y, p.z, kNormalExtent * n.x, kNormalExtent * n.y,
-                              kNormalExtent * n.z},
-                             i});
+            keys_.push_back(
+                {{p.x, p.y, p.z, kNormalExtent * n.x, kNormalExtent * n.y, kNormalExtent * n.z},
+                 i});
         }
     }
 
@@ -59,7 +59,8 @@ private:
         return (receivers + kMaskGroupSize - 1) / kMaskGroupSize;
     }
 
-    /// Group `index` over keys [begin, end); its descendants stand at [first, first + 2 (leaves-1)).
+    /// Group `index` over keys [begin, end); its descendants stand at [first, first + 2
+    /// (leaves-1)).
     void build_group(std::size_t index, std::size_t first, std::size_t begin, std::size_t end)
     {
         MaskGroup& group = groups_[index];
@@ -77,13 +78,12 @@ private:
         const std::size_t left_leaves = leaves / 2;
         const std::size_t middle = begin + left_leaves * kMaskGroupSize;
         const int axis = longest_axis(begin, end);
-        std::nth_element(keys_.begin() + static_cast<std::ptrdiff_t>(begin),
-                         keys_.begin() + static_cast<std::ptrdiff_t>(middle),
-                         keys_.begin() + static_cast<std::ptrdiff_t>(end),
-                         [axis](const Key& a, const Key& b) {
-                             return a.at[axis] != b.at[axis] ? a.at[axis] < b.at[axis]
-                                                             : a.receiver < b.receiver;
-                         });
+        std::nth_element(
+            keys_.begin() + static_cast<std::ptrdiff_t>(begin),
+            keys_.begin() + static_cast<std::ptrdiff_t>(middle),
+            keys_.begin() + static_cast<std::ptrdiff_t>(end), [axis](const Key& a, const Key& b) {
+                return a.at[axis] != b.at[axis] ? a.at[axis] < b.at[axis] : a.receiver < b.receiver;
+            });
         const std::size_t left_first = first + 2;
         const std::size_t right_first = left_first + 2 * (left_leaves - 1);
         const auto left = [&] { build_group(first, left_first, begin, middle); };

@@ -15,8 +15,8 @@ namespace surfelao {
 constexpr std::uint32_t kMaskGroupSize = 16;  ///< receivers in a leaf group at most
 
 struct MaskGroups {
-    std::vector<MaskGroup> groups;      ///< groups[0] is the root; empty without receivers
-    std::vector<std::uint32_t> order;   ///< groups own ranges of this; values index the receivers
+    std::vector<MaskGroup> groups;     ///< groups[0] is the root; empty without receivers
+    std::vector<std::uint32_t> order;  ///< groups own ranges of this; values index the receivers
 };
 
 /// Receivers without a normal are left out. O(n log n), all cores, same result for any number of

@@ -1,8 +1,8 @@
 /// mask_kernel.h: the hot part of the mask engine, once per instruction set.
 ///
-/// mask_kernel_avx512.cpp, _avx2.cpp and _portable.cpp compile the one text of mask_kernel_body.h with
-/// their own flags. Plain data only, and no library code, goes through this header: an inline function
-/// that is compiled with wide instructions must not be picked by the linker for all.
+/// mask_kernel_avx512.cpp, _avx2.cpp and _portable.cpp compile the one text of mask_kernel_body.h
+/// with their own flags. Plain data only, and no library code, goes through this header: an inline
+/// function that is compiled with wide instructions must not be picked by the linker for all.
 #pragma once
 
 #include <cstddef>
@@ -14,12 +14,13 @@ struct MaskRaster;
 
 /// The members of the parameter family and of the definition that the kernels need.
 struct MaskSettings {
-    float cluster;           ///< s: a node is drawn where its radius is below this share of its distance
-    float cluster_limit;     ///< what unimportant directions may relax s to
-    float share_inner;       ///< u: group radius over distance below which a mask is shared, inner groups
-    float share_leaf;        ///< r: the same for leaf groups
+    float cluster;  ///< s: a node is drawn where its radius is below this share of its distance
+    float cluster_limit;  ///< what unimportant directions may relax s to
+    float
+        share_inner;   ///< u: group radius over distance below which a mask is shared, inner groups
+    float share_leaf;  ///< r: the same for leaf groups
     float max_distance;
-    bool fill;               ///< close single-bit cracks where much is covered
+    bool fill;  ///< close single-bit cracks where much is covered
 };
 
 /// Neighbouring receivers: all points within `radius` of `center`, all normals within the cone, no
@@ -30,8 +31,8 @@ struct MaskGroup {
     float axis[3];
     float cone_cos, cone_sin;
     float rise;
-    std::uint32_t begin, end;    ///< receivers, in the order of the tree
-    std::uint32_t first_child;   ///< two, side by side; 0 = leaf of at most 16 receivers
+    std::uint32_t begin, end;   ///< receivers, in the order of the tree
+    std::uint32_t first_child;  ///< two, side by side; 0 = leaf of at most 16 receivers
 };
 
 /// A growing array of plain values.
@@ -50,13 +51,13 @@ void release(MaskBuffer<float>& buffer);
 /// Working memory of one thread.
 struct MaskScratch {
     MaskBuffer<std::uint32_t> frontier;
-    MaskBuffer<float> quads;       ///< chunks of 16: four corners x 3 coordinates x 16 lanes
-    MaskBuffer<float> triangles;   ///< chunks of 16: three corners x 3 coordinates x 16 lanes
+    MaskBuffer<float> quads;      ///< chunks of 16: four corners x 3 coordinates x 16 lanes
+    MaskBuffer<float> triangles;  ///< chunks of 16: three corners x 3 coordinates x 16 lanes
 };
 
 /// What all calls share.
 struct MaskWorld {
-    const float* nodes;            ///< MaskNode, 16 floats each
+    const float* nodes;  ///< MaskNode, 16 floats each
     const MaskRaster* raster;
     MaskSettings settings;
 };
@@ -70,14 +71,14 @@ struct MaskReceivers {
 
 struct MaskAnswers {
     float occlusion[16];
-    float bent[3][16];   ///< direction of the bent normal, any length; zero where nothing is open
+    float bent[3][16];  ///< direction of the bent normal, any length; zero where nothing is open
 };
 
 struct MaskKernel {
     const char* name;
-    /// Draws the nodes of `in` that are far from the whole group into `mask` (kMaskWords), drops those
-    /// below all horizons or beyond the limit, and hands the others, opened to about the group's size,
-    /// to `out`.
+    /// Draws the nodes of `in` that are far from the whole group into `mask` (kMaskWords), drops
+    /// those below all horizons or beyond the limit, and hands the others, opened to about the
+    /// group's size, to `out`.
     void (*descend)(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* in,
                     std::size_t in_count, MaskBuffer<std::uint32_t>& out, std::uint32_t* mask,
                     MaskScratch& scratch);

@@ -11,10 +11,11 @@
 namespace surfelao::SURFELAO_MASK_ISA {
 namespace {
 
-constexpr float kImportanceFloor = 0.1f;   ///< directions weigh at least this in the opening tests
-constexpr float kFillFrom = 0.4f;          ///< no filling below this occlusion ...
-constexpr float kFillRange = 0.5f;         ///< ... and full weight this much above
-constexpr float kTinyComponent = 1e-30f;   ///< stands for 0 in divisions; edge normals are above 1e-20
+constexpr float kImportanceFloor = 0.1f;  ///< directions weigh at least this in the opening tests
+constexpr float kFillFrom = 0.4f;         ///< no filling below this occlusion ...
+constexpr float kFillRange = 0.5f;        ///< ... and full weight this much above
+constexpr float kTinyComponent =
+    1e-30f;  ///< stands for 0 in divisions; edge normals are above 1e-20
 
 struct Vector16 {
     Float16 x, y, z;
@@ -40,9 +41,18 @@ SURFELAO_MASK_INLINE Vector16 broadcast(const float* v)
 {
     return {all(v[0]), all(v[1]), all(v[2])};
 }
-SURFELAO_MASK_INLINE Int16 sign_of(Float16 a) { return as_int(a) & all(0x80000000u); }
-SURFELAO_MASK_INLINE Float16 flip(Float16 a, Int16 sign) { return as_float(as_int(a) ^ sign); }
-SURFELAO_MASK_INLINE Lanes negative(Int16 a) { return nonzero(a & all(0x80000000u)); }
+SURFELAO_MASK_INLINE Int16 sign_of(Float16 a)
+{
+    return as_int(a) & all(0x80000000u);
+}
+SURFELAO_MASK_INLINE Float16 flip(Float16 a, Int16 sign)
+{
+    return as_float(as_int(a) ^ sign);
+}
+SURFELAO_MASK_INLINE Lanes negative(Int16 a)
+{
+    return nonzero(a & all(0x80000000u));
+}
 
 // --- one polygon ---
 
@@ -59,11 +69,11 @@ SURFELAO_MASK_INLINE Int16 row_bits(const MaskRaster& raster, float slope, float
 }
 
 /// Sixteen polygons at once up to the edges, then each by itself, 16 rows at a time.
-/// corner: 3 kCorners rows of `kStride` floats, relative to the receiver; target: word offset of the
-/// receiver's mask in `masks`.
+/// corner: 3 kCorners rows of `kStride` floats, relative to the receiver; target: word offset of
+/// the receiver's mask in `masks`.
 template <int kCorners, int kStride>
-void draw(const MaskRaster& raster, const float* corner, const std::uint32_t* target, unsigned count,
-          std::uint32_t* masks)
+void draw(const MaskRaster& raster, const float* corner, const std::uint32_t* target,
+          unsigned count, std::uint32_t* masks)
 {
     Vector16 c[kCorners];
     for (int i = 0; i < kCorners; ++i) {
@@ -293,7 +303,8 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         Node16 node;
         load_transposed(world.nodes, index, node.field);
 
-        // how high above any of the group's horizons the node may reach, and so how much it may weigh
+        // how high above any of the group's horizons the node may reach, and so how much it may
+        // weigh
         const Vector16 to_node = node.center() - origin;
         const Float16 distance2 = max(dot(to_node, to_node), all(1e-30f));
         const Float16 inverse = inverse_sqrt(distance2);
@@ -304,12 +315,11 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         const Float16 base = select(height < cone_cos * distance, raised, distance);
         const Float16 facing = dot(node.normal(), axis);
         const Float16 tilt = sqrt(max(all(1.0f) - facing * facing, zero)) + cone_sin;
-        const Float16 slab =
-            min(node.radius(), fma(node.radius(), tilt, node.thickness()));
+        const Float16 slab = min(node.radius(), fma(node.radius(), tilt, node.thickness()));
         const Float16 top = base + slab + all(group.rise);
         const Float16 nearest = distance - node.radius();
-        const Lanes alive = active & (top > zero) &
-                            (nearest - group_radius < all(settings.max_distance));
+        const Lanes alive =
+            active & (top > zero) & (nearest - group_radius < all(settings.max_distance));
         const Float16 weight = min(max(top * inverse, all(kImportanceFloor)), all(1.0f));
         const Float16 relax = inverse_sqrt(weight);
 
@@ -476,9 +486,8 @@ SURFELAO_MASK_INLINE Int16 fill(const MaskRaster& raster, Int16 m)
     const Int16 high = from_above(m);
     const Int16 low_pair =
         low & select(nonzero(load(raster.below_is_right)), shift_left<1>(low), shift_right<1>(low));
-    const Int16 high_pair =
-        high &
-        select(nonzero(load(raster.above_is_right)), shift_left<1>(high), shift_right<1>(high));
+    const Int16 high_pair = high & select(nonzero(load(raster.above_is_right)), shift_left<1>(high),
+                                          shift_right<1>(high));
     return m | sides | (low_pair & high_pair);
 }
 
@@ -501,8 +510,8 @@ void horizon(const MaskRaster& raster, const float* n, std::uint32_t* above)
 
 /// Draws the listed polygons that reach above the receiver's horizon.
 template <int kCorners>
-SURFELAO_MASK_INLINE void draw_near(const MaskBuffer<float>& list, Vector16 position, Vector16 normal,
-                                    std::uint32_t target, Stream<kCorners>& stream)
+SURFELAO_MASK_INLINE void draw_near(const MaskBuffer<float>& list, Vector16 position,
+                                    Vector16 normal, std::uint32_t target, Stream<kCorners>& stream)
 {
     const Float16 ground = dot(position, normal);
     for (std::size_t first = 0; first < list.count; first += kLanes) {

@@ -22,8 +22,7 @@ void set_rows(MaskRaster& raster)
     }
     for (int y = 0; y < kMaskRows; ++y) {
         const auto further = [&](int other) {
-            return other >= 0 && other < kMaskRows &&
-                           raster.row_shift[other] > raster.row_shift[y]
+            return other >= 0 && other < kMaskRows && raster.row_shift[other] > raster.row_shift[y]
                        ? ~0u
                        : 0u;
         };

@@ -19,13 +19,13 @@ namespace surfelao {
 
 constexpr int kMaskFaces = 6;
 constexpr int kMaskRows = 16;
-constexpr int kMaskFaceWords = kMaskRows;    ///< one 32-bit word a row
-constexpr int kMaskWords = 128;              ///< six faces, and two unused: offsets add by `or`
+constexpr int kMaskFaceWords = kMaskRows;  ///< one 32-bit word a row
+constexpr int kMaskWords = 128;            ///< six faces, and two unused: offsets add by `or`
 constexpr int kMaskFaceBits = 32 * kMaskRows;
 
 struct alignas(64) MaskRaster {
     float row_v[kMaskRows];
-    float row_shift[kMaskRows];         ///< in columns, [0, 1)
+    float row_shift[kMaskRows];               ///< in columns, [0, 1)
     std::uint32_t below_is_right[kMaskRows];  ///< ~0 where row y-1 is shifted further than row y
     std::uint32_t above_is_right[kMaskRows];  ///< ~0 where row y+1 is shifted further than row y
 

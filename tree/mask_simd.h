@@ -31,16 +31,43 @@ struct Lanes {
     __mmask16 v;
 };
 
-SURFELAO_MASK_INLINE Float16 load(const float* p) { return {_mm512_loadu_ps(p)}; }
-SURFELAO_MASK_INLINE void store(float* p, Float16 a) { _mm512_storeu_ps(p, a.v); }
-SURFELAO_MASK_INLINE Int16 load(const std::uint32_t* p) { return {_mm512_loadu_si512(p)}; }
-SURFELAO_MASK_INLINE void store(std::uint32_t* p, Int16 a) { _mm512_storeu_si512(p, a.v); }
-SURFELAO_MASK_INLINE Float16 all(float a) { return {_mm512_set1_ps(a)}; }
-SURFELAO_MASK_INLINE Int16 all(std::uint32_t a) { return {_mm512_set1_epi32(static_cast<int>(a))}; }
+SURFELAO_MASK_INLINE Float16 load(const float* p)
+{
+    return {_mm512_loadu_ps(p)};
+}
+SURFELAO_MASK_INLINE void store(float* p, Float16 a)
+{
+    _mm512_storeu_ps(p, a.v);
+}
+SURFELAO_MASK_INLINE Int16 load(const std::uint32_t* p)
+{
+    return {_mm512_loadu_si512(p)};
+}
+SURFELAO_MASK_INLINE void store(std::uint32_t* p, Int16 a)
+{
+    _mm512_storeu_si512(p, a.v);
+}
+SURFELAO_MASK_INLINE Float16 all(float a)
+{
+    return {_mm512_set1_ps(a)};
+}
+SURFELAO_MASK_INLINE Int16 all(std::uint32_t a)
+{
+    return {_mm512_set1_epi32(static_cast<int>(a))};
+}
 
-SURFELAO_MASK_INLINE Float16 operator+(Float16 a, Float16 b) { return {_mm512_add_ps(a.v, b.v)}; }
-SURFELAO_MASK_INLINE Float16 operator-(Float16 a, Float16 b) { return {_mm512_sub_ps(a.v, b.v)}; }
-SURFELAO_MASK_INLINE Float16 operator*(Float16 a, Float16 b) { return {_mm512_mul_ps(a.v, b.v)}; }
+SURFELAO_MASK_INLINE Float16 operator+(Float16 a, Float16 b)
+{
+    return {_mm512_add_ps(a.v, b.v)};
+}
+SURFELAO_MASK_INLINE Float16 operator-(Float16 a, Float16 b)
+{
+    return {_mm512_sub_ps(a.v, b.v)};
+}
+SURFELAO_MASK_INLINE Float16 operator*(Float16 a, Float16 b)
+{
+    return {_mm512_mul_ps(a.v, b.v)};
+}
 /// a b + c
 SURFELAO_MASK_INLINE Float16 fma(Float16 a, Float16 b, Float16 c)
 {
@@ -51,9 +78,18 @@ SURFELAO_MASK_INLINE Float16 fms(Float16 a, Float16 b, Float16 c)
 {
     return {_mm512_fmsub_ps(a.v, b.v, c.v)};
 }
-SURFELAO_MASK_INLINE Float16 min(Float16 a, Float16 b) { return {_mm512_min_ps(a.v, b.v)}; }
-SURFELAO_MASK_INLINE Float16 max(Float16 a, Float16 b) { return {_mm512_max_ps(a.v, b.v)}; }
-SURFELAO_MASK_INLINE Float16 sqrt(Float16 a) { return {_mm512_sqrt_ps(a.v)}; }
+SURFELAO_MASK_INLINE Float16 min(Float16 a, Float16 b)
+{
+    return {_mm512_min_ps(a.v, b.v)};
+}
+SURFELAO_MASK_INLINE Float16 max(Float16 a, Float16 b)
+{
+    return {_mm512_max_ps(a.v, b.v)};
+}
+SURFELAO_MASK_INLINE Float16 sqrt(Float16 a)
+{
+    return {_mm512_sqrt_ps(a.v)};
+}
 /// 1 / a to 1e-7: an estimate and one Newton step; a must be neither 0 nor denormal.
 SURFELAO_MASK_INLINE Float16 reciprocal(Float16 a)
 {
@@ -72,7 +108,10 @@ SURFELAO_MASK_INLINE Lanes operator<(Float16 a, Float16 b)
 {
     return {_mm512_cmp_ps_mask(a.v, b.v, _CMP_LT_OQ)};
 }
-SURFELAO_MASK_INLINE Lanes operator>(Float16 a, Float16 b) { return b < a; }
+SURFELAO_MASK_INLINE Lanes operator>(Float16 a, Float16 b)
+{
+    return b < a;
+}
 SURFELAO_MASK_INLINE Lanes operator&(Lanes a, Lanes b)
 {
     return {static_cast<__mmask16>(a.v & b.v)};
@@ -90,7 +129,10 @@ SURFELAO_MASK_INLINE Lanes first_lanes(unsigned count)
 {
     return {static_cast<__mmask16>((1u << count) - 1u)};
 }
-SURFELAO_MASK_INLINE unsigned bits(Lanes a) { return a.v; }
+SURFELAO_MASK_INLINE unsigned bits(Lanes a)
+{
+    return a.v;
+}
 SURFELAO_MASK_INLINE Float16 select(Lanes m, Float16 yes, Float16 no)
 {
     return {_mm512_mask_blend_ps(m.v, no.v, yes.v)};
@@ -100,9 +142,18 @@ SURFELAO_MASK_INLINE Int16 select(Lanes m, Int16 yes, Int16 no)
     return {_mm512_mask_blend_epi32(m.v, no.v, yes.v)};
 }
 
-SURFELAO_MASK_INLINE Int16 operator&(Int16 a, Int16 b) { return {_mm512_and_si512(a.v, b.v)}; }
-SURFELAO_MASK_INLINE Int16 operator|(Int16 a, Int16 b) { return {_mm512_or_si512(a.v, b.v)}; }
-SURFELAO_MASK_INLINE Int16 operator^(Int16 a, Int16 b) { return {_mm512_xor_si512(a.v, b.v)}; }
+SURFELAO_MASK_INLINE Int16 operator&(Int16 a, Int16 b)
+{
+    return {_mm512_and_si512(a.v, b.v)};
+}
+SURFELAO_MASK_INLINE Int16 operator|(Int16 a, Int16 b)
+{
+    return {_mm512_or_si512(a.v, b.v)};
+}
+SURFELAO_MASK_INLINE Int16 operator^(Int16 a, Int16 b)
+{
+    return {_mm512_xor_si512(a.v, b.v)};
+}
 SURFELAO_MASK_INLINE Int16 operator~(Int16 a)
 {
     return {_mm512_ternarylogic_epi32(a.v, a.v, a.v, 0x55)};
@@ -132,9 +183,18 @@ SURFELAO_MASK_INLINE Int16 from_above(Int16 a)
     return {_mm512_alignr_epi32(_mm512_setzero_si512(), a.v, 1)};
 }
 /// All ones where the lane is not zero.
-SURFELAO_MASK_INLINE Lanes nonzero(Int16 a) { return {_mm512_test_epi32_mask(a.v, a.v)}; }
-SURFELAO_MASK_INLINE Int16 as_int(Float16 a) { return {_mm512_castps_si512(a.v)}; }
-SURFELAO_MASK_INLINE Float16 as_float(Int16 a) { return {_mm512_castsi512_ps(a.v)}; }
+SURFELAO_MASK_INLINE Lanes nonzero(Int16 a)
+{
+    return {_mm512_test_epi32_mask(a.v, a.v)};
+}
+SURFELAO_MASK_INLINE Int16 as_int(Float16 a)
+{
+    return {_mm512_castps_si512(a.v)};
+}
+SURFELAO_MASK_INLINE Float16 as_float(Int16 a)
+{
+    return {_mm512_castsi512_ps(a.v)};
+}
 /// All 32 bits from bit ceil(a) upward: all for a <= 0 or NaN, none for a > 31.
 SURFELAO_MASK_INLINE Int16 bits_from(Float16 a)
 {
@@ -165,12 +225,10 @@ SURFELAO_MASK_INLINE void load_transposed(const float* base, const std::uint32_t
     }
     for (int i = 0; i < 16; i += 4) {
         const auto lo = [](__m512 x, __m512 y) {
-            return _mm512_castpd_ps(
-                _mm512_unpacklo_pd(_mm512_castps_pd(x), _mm512_castps_pd(y)));
+            return _mm512_castpd_ps(_mm512_unpacklo_pd(_mm512_castps_pd(x), _mm512_castps_pd(y)));
         };
         const auto hi = [](__m512 x, __m512 y) {
-            return _mm512_castpd_ps(
-                _mm512_unpackhi_pd(_mm512_castps_pd(x), _mm512_castps_pd(y)));
+            return _mm512_castpd_ps(_mm512_unpackhi_pd(_mm512_castps_pd(x), _mm512_castps_pd(y)));
         };
         a[i] = lo(b[i], b[i + 2]);
         a[i + 1] = hi(b[i], b[i + 2]);
@@ -271,7 +329,10 @@ SURFELAO_MASK_INLINE __m256 reciprocal8(__m256 x)
     const __m256 e = _mm256_rcp_ps(x);
     return _mm256_mul_ps(e, _mm256_fnmadd_ps(x, e, _mm256_set1_ps(2.0f)));
 }
-SURFELAO_MASK_INLINE Float16 reciprocal(Float16 x) { return {reciprocal8(x.a), reciprocal8(x.b)}; }
+SURFELAO_MASK_INLINE Float16 reciprocal(Float16 x)
+{
+    return {reciprocal8(x.a), reciprocal8(x.b)};
+}
 SURFELAO_MASK_INLINE __m256 inverse_sqrt8(__m256 x)
 {
     const __m256 e = _mm256_rsqrt_ps(x);
@@ -287,7 +348,10 @@ SURFELAO_MASK_INLINE Lanes operator<(Float16 x, Float16 y)
 {
     return {_mm256_cmp_ps(x.a, y.a, _CMP_LT_OQ), _mm256_cmp_ps(x.b, y.b, _CMP_LT_OQ)};
 }
-SURFELAO_MASK_INLINE Lanes operator>(Float16 x, Float16 y) { return y < x; }
+SURFELAO_MASK_INLINE Lanes operator>(Float16 x, Float16 y)
+{
+    return y < x;
+}
 SURFELAO_MASK_INLINE Lanes operator&(Lanes x, Lanes y)
 {
     return {_mm256_and_ps(x.a, y.a), _mm256_and_ps(x.b, y.b)};
@@ -304,9 +368,9 @@ SURFELAO_MASK_INLINE Lanes first_lanes(unsigned count)
 {
     const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
     const __m256i n = _mm256_set1_epi32(static_cast<int>(count));
-    return {_mm256_castsi256_ps(_mm256_cmpgt_epi32(n, lane)),
-            _mm256_castsi256_ps(
-                _mm256_cmpgt_epi32(n, _mm256_add_epi32(lane, _mm256_set1_epi32(8))))};
+    return {
+        _mm256_castsi256_ps(_mm256_cmpgt_epi32(n, lane)),
+        _mm256_castsi256_ps(_mm256_cmpgt_epi32(n, _mm256_add_epi32(lane, _mm256_set1_epi32(8))))};
 }
 SURFELAO_MASK_INLINE unsigned bits(Lanes x)
 {
@@ -341,8 +405,14 @@ SURFELAO_MASK_INLINE Int16 operator^(Int16 x, Int16 y)
 {
     return {_mm256_xor_si256(x.a, y.a), _mm256_xor_si256(x.b, y.b)};
 }
-SURFELAO_MASK_INLINE Int16 operator~(Int16 x) { return x ^ all(~0u); }
-SURFELAO_MASK_INLINE Int16 and_xor(Int16 x, Int16 y, Int16 z) { return x & (y ^ z); }
+SURFELAO_MASK_INLINE Int16 operator~(Int16 x)
+{
+    return x ^ all(~0u);
+}
+SURFELAO_MASK_INLINE Int16 and_xor(Int16 x, Int16 y, Int16 z)
+{
+    return x & (y ^ z);
+}
 template <int kBy>
 SURFELAO_MASK_INLINE Int16 shift_left(Int16 x)
 {
@@ -380,7 +450,10 @@ SURFELAO_MASK_INLINE __m256i bits_from8(__m256 x)
     const __m256 from = _mm256_min_ps(_mm256_max_ps(x, _mm256_setzero_ps()), _mm256_set1_ps(32.0f));
     return _mm256_sllv_epi32(_mm256_set1_epi32(-1), _mm256_cvttps_epi32(_mm256_ceil_ps(from)));
 }
-SURFELAO_MASK_INLINE Int16 bits_from(Float16 x) { return {bits_from8(x.a), bits_from8(x.b)}; }
+SURFELAO_MASK_INLINE Int16 bits_from(Float16 x)
+{
+    return {bits_from8(x.a), bits_from8(x.b)};
+}
 
 /// For each of 256 masks the chosen lanes first.
 struct PackTable {
@@ -411,7 +484,10 @@ SURFELAO_MASK_INLINE Float16 pack(Float16 x, Lanes m)
     _mm256_storeu_ps(both + __builtin_popcount(low), _mm256_permutevar8x32_ps(x.b, turn(high)));
     return load(both);
 }
-SURFELAO_MASK_INLINE Int16 pack(Int16 x, Lanes m) { return as_int(pack(as_float(x), m)); }
+SURFELAO_MASK_INLINE Int16 pack(Int16 x, Lanes m)
+{
+    return as_int(pack(as_float(x), m));
+}
 
 /// Eight records' eight floats from `at` to eight vectors.
 SURFELAO_MASK_INLINE void transpose8(const float* base, const std::uint32_t* index, int at,
@@ -475,7 +551,10 @@ SURFELAO_MASK_INLINE Float16 load(const float* p)
     std::memcpy(out.v, p, sizeof out.v);
     return out;
 }
-SURFELAO_MASK_INLINE void store(float* p, const Float16& x) { std::memcpy(p, x.v, sizeof x.v); }
+SURFELAO_MASK_INLINE void store(float* p, const Float16& x)
+{
+    std::memcpy(p, x.v, sizeof x.v);
+}
 SURFELAO_MASK_INLINE Int16 load(const std::uint32_t* p)
 {
     Int16 out;
@@ -540,7 +619,10 @@ SURFELAO_MASK_INLINE Lanes operator<(const Float16& x, const Float16& y)
 {
     return each<Lanes>([&](int i) { return x.v[i] < y.v[i] ? ~0u : 0u; });
 }
-SURFELAO_MASK_INLINE Lanes operator>(const Float16& x, const Float16& y) { return y < x; }
+SURFELAO_MASK_INLINE Lanes operator>(const Float16& x, const Float16& y)
+{
+    return y < x;
+}
 SURFELAO_MASK_INLINE Lanes operator&(const Lanes& x, const Lanes& y)
 {
     return each<Lanes>([&](int i) { return x.v[i] & y.v[i]; });

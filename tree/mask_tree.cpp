@@ -18,11 +18,12 @@
 namespace surfelao {
 namespace {
 
-/// A unit of normal counts as this many diagonals of the node when it is split: neighbours that look
-/// elsewhere are parted before they become one rectangle.
+/// A unit of normal counts as this many diagonals of the node when it is split: neighbours that
+/// look elsewhere are parted before they become one rectangle.
 constexpr float kNormalExtent = 0.5f;
 
-/// A node that is not flat is opened as if its radius were larger by this factor times 1 - flatness.
+/// A node that is not flat is opened as if its radius were larger by this factor times 1 -
+/// flatness.
 constexpr float kFlatnessPenalty = 10.0f;
 
 /// Rectangles of flat nodes are drawn a little larger: their neighbours most likely continue the
@@ -154,7 +155,8 @@ private:
         return {{center.x, center.y, center.z, normal.x, normal.y, normal.z}, triangle};
     }
 
-    /// Node `index` over keys [begin, end); its descendants stand in nodes [first, first + 2 (n-1)).
+    /// Node `index` over keys [begin, end); its descendants stand in nodes [first, first + 2
+    /// (n-1)).
     Patch build_node(std::size_t index, std::size_t first, std::size_t begin, std::size_t end,
                      const Extent& extent)
     {
@@ -190,8 +192,8 @@ private:
         }
         for (int i = 3; i < 6; ++i)
             length[i] *= kNormalExtent * std::sqrt(diagonal2);
-        const auto axis = static_cast<std::size_t>(
-            std::max_element(length.begin(), length.end()) - length.begin());
+        const auto axis = static_cast<std::size_t>(std::max_element(length.begin(), length.end()) -
+                                                   length.begin());
         const float plane = 0.5f * (extent.low[axis] + extent.high[axis]);
         std::size_t left = begin;
         std::size_t right = end;
@@ -224,8 +226,7 @@ private:
         patch.vector_area = 0.5f * glm::cross(p.b - p.a, p.c - p.a);
         patch.area = glm::length(patch.vector_area);
         patch.normal = patch.area > 0.0f ? patch.vector_area / patch.area : glm::vec3(0, 0, 1);
-        patch.radius =
-            std::sqrt(std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(c, c)}));
+        patch.radius = std::sqrt(std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(c, c)}));
         for (const glm::vec3 corner : {a, b, c})
             patch.spread.add_square(corner, patch.area / 12.0f);
         nodes_[index] = {patch.center, patch.radius, patch.normal, 0.0f, a, 0.0f, b, 0};
@@ -281,9 +282,9 @@ private:
             patch.radius = std::max(patch.radius, glm::length(d) + child->radius);
             const float tilt = glm::dot(child->normal, patch.normal);
             const float rise = std::sqrt(std::max(0.0f, 1.0f - tilt * tilt)) * child->radius;
-            patch.thickness = std::max(patch.thickness,
-                                       std::abs(glm::dot(d, patch.normal)) +
-                                           std::min(child->radius, child->thickness + rise));
+            patch.thickness =
+                std::max(patch.thickness, std::abs(glm::dot(d, patch.normal)) +
+                                              std::min(child->radius, child->thickness + rise));
         }
     }
 

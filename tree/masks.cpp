@@ -90,9 +90,11 @@ const MaskKernel* kernel_of(MaskKernelSet set)
 struct FamilyPoint {
     float cluster, share_leaf, share_inner;
 };
-constexpr FamilyPoint kFamily[] = {
-    {0.9f, 0.3f, 0.2f}, {0.7f, 0.1f, 0.07f}, {0.4f, 0.03f, 0.03f}, {0.2f, 0.015f, 0.015f},
-    {0.1f, 0.007f, 0.007f}};
+constexpr FamilyPoint kFamily[] = {{0.9f, 0.3f, 0.2f},
+                                   {0.7f, 0.1f, 0.07f},
+                                   {0.4f, 0.03f, 0.03f},
+                                   {0.2f, 0.015f, 0.015f},
+                                   {0.1f, 0.007f, 0.007f}};
 constexpr float kRelaxedCluster = 0.9f;  ///< a larger rectangle could swallow its receiver
 
 float between(float a, float b, float t)

@@ -2,9 +2,9 @@
 ///
 /// Not sums but visibility: several layers count once. Nodes of a tree over triangles are oriented
 /// rectangles; near ones are opened down to single triangles; all are drawn as convex polygons into
-/// a six-face bit raster held in SIMD registers. Groups of neighbouring receivers share the far part.
-/// Occlusion is the weight of the set bits above the horizon; the bent normal comes from the clear
-/// ones. Method, parameters and measurements: docs/masks.md.
+/// a six-face bit raster held in SIMD registers. Groups of neighbouring receivers share the far
+/// part. Occlusion is the weight of the set bits above the horizon; the bent normal comes from the
+/// clear ones. Method, parameters and measurements: docs/masks.md.
 ///
 /// Related work: Kautz, Lehtinen, Aila. Hemispherical Rasterization for Self-Shadowing of Dynamic
 /// Objects. 2004. Laine, Karras. Two Methods for Fast Ray-Cast Ambient Occlusion. 2010.
@@ -41,21 +41,21 @@ enum class MaskKernelSet {
 [[nodiscard]] std::vector<MaskKernelSet> available_mask_kernels();
 [[nodiscard]] std::string_view name_of(MaskKernelSet kernel);
 
-/// One parameter family for every mesh. `quality` is the one control: larger is slower and nearer to
-/// the truth.
+/// One parameter family for every mesh. `quality` is the one control: larger is slower and nearer
+/// to the truth.
 struct MaskOptions {
     static constexpr float kDraft = 0.0f;
     static constexpr float kGood = 1.0f;
     static constexpr float kBest = 2.0f;
 
-    Definition definition;
+    Definition definition = {};
 
-    /// In [0, 4]; 0, 1 and 2 are `draft`, `good` and `best`. Between them the sizes of clusters and of
-    /// shared groups are interpolated geometrically.
+    /// In [0, 4]; 0, 1 and 2 are `draft`, `good` and `best`. Between them the sizes of clusters and
+    /// of shared groups are interpolated geometrically.
     float quality = kGood;
 
-    /// The oracle: every triangle drawn for every receiver, nothing shared, nothing filled. O(n) per
-    /// receiver. `quality` is then without effect.
+    /// The oracle: every triangle drawn for every receiver, nothing shared, nothing filled. O(n)
+    /// per receiver. `quality` is then without effect.
     bool exact = false;
 
     MaskKernelSet kernel = MaskKernelSet::best;  ///< must be available
