@@ -156,7 +156,7 @@ private:
 
 }  // namespace
 
-MaskGroups group_receivers(std::span<const Receiver> receivers)
+MaskGroups group_for_masks(std::span<const Receiver> receivers)
 {
     return Grouper(receivers).build();
 }

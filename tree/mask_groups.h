@@ -21,6 +21,6 @@ struct MaskGroups {
 
 /// Receivers without a normal are left out. O(n log n), all cores, same result for any number of
 /// threads.
-[[nodiscard]] MaskGroups group_receivers(std::span<const Receiver> receivers);
+[[nodiscard]] MaskGroups group_for_masks(std::span<const Receiver> receivers);
 
 }  // namespace surfelao

@@ -31,6 +31,10 @@ constexpr float kFlatnessPenalty = 10.0f;
 constexpr float kDilation = 0.08f;
 constexpr float kDilationSlope = 40.0f;
 
+/// A rectangle's area follows from its second moments; a disk's is 1.05 times as large as that, and
+/// no convex shape's is larger. What is above this factor overlaps itself.
+constexpr float kSpreadMargin = 1.1f;
+
 /// Radius and thickness are measured at the corners up to this many triangles, and bounded by the
 /// children's above.
 constexpr std::size_t kExactBounds = 32;
@@ -142,7 +146,8 @@ private:
     Corners corners(std::uint32_t triangle) const
     {
         const glm::uvec3 t = geometry_.triangles[triangle];
-        return {geometry_.positions[t.x], geometry_.positions[t.y], geometry_.positions[t.z]};
+        return {kMaskFrame * geometry_.positions[t.x], kMaskFrame * geometry_.positions[t.y],
+                kMaskFrame * geometry_.positions[t.z]};
     }
 
     Key key_of(std::uint32_t triangle) const
@@ -309,12 +314,15 @@ private:
             cosine = std::sqrt(std::max(0.0f, 0.5f * (1.0f + c2)));
             sine = std::copysign(std::sqrt(std::max(0.0f, 0.5f * (1.0f - c2))), tb);
         }
-        const float quarter = 0.25f * seen_area;
+        // sheets that lie on each other count once: their spread tells how wide they are together
+        const float wide = mean + deviation;
         const float narrow = std::max(mean - deviation, 1e-12f * mean);
+        const float spread_area = 12.0f * std::sqrt(wide * narrow) / patch.area;
+        const float quarter = 0.25f * std::min(seen_area, kSpreadMargin * spread_area);
         float length_u = 0.0f;
         float length_v = 0.0f;
         if (quarter > 0.0f && narrow > 0.0f) {
-            length_u = std::sqrt(quarter * std::sqrt((mean + deviation) / narrow));
+            length_u = std::sqrt(quarter * std::sqrt(wide / narrow));
             length_u = std::min(length_u, patch.radius);
             length_v = quarter / length_u;
             const float diagonal = std::sqrt(length_u * length_u + length_v * length_v);

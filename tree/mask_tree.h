@@ -7,12 +7,21 @@
 /// Internal to the mask engine; masks.h is its door.
 #pragma once
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
 #include <vector>
 
 namespace surfelao {
+
+/// The unit frame turned so that nothing built along the axes, nor at round angles to them, lies
+/// along the rows of the raster: there a whole row of bits would depend on one rounding. Columns:
+/// where the axes go; an arbitrary rotation (by 41, 23 and 67 degrees about z, x and z),
+/// orthonormal to 1e-7.
+inline const glm::mat3 kMaskFrame{-0.26100944f, 0.93067852f,  0.25634268f,
+                                  -0.89583014f, -0.33245920f, 0.29488853f,
+                                  0.35966990f,  -0.15267081f, 0.92050485f};
 
 /// 16 floats in the order in which the kernels load them.
 struct alignas(64) MaskNode {
@@ -29,7 +38,7 @@ struct alignas(64) MaskNode {
 };
 static_assert(sizeof(MaskNode) == 64);
 
-/// nodes[0] is the root; empty where the scene has no triangle.
+/// In the mask frame. nodes[0] is the root; empty where the scene has no triangle.
 struct MaskTree {
     std::vector<MaskNode> nodes;
 };

@@ -124,6 +124,14 @@ MaskSettings settings_of(const MaskOptions& options)
     return settings;
 }
 
+std::vector<Receiver> in_mask_frame(std::span<const Receiver> receivers)
+{
+    std::vector<Receiver> turned(receivers.size());
+    for (std::size_t i = 0; i < receivers.size(); ++i)
+        turned[i] = {kMaskFrame * receivers[i].position, kMaskFrame * receivers[i].normal};
+    return turned;
+}
+
 /// Buffers of one thread: one list of nodes per level of the group tree on the way down.
 struct Workspace {
     MaskScratch scratch;
@@ -151,7 +159,8 @@ public:
                  settings_of(options)},
           has_triangles_(!tree.nodes.empty()),
           receivers_(receivers),
-          groups_(group_receivers(receivers)),
+          turned_(in_mask_frame(receivers)),
+          groups_(group_for_masks(turned_)),
           progress_(progress, groups_.order.size()),
           answers_(receivers.size())
     {
@@ -210,7 +219,7 @@ private:
         MaskReceivers columns{};
         columns.count = group.end - group.begin;
         for (std::uint32_t i = 0; i < columns.count; ++i) {
-            const Receiver& receiver = receivers_[groups_.order[group.begin + i]];
+            const Receiver& receiver = turned_[groups_.order[group.begin + i]];
             for (int k = 0; k < 3; ++k) {
                 columns.position[k][i] = receiver.position[k];
                 columns.normal[k][i] = receiver.normal[k];
@@ -223,8 +232,9 @@ private:
             const std::uint32_t index = groups_.order[group.begin + i];
             const glm::vec3 bent(found.bent[0][i], found.bent[1][i], found.bent[2][i]);
             const float length = glm::length(bent);
-            answers_[index] = {found.occlusion[i],
-                               length > 0.0f ? bent / length : receivers_[index].normal};
+            // a row vector times a rotation: turned back
+            answers_[index] = {found.occlusion[i], length > 0.0f ? (bent / length) * kMaskFrame
+                                                                 : receivers_[index].normal};
         }
         progress_.add(columns.count);
     }
@@ -233,6 +243,7 @@ private:
     MaskWorld world_;
     bool has_triangles_;
     std::span<const Receiver> receivers_;
+    std::vector<Receiver> turned_;
     MaskGroups groups_;
     ProgressMeter progress_;
     std::vector<Occlusion> answers_;

@@ -3,7 +3,6 @@
 #include "scenes.h"
 
 #include <glm/geometric.hpp>
-#include <glm/gtc/constants.hpp>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -11,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <random>
 
 namespace surfelao {
 namespace {
@@ -30,9 +28,9 @@ struct Setting {
 /// others were measured on these worlds and rounded up.
 std::vector<Setting> settings()
 {
-    return {{"draft", {.quality = MaskOptions::kDraft}, 0.03},
-            {"good", {.quality = MaskOptions::kGood}, 0.015},
-            {"best", {.quality = MaskOptions::kBest}, 0.01},
+    return {{"draft", {.quality = MaskOptions::kDraft}, 0.07},
+            {"good", {.quality = MaskOptions::kGood}, 0.025},
+            {"best", {.quality = MaskOptions::kBest}, 0.025},
             {"exact", {.exact = true}, 0.006}};
 }
 
@@ -74,7 +72,7 @@ TEST(MaskWorlds, APlaneIsOpen)
 // them is the error.
 TEST(MaskWorlds, AConvexBodyIsOpen)
 {
-    const Geometry geometry = make_geometry(scenes::sphere({0, 0, 0}, 1.0, 16));
+    const Geometry geometry = make_geometry(scenes::sphere({0, 0, 0}, 1.0, 10));
     const std::vector<Receiver> receivers = receivers_at_vertices(geometry, kOffset);
     for (const Setting& setting : settings())
         EXPECT_LT(mean(solve(geometry, receivers, setting.options)), 0.001) << setting.name;
@@ -82,10 +80,10 @@ TEST(MaskWorlds, AConvexBodyIsOpen)
 
 TEST(MaskWorlds, ClosedRoomsAreClosed)
 {
-    const Scene rooms[] = {scenes::room({0, 0, 0}, {1.0, 1.3, 0.8}, 24),
-                           scenes::flipped(scenes::sphere({0, 0, 0}, 1.0, 24))};
+    const Scene rooms[] = {scenes::room({0, 0, 0}, {1.0, 1.3, 0.8}, 12),
+                           scenes::flipped(scenes::sphere({0, 0, 0}, 1.0, 12))};
     // cracks between clusters shrink with them
-    const double least[] = {0.96, 0.98, 0.995, 1.0};
+    const double least[] = {0.95, 0.975, 0.995, 0.9995};
     for (const Scene& scene : rooms) {
         const Geometry geometry = make_geometry(scene);
         const std::vector<Receiver> receivers = receivers_at_vertices(geometry, kOffset);
@@ -100,7 +98,7 @@ TEST(MaskWorlds, TheFootOfAWallSeesHalf)
 {
     const Geometry geometry = make_geometry(scenes::wall_and_floor(200.0, 100));
     // two cells from the wall's foot; the wall's top is 50 times as far: 1/2 less 1e-4
-    const Receiver foot[] = {receiver_at(geometry, {4.0, 100.0, 0.0}, {0, 0, 1})};
+    const Receiver foot[] = {receiver_at(geometry, {4.0, 0.0, 0.0}, {0, 0, 1})};
     for (const Setting& setting : settings()) {
         const Occlusion answer = solve(geometry, foot, setting.options)[0];
         const double height = 200.0 / 4.0;
@@ -109,27 +107,23 @@ TEST(MaskWorlds, TheFootOfAWallSeesHalf)
     }
 }
 
-/// A flat disk of `slices` triangles round (0, 0, height), facing down, and a far speck of floor
-/// that gives the scene its size.
-Scene disk_over_origin(double height, int slices, int copies)
+/// Disks of radius 1 round (0, 0, height), made of a square grid, and a far speck of floor that
+/// gives the scene its size.
+Scene disks_over_origin(double height, int copies)
 {
-    Scene scene;
+    Scene scene = scenes::sheet({-0.1, -0.1, -0.5}, {0.01, 0, 0}, {0, 0.01, 0}, 1);
     for (int copy = 0; copy < copies; ++copy) {
-        const auto first = static_cast<std::uint32_t>(scene.positions.size());
-        scene.positions.push_back({0, 0, height});
-        for (int i = 0; i < slices; ++i) {
-            const double angle = 2.0 * glm::pi<double>() * i / slices;
-            scene.positions.push_back({std::cos(angle), std::sin(angle), height});
-        }
-        for (int i = 0; i < slices; ++i) {
-            const auto a = static_cast<std::uint32_t>(i);
-            const auto b = static_cast<std::uint32_t>((i + 1) % slices);
-            scene.triangles.push_back({first, first + 1 + b, first + 1 + a});
-        }
+        // square rings become circles
+        scene =
+            scene +
+            scenes::moved(scenes::sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 32), [&](glm::dvec3 p) {
+                const double ring = std::max(std::abs(p.x), std::abs(p.y));
+                const double length = std::sqrt(p.x * p.x + p.y * p.y);
+                const double scale = length > 0.0 ? ring / length : 0.0;
+                return glm::dvec3(p.x * scale, p.y * scale, height);
+            });
     }
-    scene.parts.push_back({"disk", 0, static_cast<std::uint32_t>(scene.positions.size()), 0,
-                           static_cast<std::uint32_t>(scene.triangles.size())});
-    return scene + scenes::sheet({-0.1, -0.1, -0.5}, {0.01, 0, 0}, {0, 0.01, 0}, 1);
+    return scene;
 }
 
 // R^2 / (R^2 + d^2); k coincident sheets are one sheet.
@@ -137,7 +131,7 @@ TEST(MaskWorlds, FacingDiskOnTheAxisInOneOrManySheets)
 {
     for (const double height : {0.2, 0.5, 1.0, 3.0}) {
         for (const int copies : {1, 5}) {
-            const Geometry geometry = make_geometry(disk_over_origin(height, 128, copies));
+            const Geometry geometry = make_geometry(disks_over_origin(height, copies));
             const Receiver below[] = {receiver_at(geometry, {0, 0, 0}, {0, 0, 1})};
             const double d = height - kOffset * geometry.frame.diagonal;
             for (const Setting& setting : settings()) {
@@ -168,11 +162,10 @@ TEST(MaskWorlds, SphereInView)
     }
 }
 
-
 TEST(MaskWorlds, TheSameAnswerFromEveryKernel)
 {
     const Geometry geometry =
-        make_geometry(scenes::bumpy_sphere(24) + scenes::box({0.9, 0.9, 0.9}, {1.6, 1.5, 1.4}, 6));
+        make_geometry(scenes::bumpy_sphere(8) + scenes::box({0.9, 0.9, 0.9}, {1.6, 1.5, 1.4}, 6));
     const std::vector<Receiver> receivers = receivers_at_vertices(geometry, kOffset);
     for (Setting setting : settings()) {
         setting.options.kernel = MaskKernelSet::portable;
@@ -194,7 +187,7 @@ TEST(MaskWorlds, TheSameAnswerFromEveryKernel)
 
 TEST(MaskWorlds, SameBytesForAnyNumberOfThreads)
 {
-    const Geometry geometry = make_geometry(scenes::bumpy_sphere(40));
+    const Geometry geometry = make_geometry(scenes::bumpy_sphere(16));
     const std::vector<Receiver> receivers = receivers_at_vertices(geometry, kOffset);
     std::vector<std::vector<Occlusion>> answers;
     for (const std::size_t threads : {1, 4}) {
@@ -208,7 +201,7 @@ TEST(MaskWorlds, SameBytesForAnyNumberOfThreads)
 
 TEST(MaskWorlds, ErrorAgainstTheOracleFallsWithQuality)
 {
-    const Geometry geometry = make_geometry(scenes::bumpy_sphere(40));
+    const Geometry geometry = make_geometry(scenes::bumpy_sphere(16));
     const std::vector<Receiver> receivers = receivers_at_vertices(geometry, kOffset);
     const std::vector<Occlusion> truth = solve(geometry, receivers, {.exact = true});
     double last = 0.03;

@@ -1,0 +1,118 @@
+// The text of the kernels, compiled once more for this test, so that its parts can be asked alone.
+#define SURFELAO_MASK_ISA mask_under_test
+#define SURFELAO_MASK_ISA_NAME "under test"
+#include "tree/mask_kernel_body.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace surfelao::mask_under_test {
+namespace {
+
+glm::dvec3 direction_of(int face, int y, int x)
+{
+    const MaskRaster& raster = mask_raster();
+    const double u = (x + double(raster.row_shift[y])) / 16.0 - 1.0;
+    const int axis = face / 2;
+    glm::dvec3 d;
+    d[axis] = face % 2 == 0 ? 1.0 : -1.0;
+    d[(axis + 1) % 3] = u;
+    d[(axis + 2) % 3] = raster.row_v[y];
+    return d;
+}
+
+/// Sine of the angle by which a direction lies inside of all edges; negative: outside.
+double inside_by(const std::vector<glm::dvec3>& corner, glm::dvec3 direction)
+{
+    const double turn = glm::dot(glm::cross(corner[0], corner[1]), corner[2]) < 0.0 ? -1.0 : 1.0;
+    double least = 1.0;
+    for (std::size_t i = 0; i < corner.size(); ++i) {
+        const glm::dvec3 n = glm::cross(corner[i], corner[(i + 1) % corner.size()]);
+        least = std::min(least, turn * glm::dot(glm::normalize(n), glm::normalize(direction)));
+    }
+    return least;
+}
+
+template <int kCorners>
+std::vector<std::uint32_t> drawn(const std::vector<glm::dvec3>& corner)
+{
+    alignas(64) float columns[3 * kCorners][kLanes] = {};
+    alignas(64) std::uint32_t target[kLanes] = {};
+    for (int i = 0; i < kCorners; ++i) {
+        for (int k = 0; k < 3; ++k)
+            columns[3 * i + k][0] = static_cast<float>(corner[static_cast<std::size_t>(i)][k]);
+    }
+    alignas(64) std::uint32_t mask[kMaskWords] = {};
+    draw<kCorners, kLanes>(mask_raster(), columns[0], target, 1, mask);
+    return {mask, mask + kMaskWords};
+}
+
+template <int kCorners>
+void expect_point_in_polygon(const std::vector<glm::dvec3>& corner)
+{
+    const std::vector<std::uint32_t> mask = drawn<kCorners>(corner);
+    for (int face = 0; face < kMaskFaces; ++face) {
+        for (int y = 0; y < kMaskRows; ++y) {
+            for (int x = 0; x < 32; ++x) {
+                const double depth = inside_by(corner, direction_of(face, y, x));
+                // nearer than this to an edge, rounding decides
+                if (std::abs(depth) < 1e-5)
+                    continue;
+                const bool set = mask[static_cast<std::size_t>(16 * face + y)] >> x & 1u;
+                ASSERT_EQ(set, depth > 0.0) << "face " << face << " row " << y << " column " << x;
+            }
+        }
+    }
+}
+
+TEST(MaskRaster, TrianglesAreTheirPoints)
+{
+    std::mt19937 random(3);
+    const auto number = [&] { return random() / 2147483648.0 - 1.0; };
+    for (int i = 0; i < 400; ++i) {
+        const double size = std::pow(10.0, number() - 0.5);
+        const glm::dvec3 center(number(), number(), number());
+        std::vector<glm::dvec3> corner;
+        for (int k = 0; k < 3; ++k)
+            corner.push_back(center + size * glm::dvec3(number(), number(), number()));
+        expect_point_in_polygon<3>(corner);
+    }
+}
+
+TEST(MaskRaster, RectanglesAreTheirPoints)
+{
+    std::mt19937 random(4);
+    const auto number = [&] { return random() / 2147483648.0 - 1.0; };
+    for (int i = 0; i < 400; ++i) {
+        const glm::dvec3 center(number(), number(), number());
+        const glm::dvec3 a = 0.4 * glm::dvec3(number(), number(), number());
+        const glm::dvec3 b = 0.2 * glm::cross(a, glm::dvec3(number(), number(), number()));
+        expect_point_in_polygon<4>(
+            {center + a + b, center - a + b, center - a - b, center + a - b});
+    }
+}
+
+// A fan right above, off by one rounding: edges through a face's centre, all but upright.
+TEST(MaskRaster, SlicesThatMeetOverhead)
+{
+    for (const double away : {0.0, 1e-9, 1e-8, 1e-3}) {
+        for (int i = 0; i < 128; ++i) {
+            const auto rim = [](int k) {
+                const double angle = 2.0 * 3.14159265358979 * k / 128.0;
+                return glm::dvec3(float(0.35 * std::cos(angle)), float(0.35 * std::sin(angle)),
+                                  0.07f);
+            };
+            expect_point_in_polygon<3>(
+                {glm::dvec3(float(away), float(0.7 * away), 0.07f), rim(i + 1), rim(i)});
+        }
+    }
+}
+
+}  // namespace
+}  // namespace surfelao::mask_under_test
