@@ -1,0 +1,111 @@
+#include "image/image_file.h"
+
+#include "image/image_module.h"
+#include "surfels/atomic_file.h"
+#include "surfels/errors.h"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace surfelao {
+namespace {
+
+const ImageModule& open_module()
+{
+    std::error_code ignored;  // no /proc: the search path is left
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+    const std::filesystem::path beside =
+        program.parent_path() / SURFELAO_IMAGE_MODULE_FROM_PROGRAM / SURFELAO_IMAGE_MODULE_NAME;
+    void* library = dlopen(beside.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!library && !std::filesystem::exists(beside, ignored))
+        library = dlopen(SURFELAO_IMAGE_MODULE_NAME, RTLD_NOW | RTLD_LOCAL);
+    if (!library)
+        throw std::runtime_error(std::string("cannot read or write pictures: ") + dlerror());
+    const auto entry = reinterpret_cast<ImageModuleEntry>(dlsym(library, kImageModuleEntry));
+    if (!entry)
+        throw std::runtime_error(std::string("cannot read or write pictures: ") + dlerror());
+    return *entry();  // the library stays open for the life of the process
+}
+
+const ImageModule& module()
+{
+    static const ImageModule& opened = open_module();
+    return opened;
+}
+
+std::string lower_extension(const std::filesystem::path& path)
+{
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+/// One line without a full stop, whatever a library wrote.
+std::string one_line(std::string text)
+{
+    text.erase(std::min(text.find('\n'), text.size()));
+    while (!text.empty() && (text.back() == '.' || text.back() == ' '))
+        text.pop_back();
+    return text.empty() ? "it is damaged" : text;
+}
+
+}  // namespace
+
+Image read_image(const std::filesystem::path& path)
+{
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored))
+        throw InputError(path.string() + ": no such file");
+    if (std::filesystem::is_directory(path, ignored))
+        throw InputError(path.string() + ": is a folder, a picture was wanted");
+
+    Image image;
+    const std::string error = module().read(path.string(), image);
+    if (!error.empty())
+        throw InputError(path.string() + ": cannot be read as a picture: " + one_line(error));
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const glm::vec4& p = image.at(x, y);
+            if (!std::isfinite(p.r) || !std::isfinite(p.g) || !std::isfinite(p.b) ||
+                !std::isfinite(p.a))
+                throw InputError(path.string() + ": pixel " + std::to_string(x) + ", " +
+                                 std::to_string(y) + " is not finite");
+        }
+    }
+    return image;
+}
+
+void check_image_output(const std::filesystem::path& path)
+{
+    const std::string extension = lower_extension(path);
+    if (extension != ".png" && extension != ".jpg" && extension != ".jpeg" && extension != ".exr")
+        throw InputError(path.string() + ": pictures are written as .png, .jpg or .exr");
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored))
+        throw InputError(path.string() + ": is a folder, a file name was wanted");
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    if (!std::filesystem::is_directory(folder, ignored))
+        throw InputError(path.string() + ": there is no folder " + folder.string());
+}
+
+void write_image(const std::filesystem::path& path, const Image& image)
+{
+    check_image_output(path);
+    if (image.pixels.empty())
+        throw InputError(path.string() + ": the picture has no pixels");
+    const bool alpha = std::any_of(image.pixels.begin(), image.pixels.end(),
+                                   [](const glm::vec4& pixel) { return pixel.a < 1.0f; });
+    write_atomically(path, [&](const std::filesystem::path& temporary) {
+        const std::string error = module().write(temporary.string(), image, alpha);
+        if (!error.empty())
+            throw std::runtime_error(path.string() + ": cannot be written: " + one_line(error));
+    });
+}
+
+}  // namespace surfelao

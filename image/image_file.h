@@ -1,0 +1,31 @@
+/// image_file.h: pictures from and to files.
+///
+/// OpenImageIO does the work, in a module of its own (image_module.cpp) that is opened at the first
+/// call: linking it into the program would cost every start 0.25 s and 134 MB. The module lies at
+/// ../<library folder>/surfelao beside the program's folder, in the build tree and after install
+/// alike; else the system's search path for libraries is tried.
+#pragma once
+
+#include "image/image.h"
+
+#include <filesystem>
+
+namespace surfelao {
+
+/// Reads .png, .jpg, .hdr, .exr and whatever else OpenImageIO knows. 8- and 16-bit files are taken
+/// as sRGB, float files as linear; grey becomes RGB, missing alpha becomes 1. Throws InputError
+/// with one sentence for a file that is missing, not a picture, cut short, larger than 2^28 pixels
+/// or holds values that are not finite.
+[[nodiscard]] Image read_image(const std::filesystem::path& path);
+
+/// Throws InputError when `path` could not be written at all: an extension other than .png, .jpg,
+/// .jpeg or .exr, a folder that is missing, a path that is a folder. For use before any work.
+void check_image_output(const std::filesystem::path& path);
+
+/// Writes .png (8 bit sRGB), .jpg (8 bit sRGB, quality 95, alpha left out) or .exr (linear 32-bit
+/// float). Alpha is written where any pixel is not opaque. The file appears when it is complete
+/// (atomic_file.h). Throws InputError as check_image_output does and for an image without pixels,
+/// std::runtime_error when the machine refuses.
+void write_image(const std::filesystem::path& path, const Image& image);
+
+}  // namespace surfelao

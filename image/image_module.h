@@ -1,0 +1,23 @@
+/// image_module.h: what the module with OpenImageIO in it offers to image_file.cpp, which alone
+/// opens it. Both come from one build, so C++ types may cross; exceptions do not.
+#pragma once
+
+#include "image/image.h"
+
+#include <string>
+
+namespace surfelao {
+
+struct ImageModule {
+    /// Reads `path` into `image`; returns what went wrong, without the path, or an empty string.
+    std::string (*read)(const std::string& path, Image& image);
+    /// Writes `image` to `path` in the format of its extension, with or without alpha; returns the
+    /// same.
+    std::string (*write)(const std::string& path, const Image& image, bool alpha);
+};
+
+/// The name and type of the one function that the module exports.
+inline constexpr const char* kImageModuleEntry = "surfelao_image_module";
+using ImageModuleEntry = const ImageModule* (*)();
+
+}  // namespace surfelao
