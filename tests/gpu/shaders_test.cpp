@@ -22,6 +22,17 @@ std::string text_of(std::string_view name)
     return found == shader_files().end() ? "" : std::string(found->text);
 }
 
+/// The file with everything it includes, as one text.
+std::string text_with_includes(const std::string& name)
+{
+    static const std::regex include("#include \"([^\"]+)\"");
+    const std::string text = text_of(name);
+    std::string all = text;
+    for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it)
+        all += text_with_includes((*it)[1]);
+    return all;
+}
+
 /// The words in the comments of a file that match.
 std::set<std::string> comment_words(const std::string& text, const std::regex& word)
 {
@@ -59,7 +70,8 @@ std::vector<std::string> all_definitions(const std::string& text)
 }
 
 // The contract at the top of a .frag names the .vert it is drawn with ("Vertices  x.vert"); every
-// u_ name in the comments of the two is a uniform of the linked program, and the other way round.
+// u_ name in the comments of the two and of what they include is a uniform of the linked program,
+// and the other way round.
 TEST(Shaders, EachFragmentShaderLinksAndUsesTheUniformsOfItsContract)
 {
     for (const std::string& name : fragment_files()) {
@@ -69,8 +81,8 @@ TEST(Shaders, EachFragmentShaderLinksAndUsesTheUniformsOfItsContract)
         const Program program(test_context(), *vertex.begin(), name, all_definitions(text));
 
         const std::regex uniform("\\bu_\\w+");
-        std::set<std::string> promised = comment_words(text, uniform);
-        promised.merge(comment_words(text_of(*vertex.begin()), uniform));
+        std::set<std::string> promised = comment_words(text_with_includes(name), uniform);
+        promised.merge(comment_words(text_with_includes(*vertex.begin()), uniform));
         const std::vector<std::string> uniforms = program.uniforms();
         EXPECT_EQ(promised, std::set<std::string>(uniforms.begin(), uniforms.end())) << name;
     }

@@ -1,0 +1,66 @@
+// shading.glsl: the colour of a surface point, linear light, display-referred.
+//
+// Right of u_wipe_x (pixels) the reference stands in for the result.
+//   u_colors            the value of Colors in viewer/view_options.h
+//   u_difference_scale  occlusion difference that is shown hottest
+//   u_heat              256 x 1, heat_colors() of image/heat_map.h
+//   u_irradiance        irradiance_map() of viewer/environment.h, row 0 = sky
+#include "panorama.glsl"
+
+uniform int u_colors;
+uniform float u_wipe_x;
+uniform float u_difference_scale;
+uniform sampler2D u_heat;
+uniform sampler2D u_irradiance;
+
+const float kAlbedo = 0.80;  // of the model in the environment
+const float kPaper = 0.94;   // shown value of an open place: not pure white, so that edges show
+
+const int kVisibility = 0;
+const int kRays = 1;
+const int kDifference = 2;
+const int kBentNormals = 3;
+const int kNormals = 4;
+const int kLevels = 5;
+const int kEnvironment = 6;
+
+// Twin of heat_color in image/heat_map.cpp: x = 0 and 1 are the middles of the outer texels.
+vec3 heat_color(float x)
+{
+    return texture(u_heat, vec2((clamp(x, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5)).rgb;
+}
+
+// The linear light that a screen shows as that value (IEC 61966-2-1).
+vec3 srgb_decode(vec3 shown)
+{
+    return mix(pow((shown + 0.055) / 1.055, vec3(2.4)), shown / 12.92,
+               lessThanEqual(shown, vec3(0.04045)));
+}
+
+vec3 safe_normalize(vec3 v)
+{
+    float length2 = dot(v, v);
+    return length2 > 0.0 ? v * inversesqrt(length2) : vec3(0.0);
+}
+
+// A direction as a colour: the shown value is (d + 1) / 2.
+vec3 direction_color(vec3 d) { return srgb_decode(0.5 + 0.5 * d); }
+
+// normal_level, own and reference: the texels of model_shape.glsl and model_values.glsl.
+vec3 shade(vec4 normal_level, vec4 own, vec4 reference)
+{
+    vec4 shown = gl_FragCoord.x < u_wipe_x ? own : reference;
+    if (u_colors == kDifference)
+        return heat_color(abs(own.w - reference.w) / u_difference_scale);
+    if (u_colors == kBentNormals)
+        return direction_color(safe_normalize(shown.xyz));
+    if (u_colors == kNormals)
+        return direction_color(safe_normalize(normal_level.xyz));
+    if (u_colors == kLevels)
+        return heat_color(normal_level.w);
+    float visibility = 1.0 - (u_colors == kRays ? reference.w : shown.w);
+    if (u_colors != kEnvironment)  // as the baked colours look in other programs
+        return srgb_decode(vec3(kPaper * visibility));
+    vec2 uv = panorama_uv(u_sky_frame * safe_normalize(shown.xyz));
+    return soften(kAlbedo * visibility * u_exposure * textureLod(u_irradiance, uv, 0.0).rgb);
+}

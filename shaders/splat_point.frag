@@ -1,0 +1,15 @@
+#version 330 core
+#include "shading.glsl"
+
+// splat_point.frag: a plain point sprite: the whole square.
+//
+// Vertices   splat_square.vert
+// Reads      shading.glsl
+// Writes     out_color  linear, opaque
+
+flat in vec4 v_normal_level;
+flat in vec4 v_own;
+flat in vec4 v_reference;
+out vec4 out_color;
+
+void main() { out_color = vec4(shade(v_normal_level, v_own, v_reference), 1.0); }

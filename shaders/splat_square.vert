@@ -1,0 +1,40 @@
+#version 330 core
+#include "model_shape.glsl"
+#include "model_values.glsl"
+#include "splats.glsl"
+
+// splat_square.vert: a surfel as a square that faces the camera, at the surfel's depth.
+//
+// Its side on the screen is R * h * cot(fovy / 2) / depth pixels, R being the radius and h the
+// picture's height: the projection of a square of side 2R at that depth, for any field of view.
+//
+// Drawn by   viewer/renderer.cpp, 6 vertices per splat
+// Reads      model_shape.glsl, model_values.glsl, splats.glsl
+// Writes     v_disk          place on the square, -1..1 in both directions
+//            v_view_normal   the surfel's normal in view space
+//            v_center_depth  its z in view space
+//            v_radius        its radius
+//            v_normal_level v_own v_reference: the texels of its vertex
+
+out vec2 v_disk;
+flat out vec3 v_view_normal;
+flat out float v_center_depth;
+flat out float v_radius;
+flat out vec4 v_normal_level;
+flat out vec4 v_own;
+flat out vec4 v_reference;
+
+void main()
+{
+    int vertex = splat_vertex();
+    v_disk = splat_corner();
+    v_normal_level = texelFetch(u_normals, vertex);
+    v_own = texelFetch(u_occlusion, vertex);
+    v_reference = texelFetch(u_reference, vertex);
+    v_radius = splat_radius();
+    v_view_normal = mat3(u_view) * v_normal_level.xyz;
+    vec3 view = (u_view * vec4(texelFetch(u_positions, vertex).xyz, 1.0)).xyz;
+    v_center_depth = view.z;
+    view.xy += v_radius * v_disk;
+    gl_Position = u_projection * vec4(view, 1.0);
+}

@@ -1,0 +1,409 @@
+// Pictures by OSMesa: the same pixels everywhere.
+//
+// SURFELAO_UPDATE_GOLDEN=1 writes tests/viewer/golden anew: look at what changed before it is kept.
+
+#include "viewer/render.h"
+
+#include "image/difference.h"
+#include "image/heat_map.h"
+#include "image/image_file.h"
+#include "reference/rays.h"
+#include "scenes.h"
+#include "surfels/errors.h"
+
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace surfelao {
+namespace {
+
+constexpr float kOffset = 1e-4f;
+
+Model model_of(const Scene& scene, UpAxis up = UpAxis::z)
+{
+    return make_model(make_geometry(scene), up, kOffset);
+}
+
+std::vector<Occlusion> all(const Model& model, float occlusion)
+{
+    std::vector<Occlusion> values;
+    for (const Receiver& receiver : model.receivers)
+        values.push_back({occlusion, receiver.normal});
+    return values;
+}
+
+/// Small, by OSMesa, without the ground: only the model differs from the background.
+RenderOptions plain(Surface surface, int width, int height)
+{
+    RenderOptions options;
+    options.width = width;
+    options.height = height;
+    options.samples = 1;
+    options.view.surface = surface;
+    options.view.ground = false;
+    options.backend = GlBackend::osmesa;
+    return options;
+}
+
+/// Open surfaces are lighter than any background.
+bool is_model(const glm::vec4& pixel)
+{
+    return pixel.r > 0.6f;
+}
+
+std::size_t model_pixels(const Image& image)
+{
+    return static_cast<std::size_t>(
+        std::count_if(image.pixels.begin(), image.pixels.end(), is_model));
+}
+
+Image draw_open(const Model& model, const Camera& camera, const RenderOptions& options)
+{
+    return render(model, all(model, 0.0f), {}, camera, options);
+}
+
+/// The largest and the least distance of the mask's rim from the circle of its area, in pixels.
+struct Roundness {
+    double outside = 0.0;  ///< of the farthest model pixel beyond the circle
+    double inside = 0.0;   ///< of the innermost missing pixel
+};
+Roundness roundness(const Image& image)
+{
+    glm::dvec2 centre(0.0);
+    double count = 0.0;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            if (is_model(image.at(x, y))) {
+                centre += glm::dvec2(x, y);
+                count += 1.0;
+            }
+        }
+    }
+    centre /= count;
+    const double radius = std::sqrt(count / 3.14159265358979);
+    Roundness result;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const double beyond = glm::distance(glm::dvec2(x, y), centre) - radius;
+            if (is_model(image.at(x, y)))
+                result.outside = std::max(result.outside, beyond);
+            else
+                result.inside = std::max(result.inside, -beyond);
+        }
+    }
+    return result;
+}
+
+// 1,538 surfels on a sphere that is 216 pixels wide. A disk at the rim sticks out by its sagitta
+// r^2 / (2 R), here 0.5 pixels.
+TEST(Splats, ASpheresOutlineIsRound)
+{
+    const Model model = model_of(scenes::sphere({0, 0, 0}, 1.0, 16));
+    const Camera camera = frame_points(model.seen, UpAxis::z, 1.0f);
+    const Roundness disks = roundness(draw_open(model, camera, plain(Surface::splats, 240, 240)));
+    EXPECT_LT(disks.outside, 1.0);
+    EXPECT_LT(disks.inside, 1.0);
+    const Roundness affine = roundness(draw_open(model, camera, plain(Surface::affine, 240, 240)));
+    EXPECT_LT(affine.outside, 1.0);
+    // what plain sprites do instead
+    const Roundness points = roundness(draw_open(model, camera, plain(Surface::points, 240, 240)));
+    EXPECT_GT(points.outside, 2.0);
+}
+
+/// How many pixels that triangles cover the surface leaves open.
+std::size_t holes(const Model& model, const Camera& camera, Surface surface)
+{
+    const Image triangles = draw_open(model, camera, plain(Surface::triangles, 320, 200));
+    const Image other = draw_open(model, camera, plain(surface, 320, 200));
+    EXPECT_GT(model_pixels(triangles), 1000u);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < other.pixels.size(); ++i)
+        count += is_model(triangles.pixels[i]) && !is_model(other.pixels[i]);
+    return count;
+}
+
+// From 2 degrees above a floor that reaches to the eye. The report's affine form loses the floor.
+TEST(Splats, AFloorAtAGrazingAngleKeepsItsCoverage)
+{
+    const Model model = model_of(scenes::sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 24));
+    Camera camera;
+    camera.up = {0, 0, 1};
+    camera.eye = {0.0f, -0.6f, 0.02f};
+    camera.target = {0.0f, 0.0f, 0.0f};
+    EXPECT_EQ(holes(model, camera, Surface::splats), 0u);
+    EXPECT_GT(holes(model, camera, Surface::affine), 500u);
+}
+
+TEST(Splats, ABumpySurfaceHasNoHoles)
+{
+    const Model model = model_of(scenes::bumpy_sphere(24));
+    const Camera camera = frame_points(model.seen, UpAxis::z, 1.6f);
+    EXPECT_EQ(holes(model, camera, Surface::splats), 0u);
+}
+
+// A flat sheet seen from straight above: the disks of its rim stick out by exactly one radius,
+// which is R * h * cot(fovy / 2) / (2 * depth) pixels.
+TEST(Splats, HaveTheRightSizeForAnyFieldOfView)
+{
+    const Model model = model_of(scenes::sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 8));
+    for (const float fovy_deg : {10.0f, 45.0f, 120.0f}) {
+        Camera camera = frame_points(model.seen, UpAxis::z, 1.0f,
+                                     {.azimuth_deg = 0, .elevation_deg = 90}, fovy_deg);
+        zoom(camera, 1.5f);
+        const auto width = [&](Surface surface) {
+            const Image image = draw_open(model, camera, plain(surface, 400, 400));
+            int low = image.width, high = 0;
+            for (int y = 0; y < image.height; ++y) {
+                for (int x = 0; x < image.width; ++x) {
+                    if (is_model(image.at(x, y))) {
+                        low = std::min(low, x);
+                        high = std::max(high, x + 1);
+                    }
+                }
+            }
+            return high - low;
+        };
+        const float depth = glm::distance(camera.eye, camera.target);
+        const float radius = model.splat_radii[0] * 400.0f /
+                             (std::tan(glm::radians(fovy_deg) / 2.0f) * 2.0f * depth);
+        const int triangles = width(Surface::triangles);
+        for (Surface surface : {Surface::splats, Surface::affine, Surface::points})
+            EXPECT_NEAR(width(surface) - triangles, 2.0f * radius, 2.0f) << fovy_deg;
+    }
+}
+
+// Points of OpenGL end at 255 pixels on this device.
+TEST(Splats, MayBeLargerThanTheDevicesPoints)
+{
+    Scene scene;
+    scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    scene.triangles = {{0, 1, 2}};
+    const Model model = model_of(scene);
+    Camera camera =
+        frame_points(model.seen, UpAxis::z, 1.0f, {.azimuth_deg = 0, .elevation_deg = 90});
+    zoom(camera, 0.4f);
+    for (Surface surface : {Surface::splats, Surface::affine, Surface::points}) {
+        const Image image = draw_open(model, camera, plain(surface, 700, 700));
+        EXPECT_EQ(model_pixels(image), 700u * 700u);
+    }
+}
+
+TEST(Render, TheGroundIsDarkerUnderTheModelAndOnlyThere)
+{
+    const Model model = model_of(scenes::box({0, 0, 0}, {1, 1, 1}, 2));
+    const Camera camera = frame_points(model.seen, UpAxis::z, 1.5f);
+    RenderOptions options = plain(Surface::triangles, 150, 100);
+    const Image without = render(model, all(model, 0.0f), {}, camera, options);
+    options.view.ground = true;
+    EXPECT_EQ(render(model, all(model, 0.0f), {}, camera, options).pixels, without.pixels);
+    std::vector<Occlusion> dark = all(model, 0.0f);
+    for (std::size_t i = model.geometry.positions.size(); i < dark.size(); ++i)
+        dark[i].occlusion = 0.5f;
+    const Image with = render(model, dark, {}, camera, options);
+    EXPECT_LT(with.at(75, 97).r, 0.6f * without.at(75, 97).r);
+    EXPECT_EQ(with.at(75, 40), without.at(75, 40));  // the box
+    EXPECT_EQ(with.at(2, 2), without.at(2, 2));      // above the horizon
+    // seen from below it hides nothing
+    Camera below = frame_points(model.seen, UpAxis::z, 1.5f, {.elevation_deg = -30});
+    options.view.ground = false;
+    const Image free = render(model, dark, {}, below, options);
+    options.view.ground = true;
+    EXPECT_EQ(render(model, dark, {}, below, options).pixels, free.pixels);
+}
+
+TEST(Render, RightOfTheWipeTheReferenceIsShown)
+{
+    const Model model = model_of(scenes::sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2));
+    const Camera camera =
+        frame_points(model.seen, UpAxis::z, 1.0f, {.azimuth_deg = 0, .elevation_deg = 90});
+    RenderOptions options = plain(Surface::triangles, 100, 100);
+    options.view.wipe = 0.5f;
+    const Image image = render(model, all(model, 0.0f), all(model, 1.0f), camera, options);
+    EXPECT_GT(image.at(48, 50).r, 0.8f);
+    EXPECT_EQ(image.at(52, 50).r, 0.0f);
+    options.view.wipe = 1.0f;
+    options.view.colors = Colors::rays;
+    EXPECT_EQ(render(model, all(model, 0.0f), all(model, 1.0f), camera, options).at(48, 50).r,
+              0.0f);
+}
+
+TEST(Render, TheDifferenceIsAHeatMapWithItsLegend)
+{
+    const Model model = model_of(scenes::sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2));
+    const Camera camera =
+        frame_points(model.seen, UpAxis::z, 1.0f, {.azimuth_deg = 0, .elevation_deg = 90});
+    RenderOptions options = plain(Surface::triangles, 300, 300);
+    options.view.colors = Colors::difference;
+    options.view.difference_scale = 0.2f;
+    const auto middle = [&](float own, float reference) {
+        const Image image = render(model, all(model, own), all(model, reference), camera, options);
+        EXPECT_LT(image.at(10, 290).r, 0.05f);  // the legend's plate
+        return glm::vec3(image.at(150, 150));
+    };
+    EXPECT_LT(glm::distance(middle(0.3f, 0.3f), heat_color(0.0f)), 0.01f);
+    EXPECT_LT(glm::distance(middle(0.3f, 0.4f), heat_color(0.5f)), 0.01f);
+    EXPECT_LT(glm::distance(middle(0.4f, 0.3f), heat_color(0.5f)), 0.01f);
+    EXPECT_LT(glm::distance(middle(0.9f, 0.1f), heat_color(1.0f)), 0.01f);
+}
+
+// Light from +x only: a surface that bends towards it is lit, whatever its own normal.
+TEST(Render, TheEnvironmentIsLookedUpAlongTheBentNormal)
+{
+    const Model model = model_of(scenes::sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2));
+    const Camera camera =
+        frame_points(model.seen, UpAxis::z, 1.0f, {.azimuth_deg = 0, .elevation_deg = 90});
+    RenderOptions options = plain(Surface::triangles, 60, 60);
+    options.view.colors = Colors::environment;
+    options.environment = Image(64, 32, glm::vec4(0.0f));
+    for (int y = 10; y < 22; ++y)
+        for (int x = 26; x < 38; ++x)
+            options.environment->at(x, y) = glm::vec4(1.0f);
+    const auto lit = [&](glm::vec3 bent, float occlusion) {
+        std::vector<Occlusion> values = all(model, occlusion);
+        for (Occlusion& value : values)
+            value.bent_normal = bent;
+        return render(model, values, {}, camera, options).at(30, 30).r;
+    };
+    EXPECT_GT(lit({1, 0, 0}, 0.0f), 0.3f);
+    EXPECT_LT(lit({-1, 0, 0}, 0.0f), 0.01f);
+    EXPECT_LT(lit({1, 0, 0}, 0.75f), 0.6f * lit({1, 0, 0}, 0.0f));
+    EXPECT_EQ(lit({1, 0, 0}, 1.0f), 0.0f);
+}
+
+TEST(Render, SamplesSmoothTheEdges)
+{
+    const Model model = model_of(scenes::sphere({0, 0, 0}, 1.0, 8));
+    const Camera camera = frame_points(model.seen, UpAxis::z, 1.0f);
+    RenderOptions options = plain(Surface::triangles, 64, 64);
+    const auto steps = [&](int samples) {
+        options.samples = samples;
+        const Image image = draw_open(model, camera, options);
+        return std::count_if(image.pixels.begin(), image.pixels.end(), [](const glm::vec4& pixel) {
+            return pixel.r > 0.5f && pixel.r < 0.85f;
+        });
+    };
+    EXPECT_EQ(steps(1), 0);
+    EXPECT_GT(steps(16), 30);
+}
+
+TEST(Render, TheSamePictureTwiceIsTheSameBytes)
+{
+    const Model model = model_of(scenes::bumpy_sphere(8));
+    const Camera camera = frame_points(model.seen, UpAxis::z, 1.0f);
+    for (Surface surface : {Surface::triangles, Surface::splats}) {
+        const RenderOptions options = plain(surface, 64, 64);
+        EXPECT_EQ(draw_open(model, camera, options).pixels,
+                  draw_open(model, camera, options).pixels);
+    }
+}
+
+TEST(Render, ASceneWithoutAreaIsBackground)
+{
+    Scene scene;
+    scene.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    scene.triangles = {{0, 1, 2}};
+    const Model model = model_of(scene);
+    const Camera camera = frame_points(model.seen, UpAxis::z, 1.0f);
+    for (Surface surface : {Surface::triangles, Surface::splats, Surface::affine, Surface::points})
+        EXPECT_EQ(model_pixels(draw_open(model, camera, plain(surface, 32, 32))), 0u);
+}
+
+TEST(Render, SizesThatCannotBeDrawnAreRefused)
+{
+    const Model model = model_of(scenes::box({0, 0, 0}, {1, 1, 1}, 1));
+    const Camera camera = frame_points(model.seen, UpAxis::z, 1.0f);
+    for (const glm::ivec2 size : {glm::ivec2(0, 10), glm::ivec2(10, 0), glm::ivec2(-1, 10),
+                                  glm::ivec2(1000000, 10), glm::ivec2(10, 1000000)})
+        EXPECT_THROW((void)draw_open(model, camera, plain(Surface::triangles, size.x, size.y)),
+                     InputError)
+            << size.x << " x " << size.y;
+}
+
+TEST(Render, CanBeCancelled)
+{
+    const Model model = model_of(scenes::box({0, 0, 0}, {1, 1, 1}, 1));
+    const Camera camera = frame_points(model.seen, UpAxis::z, 1.0f);
+    EXPECT_THROW((void)render(model, all(model, 0.0f), {}, camera,
+                              plain(Surface::triangles, 32, 32), [](double) { return false; }),
+                 Cancelled);
+}
+
+// --- golden pictures ---------------------------------------------------------------------------
+
+/// A bumpy ball in a corner of two walls over a floor: all kinds of occlusion in few triangles.
+Scene corner_with_ball()
+{
+    using namespace scenes;
+    return sheet({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 16) +
+           sheet({-2, 2, 0}, {4, 0, 0}, {0, 0, 3}, 12) +
+           sheet({-2, -2, 0}, {0, 4, 0}, {0, 0, 3}, 12) +
+           moved(bumpy_sphere(12), [](glm::dvec3 p) { return p + glm::dvec3(0, 0, 1.1); });
+}
+
+void expect_golden(const std::string& name, const Image& actual)
+{
+    namespace fs = std::filesystem;
+    const fs::path expected_file = fs::path(SURFELAO_GOLDEN_FOLDER) / (name + ".png");
+    if (std::getenv("SURFELAO_UPDATE_GOLDEN"))
+        write_image(expected_file, actual);
+    const Image expected = read_image(expected_file);
+    ASSERT_EQ(expected.width, actual.width);
+    ASSERT_EQ(expected.height, actual.height);
+    const ImageDifference difference = compare_images(actual, expected);
+    const bool agrees = difference.mean < 1.0 / 255.0 && difference.share_beyond < 0.005;
+    EXPECT_TRUE(agrees) << name << ": mean " << 255.0 * difference.mean << " / 255, share beyond "
+                        << difference.share_beyond << "; see " << testing::TempDir();
+    if (!agrees) {
+        const fs::path folder = testing::TempDir();
+        write_image(folder / (name + "_actual.png"), actual);
+        write_image(folder / (name + "_expected.png"), expected);
+        write_image(folder / (name + "_difference.png"), difference_image(actual, expected, 0.1f));
+    }
+}
+
+struct Golden {
+    const char* name;
+    Surface surface;
+    Colors colors;
+};
+
+TEST(Render, LooksAsItDidWhenItWasLookedAt)
+{
+    const Model model = model_of(corner_with_ball());
+    const RayScene scene(model.geometry, RayScene::Build::robust);
+    const std::vector<Occlusion> reference =
+        trace_occlusion(scene, model.receivers, {.rays = 256, .seed = 1});
+    // few rays: something to see in the difference
+    const std::vector<Occlusion> own = trace_occlusion(scene, model.receivers, {.rays = 64});
+    const Camera camera =
+        frame_points(model.seen, UpAxis::z, 4.0f / 3.0f, {.azimuth_deg = 40, .elevation_deg = 20});
+    for (const Golden& golden : {
+             Golden{"triangles", Surface::triangles, Colors::rays},
+             Golden{"splats", Surface::splats, Colors::rays},
+             Golden{"affine", Surface::affine, Colors::rays},
+             Golden{"points", Surface::points, Colors::rays},
+             Golden{"difference", Surface::triangles, Colors::difference},
+             Golden{"bent_normals", Surface::triangles, Colors::bent_normals},
+             Golden{"normals", Surface::splats, Colors::normals},
+             Golden{"levels", Surface::splats, Colors::levels},
+             Golden{"environment", Surface::triangles, Colors::environment},
+         }) {
+        RenderOptions options = plain(golden.surface, 200, 150);
+        options.samples = 4;
+        options.view.colors = golden.colors;
+        options.view.ground = true;
+        expect_golden(golden.name, render(model, own, reference, camera, options));
+    }
+}
+
+}  // namespace
+}  // namespace surfelao

@@ -1,0 +1,63 @@
+/// model.h: a scene made ready to be drawn and solved: the same for the window and for a file.
+///
+/// Under the scene lies a ground of receivers only: it is shaded by the scene, but shades nothing,
+/// so that no number of the scene changes because a picture is taken.
+#pragma once
+
+#include "surfels/geometry.h"
+#include "surfels/receiver.h"
+#include "viewer/camera.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace surfelao {
+
+/// A square of (kGroundCells + 1)^2 receivers in rows along `axis_x`, row by row along `axis_y`,
+/// facing the sky.
+inline constexpr int kGroundCells = 96;
+struct Ground {
+    glm::vec3 corner{0.0f};  ///< of the first receiver; unit frame
+    glm::vec3 axis_x{0.0f};  ///< to the last receiver of the first row
+    glm::vec3 axis_y{0.0f};  ///< to the first receiver of the last row
+    glm::vec3 up{0.0f};      ///< unit length
+};
+
+struct Model {
+    Geometry geometry;
+    std::vector<glm::vec3> seen;        ///< positions that triangles use: what a camera frames
+    std::vector<std::uint32_t> splats;  ///< vertices that are surfels: surfels_at_vertices' order
+    std::vector<float> splat_radii;     ///< one per splat: covering_radii and a margin
+    std::vector<float> levels;          ///< one per splat: its leaf's depth in the octree, 0 = root
+    Ground ground;
+    std::vector<Receiver> receivers;  ///< one per vertex, then the ground's
+    UpAxis up = UpAxis::y;
+};
+
+/// O(n log n). offset: of the receivers, see occlusion.h.
+[[nodiscard]] Model make_model(Geometry geometry, UpAxis up, float offset);
+
+/// The lowest and the highest level, at least 1 apart: what the ends of a colour scale stand for.
+[[nodiscard]] glm::vec2 level_range(const Model& model);
+
+/// For each vertex the least radius with which disks in the planes of its triangles leave no hole
+/// in them: for every adjacent triangle, the distance from its corners to the point of it that is
+/// farthest from all three.
+///
+///         C              No angle above 90 degrees: the circumradius  abc / (4 area).
+///        / \             Obtuse at C: the bisectors of the short sides a and b meet the long side
+///        c
+///      b/   \a           at distance  b / (2 cos A)  from A  and  a / (2 cos B)  from B; the
+///      larger
+///      /_____\           one counts, and no point of the triangle is farther from its corners.
+///     A   c   B
+///
+/// On a square grid of spacing h this is h / sqrt(2), 1.25 times the radius of a disk of a surfel's
+/// area. 0 for vertices without triangles; shared by all vertices at one position. O(n).
+[[nodiscard]] std::vector<float> covering_radii(const Geometry& geometry);
+
+}  // namespace surfelao

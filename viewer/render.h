@@ -1,0 +1,37 @@
+/// render.h: a picture of a model as a function, without a window.
+#pragma once
+
+#include "gpu/context.h"
+#include "image/image.h"
+#include "surfels/occlusion.h"
+#include "surfels/progress.h"
+#include "viewer/camera.h"
+#include "viewer/model.h"
+#include "viewer/view_options.h"
+
+#include <optional>
+#include <span>
+
+namespace surfelao {
+
+struct RenderOptions {
+    int width = 1280, height = 720;  ///< pixels, >= 1 and at most what the device draws at once
+    int samples = 16;                ///< >= 1 per pixel, evenly spread; time grows with them
+    ViewOptions view;
+    GlBackend backend = GlBackend::automatic;
+    std::optional<Image> environment;  ///< a panorama (environment.h); none = builtin_sky()
+};
+
+/// occlusion and reference: one per receiver of the model; the reference may be empty where
+/// needs_reference(options.view) is false. The result is display-referred linear light, opaque; a
+/// heat map carries its legend. Throws InputError for a size that the device cannot draw,
+/// std::runtime_error when there is no device, Cancelled. progress: of the samples.
+[[nodiscard]] Image render(const Model& model, std::span<const Occlusion> occlusion,
+                           std::span<const Occlusion> reference, const Camera& camera,
+                           const RenderOptions& options, const Progress& progress = {});
+
+/// What the heat map of these colours means, drawn into the picture's corner; nothing for colours
+/// that are no heat map.
+void draw_legend(Image& image, const Model& model, const ViewOptions& options);
+
+}  // namespace surfelao

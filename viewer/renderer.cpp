@@ -1,0 +1,489 @@
+#include "viewer/renderer.h"
+
+#include "gpu/draw.h"
+#include "gpu/program.h"
+#include "image/heat_map.h"
+#include "surfels/errors.h"
+#include "viewer/environment.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace surfelao {
+namespace {
+
+constexpr int kMaxSkyWidth = 1024;      // the background is out of focus: more would not be seen
+constexpr float kSkyBlurWidth = 64.0f;  // columns of the panorama that can still be told apart
+constexpr float kKey = 0.55f;  // automatic exposure: what an average upward normal receives
+constexpr float kNearest =
+    1e-4f;                     // near plane as a share of the far one, for eyes inside the scene
+constexpr float kPush = 0.3f;  // of a splat's radius: how far apart overlapping disks may lie
+
+/// Empty buffers are an error of the device: a scene without area draws one unused element instead.
+template <class T>
+std::vector<T> at_least_one(std::vector<T> values)
+{
+    if (values.empty())
+        values.emplace_back();
+    return values;
+}
+
+std::vector<glm::vec4> occlusion_texels(std::span<const Occlusion> values)
+{
+    std::vector<glm::vec4> texels;
+    texels.reserve(values.size());
+    for (const Occlusion& value : values)
+        texels.emplace_back(value.bent_normal, value.occlusion);
+    return texels;
+}
+
+/// What depends on the model alone.
+struct Upload {
+    Upload(const GlContext& context, const Model& model)
+        : positions(texels(context, model.geometry.positions)),
+          normals(texels(context, normals_and_levels(model))),
+          occlusion(texels(context, open(model))),
+          splats(context, TexelFormat::r32ui, view(at_least_one(model.splats))),
+          radii(context, TexelFormat::r32f, view(at_least_one(model.splat_radii))),
+          index_buffer(context, view(at_least_one(model.geometry.triangles))),
+          triangles(context),
+          index_count(3 * model.geometry.triangles.size()),
+          splat_count(model.splats.size()),
+          ground(model.ground)
+    {
+        triangles.indices(index_buffer);
+        vertex_count = model.geometry.positions.size();
+        for (const glm::vec3& p : model.seen)
+            radius = std::max(radius, glm::length(p));
+        radius = std::max({radius, glm::length(ground.corner),
+                           glm::length(ground.corner + ground.axis_x + ground.axis_y),
+                           glm::length(ground.corner + ground.axis_x),
+                           glm::length(ground.corner + ground.axis_y)});
+        if (!model.splat_radii.empty())
+            radius += *std::max_element(model.splat_radii.begin(), model.splat_radii.end());
+    }
+
+    template <class T>
+    static std::span<const T> view(const std::vector<T>& values)
+    {
+        return values;
+    }
+    static TextureBuffer texels(const GlContext& context, const std::vector<glm::vec4>& values)
+    {
+        return {context, TexelFormat::rgba32f, view(at_least_one(values))};
+    }
+    static TextureBuffer texels(const GlContext& context, const std::vector<glm::vec3>& values)
+    {
+        std::vector<glm::vec4> padded;
+        padded.reserve(values.size());
+        for (const glm::vec3& value : values)
+            padded.emplace_back(value, 0.0f);
+        return texels(context, padded);
+    }
+    static std::vector<glm::vec4> normals_and_levels(const Model& model)
+    {
+        const Geometry& geometry = model.geometry;
+        std::vector<float> level_at(geometry.positions.size(), 0.0f);
+        const glm::vec2 range = level_range(model);
+        for (std::size_t i = 0; i < model.splats.size(); ++i)
+            level_at[model.splats[i]] = (model.levels[i] - range.x) / (range.y - range.x);
+        std::vector<glm::vec4> values;
+        values.reserve(level_at.size());
+        for (std::size_t v = 0; v < level_at.size(); ++v)
+            values.emplace_back(geometry.normals[v], level_at[geometry.welded[v]]);
+        return values;
+    }
+    static std::vector<glm::vec4> open(const Model& model)
+    {
+        std::vector<glm::vec4> values;
+        values.reserve(model.geometry.normals.size());
+        for (const glm::vec3& normal : model.geometry.normals)
+            values.emplace_back(normal, 0.0f);
+        return values;
+    }
+
+    TextureBuffer positions, normals, occlusion;
+    std::optional<TextureBuffer> reference;
+    TextureBuffer splats, radii;
+    Buffer index_buffer;
+    VertexArray triangles;
+    std::size_t vertex_count = 0, index_count, splat_count;
+    Ground ground;
+    float radius = 0.0f;  ///< of a ball about the origin that holds all that is drawn
+    std::optional<Texture2D> ground_occlusion;
+    std::vector<glm::vec2> ground_values =
+        std::vector<glm::vec2>((kGroundCells + 1) * (kGroundCells + 1), glm::vec2(0.0f));
+};
+
+Texture2D upload_image(const GlContext& context, const Image& image, const TextureOptions& options)
+{
+    return {context,
+            image.width,
+            image.height,
+            TexelFormat::rgba32f,
+            std::span<const glm::vec4>(image.pixels),
+            options};
+}
+
+Texture2D upload_heat_colors(const GlContext& context)
+{
+    Image row(256, 1);
+    for (int x = 0; x < 256; ++x)
+        row.at(x, 0) = glm::vec4(heat_colors()[static_cast<std::size_t>(x)], 1.0f);
+    return upload_image(context, row, {.filter = TextureFilter::linear});
+}
+
+/// One over what a surface that faces the sky receives, in the middle: 1 for a map that is black.
+float automatic_exposure(const Image& irradiance)
+{
+    double sum = 0.0;
+    for (int y = 0; y < irradiance.height / 2; ++y)
+        for (int x = 0; x < irradiance.width; ++x)
+            sum += glm::dot(glm::vec3(irradiance.at(x, y)), glm::vec3(0.2126f, 0.7152f, 0.0722f));
+    const double mean = sum / (0.5 * irradiance.width * irradiance.height);
+    return mean > 0.0 ? static_cast<float>(kKey / mean) : 1.0f;
+}
+
+/// Model to panorama directions.
+glm::mat3 sky_frame(glm::vec3 up)
+{
+    // up z: x stays, z becomes y, y becomes -z
+    return up.z > 0.5f ? glm::mat3(glm::vec3(1, 0, 0), glm::vec3(0, 0, -1), glm::vec3(0, 1, 0))
+                       : glm::mat3(1.0f);
+}
+
+}  // namespace
+
+struct Renderer::Impl {
+    explicit Impl(const GlContext& gl)
+        : context(gl),
+          surface(gl, "surface.vert", "surface.frag"),
+          disks(gl, "splat_disk.vert", "splat_disk.frag"),
+          disk_depth(gl, "splat_depth.vert", "splat_depth.frag"),
+          resolve(gl, "fullscreen.vert", "splat_resolve.frag"),
+          affine(gl, "splat_square.vert", "splat_affine.frag"),
+          points(gl, "splat_square.vert", "splat_point.frag"),
+          background(gl, "fullscreen.vert", "background.frag"),
+          shadow(gl, "ground.vert", "ground.frag"),
+          nothing(gl),
+          heat(upload_heat_colors(gl))
+    {
+    }
+
+    /// What every drawing of this frame has in common.
+    struct Frame {
+        const Framebuffer& target;
+        const Camera& camera;
+        const ViewOptions& options;
+        glm::mat4 view, projection;
+    };
+
+    void set_shading(Program& program, const Frame& frame)
+    {
+        program.set("u_colors", static_cast<int>(frame.options.colors));
+        program.set("u_wipe_x", frame.options.wipe * static_cast<float>(frame.target.width()));
+        program.set("u_difference_scale", frame.options.difference_scale);
+        program.set("u_heat", heat);
+        program.set("u_irradiance", *irradiance);
+        program.set("u_sky_frame", sky_frame(frame.camera.up));
+        program.set("u_exposure", base_exposure * std::exp2(frame.options.exposure));
+    }
+
+    void set_model_texels(Program& program)
+    {
+        program.set("u_positions", upload->positions);
+        program.set("u_normals", upload->normals);
+        program.set("u_occlusion", upload->occlusion);
+        program.set("u_reference", upload->reference ? *upload->reference : upload->occlusion);
+    }
+
+    void set_splats(Program& program, const Frame& frame)
+    {
+        program.set("u_splats", upload->splats);
+        program.set("u_radii", upload->radii);
+        program.set("u_radius_scale", frame.options.radius_scale);
+        program.set("u_view", frame.view);
+        program.set("u_projection", frame.projection);
+    }
+
+    void draw_background(const Frame& frame)
+    {
+        const glm::mat4 to_world = glm::inverse(frame.projection * frame.view);
+        background.set("u_show_sky", frame.options.colors == Colors::environment ? 1 : 0);
+        background.set("u_exposure", base_exposure * std::exp2(frame.options.exposure));
+        background.set("u_sky_frame", sky_frame(frame.camera.up));
+        background.set("u_sky", *sky);
+        background.set("u_sky_level",
+                       std::max(0.0f, std::log2(static_cast<float>(sky->width()) / kSkyBlurWidth)));
+        background.set("u_to_world", to_world);
+        background.set("u_eye", frame.camera.eye);
+        draw_fullscreen(frame.target, background, nothing);
+    }
+
+    void draw_triangles(const Frame& frame)
+    {
+        set_shading(surface, frame);
+        set_model_texels(surface);
+        surface.set("u_view_projection", frame.projection * frame.view);
+        draw(frame.target, surface, upload->triangles,
+             {.count = upload->index_count, .indexed = true}, {.depth = DepthTest::less});
+    }
+
+    /// The report's way: nearest splat wins.
+    void draw_plain_splats(const Frame& frame, Program& program)
+    {
+        set_shading(program, frame);
+        set_model_texels(program);
+        set_splats(program, frame);
+        draw(frame.target, program, nothing, {.count = 6 * upload->splat_count},
+             {.depth = DepthTest::less});
+    }
+
+    /// Depth first, a little too far; then the sum of all that is not behind it; then its mean.
+    void draw_blended_splats(const Frame& frame)
+    {
+        if (!splat_target || splat_target->width() != frame.target.width() ||
+            splat_target->height() != frame.target.height())
+            splat_target.emplace(context, FramebufferOptions{.width = frame.target.width(),
+                                                             .height = frame.target.height(),
+                                                             .colors = {TexelFormat::rgba32f},
+                                                             .depth = true});
+        splat_target->clear_color(glm::vec4(0.0f));
+        splat_target->clear_depth();
+        const DrawCall call = {.count = 6 * upload->splat_count};
+
+        disk_depth.set("u_positions", upload->positions);
+        disk_depth.set("u_normals", upload->normals);
+        set_splats(disk_depth, frame);
+        disk_depth.set("u_push", kPush);
+        draw(*splat_target, disk_depth, nothing, call,
+             {.depth = DepthTest::less, .write_color = false});
+
+        set_shading(disks, frame);
+        set_model_texels(disks);
+        set_splats(disks, frame);
+        draw(*splat_target, disks, nothing, call,
+             {.depth = DepthTest::read_only, .blend = Blend::add});
+
+        resolve.set("u_sum", splat_target->color());
+        resolve.set("u_depth", splat_target->depth());
+        draw_fullscreen(frame.target, resolve, nothing, {.depth = DepthTest::less});
+    }
+
+    void draw_ground(const Frame& frame)
+    {
+        shadow.set("u_corner", upload->ground.corner);
+        shadow.set("u_axis_x", upload->ground.axis_x);
+        shadow.set("u_axis_y", upload->ground.axis_y);
+        shadow.set("u_view_projection", frame.projection * frame.view);
+        shadow.set("u_occlusion", *upload->ground_occlusion);
+        shadow.set("u_wipe_x", frame.options.colors == Colors::rays
+                                   ? 0.0f
+                                   : frame.options.wipe * static_cast<float>(frame.target.width()));
+        draw(frame.target, shadow, nothing, {.count = 6},
+             {.blend = Blend::over, .cull = Cull::back});
+    }
+
+    void upload_ground()
+    {
+        upload->ground_occlusion.emplace(context, kGroundCells + 1, kGroundCells + 1,
+                                         TexelFormat::rg32f,
+                                         std::span<const glm::vec2>(upload->ground_values),
+                                         TextureOptions{.filter = TextureFilter::linear});
+    }
+
+    /// channel: 0 = result, 1 = reference. A result alone stands in for the reference.
+    void set_values(std::span<const Occlusion> values, TextureBuffer& texels, int channel)
+    {
+        SURFELAO_CHECK(values.size() == upload->vertex_count + upload->ground_values.size());
+        if (upload->vertex_count > 0)
+            texels.update(0, std::span<const glm::vec4>(
+                                 occlusion_texels(values.first(upload->vertex_count))));
+        for (std::size_t i = 0; i < upload->ground_values.size(); ++i) {
+            const float occlusion = values[upload->vertex_count + i].occlusion;
+            upload->ground_values[i][channel] = occlusion;
+            if (!upload->reference)
+                upload->ground_values[i][1] = occlusion;
+        }
+        upload_ground();
+    }
+
+    const GlContext& context;
+    Program surface, disks, disk_depth, resolve, affine, points, background, shadow;
+    VertexArray nothing;
+    Texture2D heat;
+    std::optional<Texture2D> sky, irradiance;
+    float base_exposure = 1.0f;
+    std::optional<Upload> upload;
+    std::optional<Framebuffer> splat_target;
+};
+
+Renderer::Renderer(const GlContext& context) : impl_(std::make_unique<Impl>(context))
+{
+    set_environment(builtin_sky());
+}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+void Renderer::set_model(const Model& model)
+{
+    impl_->upload.emplace(impl_->context, model);
+    impl_->upload_ground();
+}
+
+void Renderer::set_occlusion(std::span<const Occlusion> occlusion)
+{
+    impl_->set_values(occlusion, impl_->upload->occlusion, 0);
+}
+
+void Renderer::set_reference(std::span<const Occlusion> reference)
+{
+    if (!impl_->upload->reference)
+        impl_->upload->reference.emplace(
+            Upload::texels(impl_->context, std::vector<glm::vec4>(impl_->upload->vertex_count)));
+    impl_->set_values(reference, *impl_->upload->reference, 1);
+}
+
+void Renderer::set_environment(const Image& panorama)
+{
+    const Image irradiance = irradiance_map(panorama);
+    impl_->base_exposure = automatic_exposure(irradiance);
+    impl_->irradiance =
+        upload_image(impl_->context, irradiance,
+                     {.filter = TextureFilter::linear, .wrap = TextureWrap::repeat_x});
+    impl_->sky = upload_image(impl_->context, shrink_panorama(panorama, kMaxSkyWidth),
+                              {.filter = TextureFilter::mipmaps, .wrap = TextureWrap::repeat_x});
+}
+
+Framebuffer Renderer::make_target(int width, int height) const
+{
+    return {impl_->context,
+            FramebufferOptions{
+                .width = width, .height = height, .colors = {TexelFormat::rgba32f}, .depth = true}};
+}
+
+void Renderer::draw_frame(const Framebuffer& target, const Camera& camera,
+                          const ViewOptions& options, glm::vec2 shift)
+{
+    SURFELAO_CHECK(impl_->upload.has_value());
+    const glm::vec2 size(target.width(), target.height());
+    // as much depth precision as the place of the eye allows
+    const float distance = glm::length(camera.eye);
+    const float far = distance + impl_->upload->radius;
+    const float near = std::max(distance - impl_->upload->radius, far * kNearest);
+    const Impl::Frame frame{
+        target, camera, options, view_matrix(camera),
+        projection_matrix(camera, size.x / size.y, near, far, 2.0f * shift / size)};
+
+    target.clear_depth();
+    impl_->draw_background(frame);
+    // first: an eye above the ground sees everything of the model before it, one below sees no
+    // ground
+    const bool is_lit = options.colors == Colors::visibility || options.colors == Colors::rays ||
+                        options.colors == Colors::environment;
+    if (options.ground && is_lit)
+        impl_->draw_ground(frame);
+    if (impl_->upload->splat_count > 0) {
+        switch (options.surface) {
+            case Surface::triangles:
+                impl_->draw_triangles(frame);
+                break;
+            case Surface::splats:
+                impl_->draw_blended_splats(frame);
+                break;
+            case Surface::affine:
+                impl_->draw_plain_splats(frame, impl_->affine);
+                break;
+            case Surface::points:
+                impl_->draw_plain_splats(frame, impl_->points);
+                break;
+        }
+    }
+}
+
+glm::vec2 sample_shift(int index)
+{
+    // 1 / g and 1 / g^2 with g^3 = g + 1
+    const glm::dvec2 step(0.7548776662466927, 0.5698402909980532);
+    const glm::dvec2 place = glm::fract(glm::dvec2(0.5) + step * static_cast<double>(index));
+    return glm::vec2(place - 0.5);
+}
+
+struct SampleSum::Impl {
+    Impl(const GlContext& context, int width, int height)
+        : program(context, "fullscreen.vert", "sum.frag"),
+          nothing(context),
+          sum(context, FramebufferOptions{
+                           .width = width, .height = height, .colors = {TexelFormat::rgba32f}})
+    {
+    }
+    Program program;
+    VertexArray nothing;
+    Framebuffer sum;
+    int count = 0;
+};
+
+SampleSum::SampleSum(const GlContext& context, int width, int height)
+    : impl_(std::make_unique<Impl>(context, width, height))
+{
+    clear();
+}
+SampleSum::~SampleSum() = default;
+SampleSum::SampleSum(SampleSum&&) noexcept = default;
+SampleSum& SampleSum::operator=(SampleSum&&) noexcept = default;
+
+void SampleSum::clear()
+{
+    impl_->sum.clear_color(glm::vec4(0.0f));
+    impl_->count = 0;
+}
+
+int SampleSum::count() const
+{
+    return impl_->count;
+}
+
+void SampleSum::add(const Framebuffer& drawing)
+{
+    impl_->program.set("u_image", drawing.color());
+    impl_->program.set("u_factor", 1.0f);
+    impl_->program.set("u_encode", 0);
+    draw_fullscreen(impl_->sum, impl_->program, impl_->nothing, {.blend = Blend::add});
+    ++impl_->count;
+}
+
+Image SampleSum::mean() const
+{
+    SURFELAO_CHECK(impl_->count > 0);
+    const std::vector<glm::vec4> texels = impl_->sum.read_color(impl_->sum.rect());
+    const float share = 1.0f / static_cast<float>(impl_->count);
+    Image image(impl_->sum.width(), impl_->sum.height());
+    for (int y = 0; y < image.height; ++y) {
+        const std::size_t row = static_cast<std::size_t>(image.height - 1 - y);
+        for (int x = 0; x < image.width; ++x)
+            image.at(x, y) =
+                share *
+                texels[row * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)];
+    }
+    return image;
+}
+
+void SampleSum::show(const Framebuffer& target) const
+{
+    impl_->program.set("u_image", impl_->sum.color());
+    impl_->program.set("u_factor", 1.0f / static_cast<float>(std::max(1, impl_->count)));
+    impl_->program.set("u_encode", 1);
+    draw_fullscreen(target, impl_->program, impl_->nothing);
+}
+
+}  // namespace surfelao

@@ -1,0 +1,85 @@
+/// renderer.h: draws a model with the device. The window and the picture file use it alike.
+///
+/// Everything the model needs lies on the device: moving the camera uploads and solves nothing.
+#pragma once
+
+#include "gpu/context.h"
+#include "gpu/objects.h"
+#include "image/image.h"
+#include "surfels/occlusion.h"
+#include "viewer/camera.h"
+#include "viewer/model.h"
+#include "viewer/view_options.h"
+
+#include <glm/vec2.hpp>
+
+#include <memory>
+#include <span>
+
+namespace surfelao {
+
+/// Uses a context of somebody else, which must be current in every call and outlive it. All
+/// functions throw std::runtime_error when the device refuses.
+class Renderer {
+public:
+    /// Compiles the shaders. The light is that of builtin_sky().
+    explicit Renderer(const GlContext& context);
+    ~Renderer();
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+
+    /// Uploads a model, which is unoccluded until told otherwise. Throws when it is larger than the
+    /// device's buffers.
+    void set_model(const Model& model);
+
+    /// One per receiver of the model. Without a reference, the result stands in for it.
+    void set_occlusion(std::span<const Occlusion> occlusion);
+    void set_reference(std::span<const Occlusion> reference);
+
+    /// Light for Colors::environment: see environment.h.
+    void set_environment(const Image& panorama);
+
+    /// A target that draw_frame() can draw into: linear float colour and depth.
+    [[nodiscard]] Framebuffer make_target(int width, int height) const;
+
+    /// Draws background, model and ground over all of the target. `shift`: the whole picture moved
+    /// by a part of a pixel, for samples between -0.5 and 0.5.
+    void draw_frame(const Framebuffer& target, const Camera& camera, const ViewOptions& options,
+                    glm::vec2 shift = glm::vec2(0.0f));
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Where inside a pixel the sample of that index lies, -0.5 to 0.5: any first n of them are spread
+/// evenly, and the first is the middle.
+///
+/// Based on:
+///   Roberts. The Unreasonable Effectiveness of Quasirandom Sequences. 2018 (R2)
+[[nodiscard]] glm::vec2 sample_shift(int index);
+
+/// The sum of several drawings of one size, and their mean.
+class SampleSum {
+public:
+    SampleSum(const GlContext& context, int width, int height);
+    ~SampleSum();
+    SampleSum(SampleSum&&) noexcept;
+    SampleSum& operator=(SampleSum&&) noexcept;
+
+    void clear();
+    void add(const Framebuffer& drawing);
+    int count() const;
+
+    /// The mean as linear light; row 0 is the top. At least one drawing must have been added.
+    [[nodiscard]] Image mean() const;
+
+    /// Shows the mean, sRGB-encoded, on an 8-bit target of the same size, a window's for example.
+    void show(const Framebuffer& target) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace surfelao

@@ -1,0 +1,42 @@
+/// view_options.h: how a model is shown, without a word on how it is solved.
+#pragma once
+
+namespace surfelao {
+
+/// What stands for the surface.
+enum class Surface {
+    triangles,
+    splats,  ///< surfels as disks: perspective-correct, blended where they overlap
+    affine,  ///< surfels as Engleson's report draws them: affinely projected, without blending
+    points,  ///< surfels as plain squares that face the camera
+};
+
+/// What its colour tells. The numbers are known to shaders/shading.glsl.
+enum class Colors {
+    visibility = 0,    ///< 1 - occlusion as grey: what baked colours look like elsewhere
+    rays = 1,          ///< the same by the ray reference
+    difference = 2,    ///< |occlusion - reference| as a heat map
+    bent_normals = 3,  ///< x, y, z as red, green, blue
+    normals = 4,       ///< of the surfels, likewise
+    levels = 5,        ///< depth of the surfel's leaf in the octree, as a heat map
+    environment = 6,   ///< light of a panorama along the bent normal, times visibility
+};
+
+struct ViewOptions {
+    Surface surface = Surface::triangles;
+    Colors colors = Colors::visibility;
+    float radius_scale = 1.0f;      ///< > 0, on covering_radii (model.h)
+    float difference_scale = 0.1f;  ///< > 0: the difference that is hottest
+    float wipe = 1.0f;              ///< share of the width from which on the reference is shown
+    float exposure = 0.0f;          ///< environment: stops, added to the automatic exposure
+    bool ground = true;             ///< shadow on the ground under the model
+};
+
+/// Whether drawing this needs a ray reference.
+[[nodiscard]] constexpr bool needs_reference(const ViewOptions& options)
+{
+    return options.colors == Colors::rays || options.colors == Colors::difference ||
+           options.wipe < 1.0f;
+}
+
+}  // namespace surfelao
