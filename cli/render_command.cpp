@@ -1,0 +1,160 @@
+#include "bake/bake.h"
+#include "bake/text.h"
+#include "bake/threads.h"
+#include "bake/timing.h"
+#include "cli/commands.h"
+#include "cli/engine_options.h"
+#include "cli/progress_bar.h"
+#include "cli/view_options.h"
+#include "image/image_file.h"
+#include "reference/reference_cache.h"
+#include "surfels/scene_io.h"
+#include "viewer/render.h"
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+namespace surfelao {
+namespace {
+
+constexpr int kMostPixels = 32768;  // each way; the device may draw less
+constexpr int kMostSamples = 4096;
+
+struct RenderCommandOptions {
+    std::string input;
+    std::string output;
+    int width = 1280, height = 720;
+    int samples = 16;
+    std::string camera;
+    std::string backend = "auto";
+    ShowOptions show;
+    EngineOptions engine;
+    MeasureOptions measure;
+    std::optional<int> threads;
+};
+
+GlBackend backend_of(const std::string& name)
+{
+    if (name == "egl")
+        return GlBackend::egl;
+    return name == "osmesa" ? GlBackend::osmesa : GlBackend::automatic;
+}
+
+int run(const RenderCommandOptions& options)
+{
+    check_image_output(options.output);
+    std::optional<ThreadLimit> limit;
+    if (options.threads)
+        limit.emplace(*options.threads);
+    ProgressBar bar;
+    const auto stage = [&](const char* name) {
+        return [&bar, name](double done) { return bar.update(name, done); };
+    };
+
+    // what can be refused comes first
+    RenderOptions picture;
+    picture.width = options.width;
+    picture.height = options.height;
+    picture.samples = options.samples;
+    picture.backend = backend_of(options.backend);
+    picture.view = view_options_of(options.show);
+    if (options.show.environment)
+        picture.environment = read_image(*options.show.environment);
+
+    Stopwatch watch;
+    Geometry geometry = make_geometry(read_scene(options.input));
+    EngineSettings engine = settings_of(options.engine);
+    engine.definition = definition_of(distance_limit_of(options.measure),
+                                      kernel_of(options.measure), geometry.frame);
+    const UpAxis up = up_axis_of(options.show);
+    const Model model = make_model(std::move(geometry), up, engine.definition.offset);
+    const Frame& frame = model.geometry.frame;
+    const Camera camera = parse_camera(
+        options.camera,
+        {.points = model.seen,
+         .frame_centre = frame.centre,
+         .frame_diagonal = frame.diagonal,
+         .up = up,
+         .aspect = static_cast<float>(options.width) / static_cast<float>(options.height)});
+    const double read_s = watch.lap();
+
+    // only what the picture shows is solved
+    const Colors colors = picture.view.colors;
+    std::vector<Occlusion> occlusion(model.receivers.size());
+    if (colors != Colors::rays && colors != Colors::normals && colors != Colors::levels)
+        occlusion = run_engine(model.geometry, model.receivers, engine, stage("solve")).occlusion;
+    const double solve_s = watch.lap();
+    std::vector<Occlusion> reference;
+    if (needs_reference(picture.view))
+        reference =
+            trace_reference(model.geometry, model.receivers,
+                            {engine.definition, options.show.reference_rays}, stage("reference"))
+                .occlusion;
+    const double reference_s = watch.lap();
+    const Image image = render(model, occlusion, reference, camera, picture, stage("draw"));
+    const double draw_s = watch.lap();
+    write_image(options.output, image);
+
+    const auto time = [](double s) { return fixed(s, 3) + " s"; };
+    std::cout << options.input << " -> " << options.output << ", " << image.width << " x "
+              << image.height << "\n  " << model.geometry.positions.size() << " vertices, "
+              << model.geometry.triangles.size() << " triangles, " << name_of(engine.engine) << ", "
+              << setting_of(engine) << "\n  read " << time(read_s) << ", solve " << time(solve_s)
+              << ", reference " << time(reference_s) << ", draw " << time(draw_s) << ", write "
+              << time(watch.lap()) << '\n';
+    return kDone;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, Work& work)
+{
+    const auto options = std::make_shared<RenderCommandOptions>();
+    CLI::App* command =
+        app.add_subcommand("render", "A picture of a mesh with its occlusion, without a window");
+    command->add_option("IN", options->input, "Mesh file: .obj .ply .off .stl .gltf .glb")
+        ->required()
+        ->type_name("");
+    command->add_option("-o,--output", options->output, "Picture: .png .jpg .exr")
+        ->required()
+        ->type_name("OUT");
+    command->add_option("--width", options->width, "Pixels")
+        ->check(CLI::Range(1, kMostPixels))
+        ->type_name("N")
+        ->capture_default_str();
+    command->add_option("--height", options->height, "Pixels")
+        ->check(CLI::Range(1, kMostPixels))
+        ->type_name("N")
+        ->capture_default_str();
+    command->add_option("--samples", options->samples, "Samples per pixel: smoother edges")
+        ->check(CLI::Range(1, kMostSamples))
+        ->type_name("N")
+        ->capture_default_str();
+    command
+        ->add_option("--camera", options->camera,
+                     "azimuth=30,elevation=18,distance=1,fov=35 or eye=X:Y:Z,target=X:Y:Z,fov=35, "
+                     "any part of it; angles in degrees, distance relative to the framed view, "
+                     "points in the file's units")
+        ->type_name("WHERE");
+    command
+        ->add_option("--context", options->backend,
+                     "What draws: egl (a GPU where there is one), osmesa (software), auto")
+        ->check(CLI::IsMember({"auto", "egl", "osmesa"}))
+        ->type_name("auto|egl|osmesa")
+        ->capture_default_str();
+    add_show_options(*command, options->show);
+    add_engine_options(*command, options->engine);
+    add_measure_options(*command, options->measure);
+    add_thread_option(*command, options->threads);
+    command->callback([options, &work] {
+        check_kernel(settings_of(options->engine).engine, kernel_of(options->measure));
+        static_cast<void>(distance_limit_of(options->measure));
+        static_cast<void>(view_options_of(options->show));
+        work = [options] { return run(*options); };
+    });
+}
+
+}  // namespace surfelao

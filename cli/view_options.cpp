@@ -1,0 +1,139 @@
+#include "cli/view_options.h"
+
+#include "cli/commands.h"
+#include "reference/rays.h"
+
+#include <CLI/CLI.hpp>
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace surfelao {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, Colors>, 7> kModes = {{
+    {"visibility", Colors::visibility},
+    {"rays", Colors::rays},
+    {"difference", Colors::difference},
+    {"bent-normals", Colors::bent_normals},
+    {"normals", Colors::normals},
+    {"levels", Colors::levels},
+    {"environment", Colors::environment},
+}};
+
+constexpr std::array<std::pair<std::string_view, Surface>, 4> kSurfaces = {{
+    {"triangles", Surface::triangles},
+    {"splats", Surface::splats},
+    {"affine", Surface::affine},
+    {"points", Surface::points},
+}};
+
+template <class Table>
+auto value_of(const Table& table, std::string_view name)
+{
+    for (const auto& [known, value] : table) {
+        if (known == name)
+            return value;
+    }
+    throw UsageError("\"" + std::string(name) + "\" is not known.");
+}
+
+template <class Table>
+std::vector<std::string> names_of(const Table& table)
+{
+    std::vector<std::string> names;
+    for (const auto& entry : table)
+        names.emplace_back(entry.first);
+    return names;
+}
+
+}  // namespace
+
+void add_show_options(CLI::App& command, ShowOptions& options)
+{
+    command
+        .add_option("--mode", options.mode,
+                    "What the colours tell: visibility = 1 - occlusion; rays = the same by ray "
+                    "casting; difference = to rays, as a heat map; bent-normals; normals of the "
+                    "surfels; levels = depth in the octree; environment = light of a panorama")
+        ->check(CLI::IsMember(names_of(kModes)))
+        ->type_name("MODE")
+        ->default_str("visibility")
+        ->group("Picture");
+    command
+        .add_option("--surface", options.surface,
+                    "What is drawn: triangles; splats = surfels as disks, blended; affine = disks "
+                    "by affine projection; points = plain point sprites")
+        ->check(CLI::IsMember(names_of(kSurfaces)))
+        ->type_name("triangles|splats|affine|points")
+        ->capture_default_str()
+        ->group("Picture");
+    command.add_option("--up", options.up, "The file's axis that points to the sky")
+        ->check(CLI::IsMember({"y", "z"}))
+        ->type_name("y|z")
+        ->capture_default_str()
+        ->group("Picture");
+    command
+        .add_option("--environment", options.environment,
+                    "Light for --mode environment: a panorama (.hdr .exr .png .jpg); default: a "
+                    "built-in sky")
+        ->type_name("FILE")
+        ->group("Picture");
+    command
+        .add_option("--exposure", options.exposure,
+                    "For --mode environment: brighter by that many stops (-20 to 20)")
+        ->check(CLI::Range(-20.0f, 20.0f))
+        ->type_name("EV")
+        ->capture_default_str()
+        ->group("Picture");
+    command
+        .add_option("--splat-radius", options.radius_scale,
+                    "Factor on the radius of splats; 1 covers the surface (0.01 to 100)")
+        ->check(CLI::Range(0.01f, 100.0f))
+        ->type_name("F")
+        ->capture_default_str()
+        ->group("Picture");
+    command
+        .add_option("--difference-scale", options.difference_scale,
+                    "The difference that is shown hottest (0.0001 to 1)")
+        ->check(CLI::Range(0.0001f, 1.0f))
+        ->type_name("D")
+        ->capture_default_str()
+        ->group("Picture");
+    command
+        .add_option("--reference-rays", options.reference_rays,
+                    "Rays per vertex of the reference, an even number")
+        ->check(CLI::Range(2u, kMostRays))
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Picture");
+    command.add_flag("--no-ground", options.no_ground, "No shadow on the ground under the model")
+        ->group("Picture");
+}
+
+ViewOptions view_options_of(const ShowOptions& options)
+{
+    ViewOptions view;
+    if (options.mode)
+        view.colors = value_of(kModes, *options.mode);
+    else if (options.environment)
+        view.colors = Colors::environment;
+    if (options.environment && view.colors != Colors::environment)
+        throw UsageError("--environment is only for --mode environment.");
+    if (options.reference_rays % 2 != 0)
+        throw UsageError("--reference-rays must be an even number.");
+    view.surface = value_of(kSurfaces, options.surface);
+    view.exposure = options.exposure;
+    view.radius_scale = options.radius_scale;
+    view.difference_scale = options.difference_scale;
+    view.ground = !options.no_ground;
+    return view;
+}
+
+UpAxis up_axis_of(const ShowOptions& options)
+{
+    return options.up == "z" ? UpAxis::z : UpAxis::y;
+}
+
+}  // namespace surfelao

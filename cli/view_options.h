@@ -1,0 +1,36 @@
+/// view_options.h: the options that say how a model is shown, for `render` and `view`.
+#pragma once
+
+#include "viewer/camera.h"
+#include "viewer/view_options.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace surfelao {
+
+/// What was asked for: empty where an option was not given.
+struct ShowOptions {
+    std::optional<std::string> mode;
+    std::string surface = "triangles";
+    std::string up = "y";
+    std::optional<std::string> environment;  ///< a panorama's path
+    float exposure = 0.0f;
+    float radius_scale = 1.0f;
+    float difference_scale = 0.1f;
+    std::uint32_t reference_rays = 1024;
+    bool no_ground = false;
+};
+
+void add_show_options(CLI::App& command, ShowOptions& options);
+
+/// Throws UsageError for what contradicts itself.
+[[nodiscard]] ViewOptions view_options_of(const ShowOptions& options);
+[[nodiscard]] UpAxis up_axis_of(const ShowOptions& options);
+
+}  // namespace surfelao
