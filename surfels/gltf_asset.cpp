@@ -5,6 +5,7 @@
 #include "surfels/gltf_uri.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -17,6 +18,9 @@ using nlohmann::json;
 
 /// Written files have about ten levels; recursion over the document is safe at this depth.
 constexpr int kMaxNesting = 256;
+
+/// Longest part of the file's own text in a message.
+constexpr std::size_t kMaxQuote = 200;
 
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
 constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN"
@@ -39,11 +43,11 @@ Container open_glb(std::string_view file, const fs::path& path)
 {
     if (file.size() < 12)
         fail_gltf(path, "GLB header",
-                  "the file ends after " + std::to_string(file.size()) + " bytes, 12 are needed");
+                  "has " + std::to_string(file.size()) + " bytes instead of 12");
     const std::uint32_t version = little_endian_32(file, 4);
     if (version != 2)
         fail_gltf(path, "GLB header",
-                  "container version " + std::to_string(version) + ", only 2 is read");
+                  "has version " + std::to_string(version) + ", only 2 is read");
     const std::uint32_t length = little_endian_32(file, 8);
     if (length > file.size() || length < 12)
         fail_gltf(path, "GLB header",
@@ -111,7 +115,7 @@ json parse_document(std::string_view text, const fs::path& path)
         // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
         const std::string_view what = error.what();
         const std::size_t tag_end = what.find("] ");
-        fail_gltf(path, "JSON", tag_end == what.npos ? what : what.substr(tag_end + 2));
+        fail_gltf(path, "JSON:", what.substr(tag_end == what.npos ? 0 : tag_end + 2, kMaxQuote));
     }
 }
 
@@ -198,12 +202,12 @@ void load_buffers(GltfAsset& asset)
 
 void fail_gltf(const fs::path& path, std::string_view element, std::string_view fault)
 {
-    std::string sentence = path.string();
-    for (const std::string_view piece : {element, fault}) {
-        if (!piece.empty())
-            sentence.append(": ").append(piece);
-    }
-    throw InputError(sentence);
+    std::string sentence(element);
+    sentence.append(element.empty() ? "" : " ").append(fault);
+    // names out of the file may hold anything
+    std::ranges::replace_if(
+        sentence, [](unsigned char c) { return std::iscntrl(c); }, '?');
+    throw InputError(path.string() + ": " + sentence);
 }
 
 void load_gltf_asset(const fs::path& path, std::string contents, GltfAsset& asset)

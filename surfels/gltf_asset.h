@@ -49,7 +49,7 @@ struct GltfAsset : SourceAsset {
 /// missing, shorter than declared, or outside the file's folder.
 void load_gltf_asset(const std::filesystem::path& path, std::string contents, GltfAsset& asset);
 
-/// "model.gltf: element: fault", as InputError.
+/// Throws InputError: "model.gltf: element fault". The fault begins with a verb.
 [[noreturn]] void fail_gltf(const std::filesystem::path& path, std::string_view element,
                             std::string_view fault);
 

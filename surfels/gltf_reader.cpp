@@ -171,8 +171,8 @@ private:
             for (int column = 0; column < 4; ++column) {
                 const double expected = column == 3 ? 1.0 : 0.0;
                 if (!(std::abs(matrix[column][3] - expected) <= kAffineTolerance))
-                    fail(numbered("node", index),
-                         "matrix does not end in the row 0 0 0 1: it is no affine transform");
+                    fail(numbered("node", index) + ": matrix",
+                         "does not end in the row 0 0 0 1: it is no affine transform");
                 matrix[column][3] = expected;
             }
             return matrix;
@@ -183,7 +183,7 @@ private:
             const glm::dquat rotation(r[3], r[0], r[1], r[2]);
             const double length = glm::length(rotation);
             if (!(length > 0.0) || !std::isfinite(length))
-                fail(numbered("node", index), "rotation has no direction");
+                fail(numbered("node", index) + ": rotation", "has a length of zero or infinity");
             matrix = glm::dmat4(glm::mat3_cast(rotation / length));
         }
         if (!node.scale.empty()) {
@@ -273,7 +273,7 @@ private:
         try {
             append_vectors(accessor, scene_.positions);
         } catch (const AccessorError& error) {
-            fail(element, error.what());
+            fail(element + ":", error.what());
         }
         for (std::size_t i = first; i < scene_.positions.size(); ++i) {
             glm::dvec3& position = scene_.positions[i];
@@ -370,15 +370,17 @@ private:
         try {
             indices = read_indices(accessor);
         } catch (const AccessorError& error) {
-            fail(element, error.what());
+            fail(element + ":", error.what());
         }
         for (std::size_t i = 0; i < indices.size(); ++i) {
             if (indices[i] >= vertex_count)
-                fail(element, "index " + std::to_string(i) + " is " + std::to_string(indices[i]) +
-                                  ", but there are " + std::to_string(vertex_count) + " vertices");
+                fail(element + ":", "index " + std::to_string(i) + " is " +
+                                        std::to_string(indices[i]) + ", but there are " +
+                                        std::to_string(vertex_count) + " vertices");
             if (indices[i] == restart)
-                fail(element, "index " + std::to_string(i) + " is " + std::to_string(restart) +
-                                  ", the primitive restart value, which glTF does not allow");
+                fail(element + ":", "index " + std::to_string(i) + " is " +
+                                        std::to_string(restart) +
+                                        ", the primitive restart value, which glTF does not allow");
         }
         return indices;
     }
@@ -419,7 +421,7 @@ private:
             if (indices.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
                 indices.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
                 indices.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
-                fail(element, "sparse indices are not of an unsigned integer type");
+                fail(element + " sparse indices", "are not of an unsigned integer type");
             const std::size_t index_size = size_of(accessor.sparse_component);
             accessor.sparse_indices =
                 slice(static_cast<std::size_t>(indices.bufferView),
@@ -439,18 +441,19 @@ private:
         const tinygltf::BufferView& view = model_.bufferViews[index];
         const std::string_view buffer = asset_.buffers[static_cast<std::size_t>(view.buffer)].bytes;
         if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
-            fail(element, numbered("bufferView", index) + " ends at byte " +
-                              std::to_string(view.byteOffset + view.byteLength) + ", but " +
-                              numbered("buffer", static_cast<std::size_t>(view.buffer)) + " has " +
-                              std::to_string(buffer.size()));
+            fail(element + ":", numbered("bufferView", index) + " ends at byte " +
+                                    std::to_string(view.byteOffset + view.byteLength) + ", but " +
+                                    numbered("buffer", static_cast<std::size_t>(view.buffer)) +
+                                    " has " + std::to_string(buffer.size()));
         // count elements end at offset + stride * (count - 1) + size
         const bool fits =
             count == 0 || (offset <= view.byteLength && size <= view.byteLength - offset &&
                            count - 1 <= (view.byteLength - offset - size) / stride);
         if (!fits)
-            fail(element, std::to_string(count) + " elements from byte " + std::to_string(offset) +
-                              " on do not fit into " + numbered("bufferView", index) + " of " +
-                              std::to_string(view.byteLength) + " bytes");
+            fail(element + ":", std::to_string(count) + " elements from byte " +
+                                    std::to_string(offset) + " on do not fit into " +
+                                    numbered("bufferView", index) + " of " +
+                                    std::to_string(view.byteLength) + " bytes");
         return count == 0 ? std::string_view() : buffer.substr(view.byteOffset + offset);
     }
 

@@ -133,7 +133,7 @@ public:
         if (found == value.end())
             fail_gltf(path_, element, std::string("has no ") + key);
         if (!found->is_object())
-            fail_gltf(path_, element, std::string(key) + " is not an object");
+            fail_gltf(path_, element + ": " + key, "is not an object");
         return *found;
     }
 
@@ -141,7 +141,7 @@ private:
     [[noreturn]] void fail(const std::string& element, const Field& field,
                            const std::string& fault) const
     {
-        fail_gltf(path_, element, std::string(field.key) + ' ' + fault);
+        fail_gltf(path_, element.empty() ? field.key : element + ": " + field.key, fault);
     }
 
     json member(const json& value, const Field& field, const std::string& element) const
@@ -238,9 +238,8 @@ void check_extensions(const json& document, const fs::path& path)
             return known.ends_with('_') ? name.starts_with(known) : name == known;
         });
         if (!harmless)
-            fail_gltf(
-                path, "extensionsRequired",
-                "the file needs the extension " + name.substr(0, 80) + ", which is not supported");
+            fail_gltf(path, "",
+                      "requires the extension " + name.substr(0, 80) + ", which is not supported");
     }
 }
 
@@ -276,6 +275,11 @@ json checked_mesh(const Checker& check, const json& value, const std::string& el
     for (const json& entry : *found) {
         const std::string place = element + " primitive " + std::to_string(primitives.size());
         json primitive = check.object(entry, kPrimitive, place);
+        // tinygltf would refuse it too, but not say where
+        const auto indices = primitive.find("indices");
+        if (indices != primitive.end() &&
+            !check.section("accessors")[indices->get<std::size_t>()].contains("bufferView"))
+            fail_gltf(path, place + " indices accessor " + indices->dump(), "has no bufferView");
         primitive["attributes"] =
             check.object(check.child(entry, "attributes", place), kAttributes, place);
         // even where plain accessors stand beside it: decoders may number its vertices otherwise

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdint>
 
 namespace surfelao {
@@ -77,7 +78,8 @@ std::optional<std::string> decode_percent(std::string_view uri)
 std::optional<fs::path> resolve_uri(const fs::path& folder, std::string_view uri)
 {
     const std::optional<std::string> name = decode_percent(uri);
-    if (!name || name->empty() || name->find('\0') != name->npos || name->find('\\') != name->npos)
+    if (!name || name->empty() || name->find('\\') != name->npos ||
+        std::ranges::any_of(*name, [](unsigned char c) { return std::iscntrl(c); }))
         return std::nullopt;
     // a colon in front of the first slash ends a scheme or a drive
     if (name->substr(0, name->find('/')).find(':') != name->npos)

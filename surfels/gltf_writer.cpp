@@ -160,7 +160,8 @@ private:
         try {
             colors = read_colors(accessor);
         } catch (const AccessorError& error) {
-            fail_gltf(asset_.path, "COLOR_0 accessor " + std::to_string(source), error.what());
+            fail_gltf(asset_.path, "COLOR_0 accessor " + std::to_string(source) + ":",
+                      error.what());
         }
         std::vector<float> values;
         for (std::size_t i = 0; i < colors.size(); ++i) {
