@@ -126,6 +126,18 @@ std::size_t size_of(GltfComponent component)
     return size;
 }
 
+bool is_index_type(GltfComponent component)
+{
+    return component == GltfComponent::uint8 || component == GltfComponent::uint16 ||
+           component == GltfComponent::uint32;
+}
+
+std::uint32_t largest_index(GltfComponent component)
+{
+    SURFELAO_CHECK(is_index_type(component));
+    return std::numeric_limits<std::uint32_t>::max() >> (32 - 8 * size_of(component));
+}
+
 void append_vectors(const GltfAccessor& accessor, std::vector<glm::dvec3>& vectors)
 {
     append<3>(accessor, vectors);

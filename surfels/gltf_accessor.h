@@ -24,6 +24,12 @@ enum class GltfComponent : std::uint16_t {
 /// 1, 2 or 4 bytes.
 [[nodiscard]] std::size_t size_of(GltfComponent component);
 
+/// Whether indices may be of this type: uint8, uint16 or uint32.
+[[nodiscard]] bool is_index_type(GltfComponent component);
+
+/// The largest value of an index type.
+[[nodiscard]] std::uint32_t largest_index(GltfComponent component);
+
 /// Where the elements lie. The bytes need no alignment.
 /// Invariant (the reader has checked it): the last element ends inside `bytes`.
 struct GltfAccessor {

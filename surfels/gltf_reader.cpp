@@ -14,6 +14,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <optional>
 
 #include <string>
 #include <vector>
@@ -50,287 +52,241 @@ std::string numbered(const char* what, std::size_t index)
     return std::string(what) + ' ' + std::to_string(index);
 }
 
-/// Builds the scene out of the model; holds what all steps need.
-class SceneBuilder {
-public:
-    SceneBuilder(const tinygltf::Model& model, GltfAsset& asset, Scene& scene)
-        : model_(model), asset_(asset), scene_(scene)
-    {
-        element_limit_ =
-            std::min<std::uint64_t>(kInstancingBase + kInstancingPerByte * asset.byte_count,
-                                    std::numeric_limits<std::uint32_t>::max());
-    }
-
-    void build()
-    {
-        const std::vector<std::int32_t> parents = find_parents();
-        group_primitives();
-        struct Visit {
-            std::size_t node;
-            glm::dmat4 parent;
-        };
-        std::vector<Visit> pending;
-        const std::vector<std::size_t> roots = find_roots(parents);
-        for (auto root = roots.rbegin(); root != roots.rend(); ++root)
-            pending.push_back({*root, glm::dmat4(1.0)});
-        while (!pending.empty()) {
-            const Visit visit = pending.back();
-            pending.pop_back();
-            const tinygltf::Node& node = model_.nodes[visit.node];
-            const glm::dmat4 world = visit.parent * local_matrix(visit.node);
-            check_finite(world, visit.node);
-            if (node.mesh >= 0)
-                add_mesh(visit.node, world);
-            for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-                pending.push_back({static_cast<std::size_t>(*child), world});
+/// The parent of each node. Refuses everything that is not a forest.
+std::vector<std::int32_t> find_parents(const tinygltf::Model& model, const fs::path& path)
+{
+    std::vector<std::int32_t> parents(model.nodes.size(), kNoParent);
+    for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+        for (const int child : model.nodes[i].children) {
+            std::int32_t& parent = parents[static_cast<std::size_t>(child)];
+            if (parent != kNoParent)
+                fail_gltf(path, numbered("node", static_cast<std::size_t>(child)),
+                          "is a child of node " + std::to_string(parent) + " and again of node " +
+                              std::to_string(i));
+            parent = static_cast<std::int32_t>(i);
         }
-        if (scene_.triangles.empty())
-            fail_gltf(asset_.path, "", "holds no triangles");
+    }
+    // with one parent each, what no root reaches is a cycle
+    std::vector<bool> reached(parents.size(), false);
+    std::vector<std::size_t> pending;
+    for (std::size_t i = 0; i < parents.size(); ++i) {
+        if (parents[i] == kNoParent)
+            pending.push_back(i);
+    }
+    while (!pending.empty()) {
+        const std::size_t node = pending.back();
+        pending.pop_back();
+        reached[node] = true;
+        for (const int child : model.nodes[node].children)
+            pending.push_back(static_cast<std::size_t>(child));
+    }
+    const auto cyclic = std::find(reached.begin(), reached.end(), false);
+    if (cyclic != reached.end())
+        fail_gltf(path, numbered("node", static_cast<std::size_t>(cyclic - reached.begin())),
+                  "is on or below a cycle of nodes");
+    return parents;
+}
+
+/// The nodes that the scene begins with.
+std::vector<std::size_t> find_roots(const tinygltf::Model& model,
+                                    const std::vector<std::int32_t>& parents, const fs::path& path)
+{
+    std::vector<std::size_t> roots;
+    if (model.scenes.empty()) {
+        for (std::size_t i = 0; i < parents.size(); ++i) {
+            if (parents[i] == kNoParent)
+                roots.push_back(i);
+        }
+        return roots;
+    }
+    const auto scene = static_cast<std::size_t>(std::max(model.defaultScene, 0));
+    std::vector<bool> listed(parents.size(), false);
+    for (const int entry : model.scenes[scene].nodes) {
+        const auto node = static_cast<std::size_t>(entry);
+        if (parents[node] != kNoParent)
+            fail_gltf(path, numbered("scene", scene),
+                      "lists " + numbered("node", node) + ", which is a child of node " +
+                          std::to_string(parents[node]));
+        if (listed[node])
+            fail_gltf(path, numbered("scene", scene), "lists " + numbered("node", node) + " twice");
+        listed[node] = true;
+        roots.push_back(node);
+    }
+    return roots;
+}
+
+/// The node's transform; its last row is exactly 0 0 0 1.
+glm::dmat4 local_matrix(const tinygltf::Model& model, std::size_t index, const fs::path& path)
+{
+    const tinygltf::Node& node = model.nodes[index];
+    if (!node.matrix.empty()) {
+        glm::dmat4 matrix;
+        for (int i = 0; i < 16; ++i)
+            matrix[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
+        for (int column = 0; column < 4; ++column) {
+            const double expected = column == 3 ? 1.0 : 0.0;
+            if (!(std::abs(matrix[column][3] - expected) <= kAffineTolerance))
+                fail_gltf(path, numbered("node", index) + ": matrix",
+                          "does not end in the row 0 0 0 1: it is no affine transform");
+            matrix[column][3] = expected;
+        }
+        return matrix;
+    }
+    glm::dmat4 matrix(1.0);
+    if (!node.rotation.empty()) {
+        const std::vector<double>& r = node.rotation;
+        const glm::dquat rotation(r[3], r[0], r[1], r[2]);
+        const double length = glm::length(rotation);
+        if (!(length > 0.0) || !std::isfinite(length))
+            fail_gltf(path, numbered("node", index) + ": rotation",
+                      "has a length of zero or infinity");
+        matrix = glm::dmat4(glm::mat3_cast(rotation / length));
+    }
+    if (!node.scale.empty()) {
+        for (int axis = 0; axis < 3; ++axis)
+            matrix[axis] *= node.scale[static_cast<std::size_t>(axis)];
+    }
+    if (!node.translation.empty())
+        matrix[3] = {node.translation[0], node.translation[1], node.translation[2], 1.0};
+    return matrix;
+}
+
+/// A node that uses a mesh, and its transform to world space.
+struct Use {
+    std::size_t node;
+    std::size_t mesh;
+    glm::dmat4 world;
+};
+
+/// All uses in the scene, a node before its children.
+std::vector<Use> find_uses(const tinygltf::Model& model, const fs::path& path)
+{
+    struct Visit {
+        std::size_t node;
+        glm::dmat4 parent;
+    };
+    std::vector<Use> uses;
+    std::vector<Visit> pending;
+    for (const std::size_t root : find_roots(model, find_parents(model, path), path))
+        pending.push_back({root, glm::dmat4(1.0)});
+    std::ranges::reverse(pending);
+    while (!pending.empty()) {
+        const Visit visit = pending.back();
+        pending.pop_back();
+        const tinygltf::Node& node = model.nodes[visit.node];
+        const glm::dmat4 world = visit.parent * local_matrix(model, visit.node, path);
+        for (int i = 0; i < 16; ++i) {
+            if (!std::isfinite(world[i / 4][i % 4]))
+                fail_gltf(path, numbered("node", visit.node), "has a transform that is not finite");
+        }
+        if (node.mesh >= 0)
+            uses.push_back({visit.node, static_cast<std::size_t>(node.mesh), world});
+        for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
+            pending.push_back({static_cast<std::size_t>(*child), world});
+    }
+    return uses;
+}
+
+/// One primitive that draws triangles.
+struct Primitive {
+    std::size_t index;                    // in its mesh
+    std::string indices_element;          // for messages
+    std::optional<GltfAccessor> indices;  // without: the vertices in order
+    int mode;
+    std::size_t triangle_count;
+};
+
+/// Primitives of one mesh that share their vertices: a part of the scene for each use of the mesh.
+struct Group {
+    std::string positions_element;
+    GltfAccessor positions;
+    std::vector<Primitive> primitives;
+};
+
+/// Finds and checks what a mesh is made of; reads no element yet.
+class MeshResolver {
+public:
+    MeshResolver(const tinygltf::Model& model, GltfAsset& asset) : model_(model), asset_(asset) {}
+
+    std::vector<Group> resolve_mesh(std::size_t mesh)
+    {
+        std::vector<Group> groups;
+        std::map<int, std::size_t> group_of;  // by POSITION accessor
+        const std::vector<tinygltf::Primitive>& primitives = model_.meshes[mesh].primitives;
+        for (std::size_t p = 0; p < primitives.size(); ++p) {
+            const std::string element = numbered("mesh", mesh) + numbered(" primitive", p);
+            const int mode = primitives[p].mode;
+            if (mode > TINYGLTF_MODE_TRIANGLE_FAN)
+                fail(element, "has the unknown mode " + std::to_string(mode));
+            const auto position = primitives[p].attributes.find("POSITION");
+            // without positions there is nothing to draw, says the specification
+            if (mode < TINYGLTF_MODE_TRIANGLES || position == primitives[p].attributes.end())
+                continue;
+            const auto [entry, is_new] = group_of.try_emplace(position->second, groups.size());
+            if (is_new)
+                groups.push_back(resolve_positions(position->second, element));
+            Group& group = groups[entry->second];
+            group.primitives.push_back(
+                resolve_primitive(primitives[p], p, group.positions.count, element));
+            find_colors(primitives[p], group.positions.count, element);
+        }
+        return groups;
     }
 
 private:
-    /// Primitives of one mesh that share their vertices.
-    struct Group {
-        std::size_t position_accessor;
-        std::vector<std::size_t> primitives;
-    };
-
     [[noreturn]] void fail(const std::string& element, const std::string& fault) const
     {
         fail_gltf(asset_.path, element, fault);
     }
 
-    /// The parent of each node. Refuses everything that is not a forest.
-    std::vector<std::int32_t> find_parents() const
+    Group resolve_positions(int index, const std::string& primitive) const
     {
-        std::vector<std::int32_t> parents(model_.nodes.size(), kNoParent);
-        for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
-            for (const int child : model_.nodes[i].children) {
-                std::int32_t& parent = parents[static_cast<std::size_t>(child)];
-                if (parent != kNoParent)
-                    fail(numbered("node", static_cast<std::size_t>(child)),
-                         "is a child of node " + std::to_string(parent) + " and again of node " +
-                             std::to_string(i));
-                parent = static_cast<std::int32_t>(i);
-            }
-        }
-        // with one parent each, what no root reaches is a cycle
-        std::vector<bool> reached(parents.size(), false);
-        std::vector<std::size_t> pending;
-        for (std::size_t i = 0; i < parents.size(); ++i) {
-            if (parents[i] == kNoParent)
-                pending.push_back(i);
-        }
-        while (!pending.empty()) {
-            const std::size_t node = pending.back();
-            pending.pop_back();
-            reached[node] = true;
-            for (const int child : model_.nodes[node].children)
-                pending.push_back(static_cast<std::size_t>(child));
-        }
-        const auto cyclic = std::find(reached.begin(), reached.end(), false);
-        if (cyclic != reached.end())
-            fail(numbered("node", static_cast<std::size_t>(cyclic - reached.begin())),
-                 "is on or below a cycle of nodes");
-        return parents;
-    }
-
-    std::vector<std::size_t> find_roots(const std::vector<std::int32_t>& parents) const
-    {
-        std::vector<std::size_t> roots;
-        if (model_.scenes.empty()) {
-            for (std::size_t i = 0; i < parents.size(); ++i) {
-                if (parents[i] == kNoParent)
-                    roots.push_back(i);
-            }
-            return roots;
-        }
-        const auto scene = static_cast<std::size_t>(std::max(model_.defaultScene, 0));
-        std::vector<bool> listed(parents.size(), false);
-        for (const int entry : model_.scenes[scene].nodes) {
-            const auto node = static_cast<std::size_t>(entry);
-            if (parents[node] != kNoParent)
-                fail(numbered("scene", scene), "lists " + numbered("node", node) +
-                                                   ", which is a child of node " +
-                                                   std::to_string(parents[node]));
-            if (listed[node])
-                fail(numbered("scene", scene), "lists " + numbered("node", node) + " twice");
-            listed[node] = true;
-            roots.push_back(node);
-        }
-        return roots;
-    }
-
-    glm::dmat4 local_matrix(std::size_t index) const
-    {
-        const tinygltf::Node& node = model_.nodes[index];
-        if (!node.matrix.empty()) {
-            glm::dmat4 matrix;
-            for (int i = 0; i < 16; ++i)
-                matrix[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
-            for (int column = 0; column < 4; ++column) {
-                const double expected = column == 3 ? 1.0 : 0.0;
-                if (!(std::abs(matrix[column][3] - expected) <= kAffineTolerance))
-                    fail(numbered("node", index) + ": matrix",
-                         "does not end in the row 0 0 0 1: it is no affine transform");
-                matrix[column][3] = expected;
-            }
-            return matrix;
-        }
-        glm::dmat4 matrix(1.0);
-        if (!node.rotation.empty()) {
-            const std::vector<double>& r = node.rotation;
-            const glm::dquat rotation(r[3], r[0], r[1], r[2]);
-            const double length = glm::length(rotation);
-            if (!(length > 0.0) || !std::isfinite(length))
-                fail(numbered("node", index) + ": rotation", "has a length of zero or infinity");
-            matrix = glm::dmat4(glm::mat3_cast(rotation / length));
-        }
-        if (!node.scale.empty()) {
-            for (int axis = 0; axis < 3; ++axis)
-                matrix[axis] *= node.scale[static_cast<std::size_t>(axis)];
-        }
-        if (!node.translation.empty())
-            matrix[3] = {node.translation[0], node.translation[1], node.translation[2], 1.0};
-        return matrix;
-    }
-
-    void check_finite(const glm::dmat4& matrix, std::size_t node) const
-    {
-        for (int i = 0; i < 16; ++i) {
-            if (!std::isfinite(matrix[i / 4][i % 4]))
-                fail(numbered("node", node), "has a transform that is not finite");
-        }
-    }
-
-    void group_primitives()
-    {
-        groups_.resize(model_.meshes.size());
-        for (std::size_t m = 0; m < model_.meshes.size(); ++m) {
-            std::vector<Group>& groups = groups_[m];
-            std::map<int, std::size_t> group_of;
-            for (std::size_t p = 0; p < model_.meshes[m].primitives.size(); ++p) {
-                const tinygltf::Primitive& primitive = model_.meshes[m].primitives[p];
-                if (primitive.mode < 0 || primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
-                    fail(numbered("mesh", m) + numbered(" primitive", p),
-                         "has the unknown mode " + std::to_string(primitive.mode));
-                const auto position = primitive.attributes.find("POSITION");
-                // without positions there is nothing to draw, says the specification
-                if (primitive.mode < TINYGLTF_MODE_TRIANGLES ||
-                    position == primitive.attributes.end())
-                    continue;
-                const auto [entry, is_new] = group_of.try_emplace(position->second, groups.size());
-                if (is_new)
-                    groups.push_back({static_cast<std::size_t>(position->second), {}});
-                groups[entry->second].primitives.push_back(p);
-            }
-        }
-    }
-
-    void add_mesh(std::size_t node, const glm::dmat4& world)
-    {
-        const auto mesh = static_cast<std::size_t>(model_.nodes[node].mesh);
-        const bool mirrored = glm::determinant(glm::dmat3(world)) < 0.0;
-        for (const Group& group : groups_[mesh]) {
-            Part part;
-            part.name = model_.nodes[node].name.empty() ? model_.meshes[mesh].name
-                                                        : model_.nodes[node].name;
-            part.node = static_cast<std::int32_t>(node);
-            part.mesh = static_cast<std::int32_t>(mesh);
-            part.primitive = static_cast<std::int32_t>(group.primitives.front());
-            part.first_vertex = static_cast<std::uint32_t>(scene_.positions.size());
-            part.first_triangle = static_cast<std::uint32_t>(scene_.triangles.size());
-            add_vertices(group, mesh, node, world);
-            part.vertex_count =
-                static_cast<std::uint32_t>(scene_.positions.size()) - part.first_vertex;
-            for (const std::size_t primitive : group.primitives) {
-                add_triangles(mesh, primitive, node, part, mirrored);
-                find_colors(mesh, primitive, part.vertex_count);
-            }
-            part.triangle_count =
-                static_cast<std::uint32_t>(scene_.triangles.size()) - part.first_triangle;
-            scene_.parts.push_back(std::move(part));
-            asset_.part_matrices.emplace_back(world);
-        }
-    }
-
-    void add_vertices(const Group& group, std::size_t mesh, std::size_t node,
-                      const glm::dmat4& world)
-    {
-        const std::string element = numbered("mesh", mesh) +
-                                    numbered(" primitive", group.primitives.front()) +
-                                    numbered(" POSITION accessor", group.position_accessor);
-        const GltfAccessor accessor = resolve(group.position_accessor, element);
+        const auto accessor_index = static_cast<std::size_t>(index);
+        const std::string element = primitive + numbered(" POSITION accessor", accessor_index);
+        const GltfAccessor accessor = resolve(accessor_index, element);
         if (accessor.dimension != 3)
             fail(element, "is not of type VEC3");
         if (accessor.component == GltfComponent::uint32)
             fail(element, "has componentType 5125 (unsigned int), which no position may have");
         if (accessor.normalized && accessor.component == GltfComponent::float32)
             fail(element, "is float and normalized at once");
-        if (accessor.count > element_limit_ - scene_.positions.size())
-            fail_expanded(node, "vertices");
-        const std::size_t first = scene_.positions.size();
-        try {
-            append_vectors(accessor, scene_.positions);
-        } catch (const AccessorError& error) {
-            fail(element + ":", error.what());
-        }
-        for (std::size_t i = first; i < scene_.positions.size(); ++i) {
-            glm::dvec3& position = scene_.positions[i];
-            position = glm::dvec3(world * glm::dvec4(position, 1.0));
-            if (!std::isfinite(position.x + position.y + position.z))
-                fail(numbered("node", node), "moves vertex " + std::to_string(i - first) + " of " +
-                                                 numbered("mesh", mesh) + " to infinity");
-        }
+        return {element, accessor, {}};
     }
 
-    void add_triangles(std::size_t mesh, std::size_t index, std::size_t node, const Part& part,
-                       bool mirrored)
+    Primitive resolve_primitive(const tinygltf::Primitive& source, std::size_t index,
+                                std::size_t vertex_count, const std::string& element) const
     {
-        const tinygltf::Primitive& primitive = model_.meshes[mesh].primitives[index];
-        std::vector<std::uint32_t> indices;
-        if (primitive.indices >= 0)
-            indices = load_indices(mesh, index, part.vertex_count);
-        const std::size_t count = primitive.indices >= 0 ? indices.size() : part.vertex_count;
-        const bool list = primitive.mode == TINYGLTF_MODE_TRIANGLES;
-        const bool strip = primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP;
-        const std::size_t triangle_count = list ? count / 3 : count < 3 ? 0 : count - 2;
-        if (triangle_count > element_limit_ - scene_.triangles.size())
-            fail_expanded(node, "triangles");
-
-        const auto vertex = [&](std::size_t i) {
-            return part.first_vertex +
-                   (primitive.indices >= 0 ? indices[i] : static_cast<std::uint32_t>(i));
-        };
-        scene_.triangles.reserve(scene_.triangles.size() + triangle_count);
-        for (std::size_t i = 0; i < triangle_count; ++i) {
-            glm::uvec3 triangle;
-            if (list)
-                triangle = {vertex(3 * i), vertex(3 * i + 1), vertex(3 * i + 2)};
-            else if (strip)
-                triangle = {vertex(i), vertex(i + 1 + i % 2), vertex(i + 2 - i % 2)};
-            else
-                triangle = {vertex(i + 1), vertex(i + 2), vertex(0)};
-            // a strip repeats vertices to jump from one row to the next: no surface is meant
-            if (strip &&
-                (triangle.x == triangle.y || triangle.y == triangle.z || triangle.z == triangle.x))
-                continue;
-            if (mirrored)
-                std::swap(triangle.y, triangle.z);
-            scene_.triangles.push_back(triangle);
+        Primitive primitive{index, {}, {}, source.mode, 0};
+        std::size_t count = vertex_count;
+        if (source.indices >= 0) {
+            const auto accessor_index = static_cast<std::size_t>(source.indices);
+            primitive.indices_element = element + numbered(" indices accessor", accessor_index);
+            primitive.indices = resolve(accessor_index, primitive.indices_element);
+            if (primitive.indices->dimension != 1)
+                fail(primitive.indices_element, "is not of type SCALAR");
+            if (!is_index_type(primitive.indices->component))
+                fail(primitive.indices_element, "is not of an unsigned integer type");
+            if (primitive.indices->normalized)
+                fail(primitive.indices_element, "is normalized, which no index may be");
+            count = primitive.indices->count;
         }
+        if (source.mode == TINYGLTF_MODE_TRIANGLES)
+            primitive.triangle_count = count / 3;
+        else
+            primitive.triangle_count = count < 3 ? 0 : count - 2;
+        return primitive;
     }
 
     /// Leaves word of existing vertex colours for the writer.
-    void find_colors(std::size_t mesh, std::size_t index, std::size_t vertex_count)
+    void find_colors(const tinygltf::Primitive& primitive, std::size_t vertex_count,
+                     const std::string& primitive_element)
     {
-        const auto& attributes = model_.meshes[mesh].primitives[index].attributes;
-        const auto color = attributes.find("COLOR_0");
-        if (color == attributes.end())
+        const auto color = primitive.attributes.find("COLOR_0");
+        if (color == primitive.attributes.end())
             return;
         const auto accessor_index = static_cast<std::size_t>(color->second);
-        const std::string element = numbered("mesh", mesh) + numbered(" primitive", index) +
-                                    numbered(" COLOR_0 accessor", accessor_index);
+        const std::string element =
+            primitive_element + numbered(" COLOR_0 accessor", accessor_index);
         const GltfAccessor accessor = resolve(accessor_index, element);
         if (accessor.dimension != 3 && accessor.dimension != 4)
             fail(element, "is neither of type VEC3 nor VEC4");
@@ -340,52 +296,7 @@ private:
         asset_.colors.insert_or_assign(accessor_index, accessor);
     }
 
-    std::vector<std::uint32_t> load_indices(std::size_t mesh, std::size_t primitive,
-                                            std::size_t vertex_count) const
-    {
-        const auto index =
-            static_cast<std::size_t>(model_.meshes[mesh].primitives[primitive].indices);
-        const std::string element = numbered("mesh", mesh) + numbered(" primitive", primitive) +
-                                    numbered(" indices accessor", index);
-        const GltfAccessor accessor = resolve(index, element);
-        if (accessor.dimension != 1)
-            fail(element, "is not of type SCALAR");
-        std::uint32_t restart = 0;
-        switch (accessor.component) {
-            case GltfComponent::uint8:
-                restart = std::numeric_limits<std::uint8_t>::max();
-                break;
-            case GltfComponent::uint16:
-                restart = std::numeric_limits<std::uint16_t>::max();
-                break;
-            case GltfComponent::uint32:
-                restart = std::numeric_limits<std::uint32_t>::max();
-                break;
-            default:
-                fail(element, "is not of an unsigned integer type");
-        }
-        if (accessor.normalized)
-            fail(element, "is normalized, which no index may be");
-        std::vector<std::uint32_t> indices;
-        try {
-            indices = read_indices(accessor);
-        } catch (const AccessorError& error) {
-            fail(element + ":", error.what());
-        }
-        for (std::size_t i = 0; i < indices.size(); ++i) {
-            if (indices[i] >= vertex_count)
-                fail(element + ":", "index " + std::to_string(i) + " is " +
-                                        std::to_string(indices[i]) + ", but there are " +
-                                        std::to_string(vertex_count) + " vertices");
-            if (indices[i] == restart)
-                fail(element + ":", "index " + std::to_string(i) + " is " +
-                                        std::to_string(restart) +
-                                        ", the primitive restart value, which glTF does not allow");
-        }
-        return indices;
-    }
-
-    /// Where the accessor's elements lie; everything about their place is checked here.
+    /// Where the accessor's elements lie. All that can be wrong with their place is found here.
     GltfAccessor resolve(std::size_t index, const std::string& element) const
     {
         const tinygltf::Accessor& source = model_.accessors[index];
@@ -418,9 +329,7 @@ private:
             const auto& values = source.sparse.values;
             accessor.sparse_count = static_cast<std::size_t>(source.sparse.count);
             accessor.sparse_component = static_cast<GltfComponent>(indices.componentType);
-            if (indices.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
-                indices.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-                indices.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
+            if (!is_index_type(accessor.sparse_component))
                 fail(element + " sparse indices", "are not of an unsigned integer type");
             const std::size_t index_size = size_of(accessor.sparse_component);
             accessor.sparse_indices =
@@ -457,18 +366,161 @@ private:
         return count == 0 ? std::string_view() : buffer.substr(view.byteOffset + offset);
     }
 
-    [[noreturn]] void fail_expanded(std::size_t node, const std::string& what) const
+    const tinygltf::Model& model_;
+    GltfAsset& asset_;
+};
+
+/// Fills the scene; holds what all steps need.
+class SceneBuilder {
+public:
+    SceneBuilder(const tinygltf::Model& model, GltfAsset& asset, Scene& scene)
+        : model_(model), asset_(asset), scene_(scene), meshes_(model.meshes.size())
     {
-        fail(numbered("node", node), "brings the scene to more than " +
-                                         std::to_string(element_limit_) + ' ' + what +
-                                         ", far more than a file of this size may stand for");
+    }
+
+    void build()
+    {
+        const std::vector<Use> uses = find_uses(model_, asset_.path);
+        MeshResolver resolver(model_, asset_);
+        for (const Use& use : uses) {
+            if (!meshes_[use.mesh])
+                meshes_[use.mesh] = resolver.resolve_mesh(use.mesh);
+        }
+        reserve(uses);
+        for (const Use& use : uses) {
+            for (const Group& group : *meshes_[use.mesh])
+                add_part(use, group);
+        }
+        if (scene_.triangles.empty())
+            fail("", "holds no triangles");
+    }
+
+private:
+    [[noreturn]] void fail(const std::string& element, const std::string& fault) const
+    {
+        fail_gltf(asset_.path, element, fault);
+    }
+
+    /// Makes room for all uses, or refuses before any is taken.
+    void reserve(const std::vector<Use>& uses)
+    {
+        const std::uint64_t limit =
+            std::min<std::uint64_t>(kInstancingBase + kInstancingPerByte * asset_.byte_count,
+                                    std::numeric_limits<std::uint32_t>::max());
+        std::uint64_t vertices = 0;
+        std::uint64_t triangles = 0;
+        for (const Use& use : uses) {
+            for (const Group& group : *meshes_[use.mesh]) {
+                vertices += group.positions.count;
+                for (const Primitive& primitive : group.primitives)
+                    triangles += primitive.triangle_count;
+                if (vertices > limit || triangles > limit)
+                    fail(numbered("node", use.node),
+                         "brings the scene to more than " + std::to_string(limit) +
+                             (vertices > limit ? " vertices" : " triangles") +
+                             ", far more than a file of this size may stand for");
+            }
+        }
+        scene_.positions.reserve(vertices);
+        scene_.triangles.reserve(triangles);
+    }
+
+    void add_part(const Use& use, const Group& group)
+    {
+        const std::string& node_name = model_.nodes[use.node].name;
+        Part part;
+        part.name = node_name.empty() ? model_.meshes[use.mesh].name : node_name;
+        part.node = static_cast<std::int32_t>(use.node);
+        part.mesh = static_cast<std::int32_t>(use.mesh);
+        part.primitive = static_cast<std::int32_t>(group.primitives.front().index);
+        part.first_vertex = static_cast<std::uint32_t>(scene_.positions.size());
+        part.first_triangle = static_cast<std::uint32_t>(scene_.triangles.size());
+        add_vertices(use, group);
+        part.vertex_count = static_cast<std::uint32_t>(group.positions.count);
+        const bool mirrored = glm::determinant(glm::dmat3(use.world)) < 0.0;
+        for (const Primitive& primitive : group.primitives)
+            add_triangles(primitive, part, mirrored);
+        part.triangle_count =
+            static_cast<std::uint32_t>(scene_.triangles.size()) - part.first_triangle;
+        scene_.parts.push_back(std::move(part));
+        asset_.part_matrices.emplace_back(use.world);
+    }
+
+    void add_vertices(const Use& use, const Group& group)
+    {
+        const std::size_t first = scene_.positions.size();
+        try {
+            append_vectors(group.positions, scene_.positions);
+        } catch (const AccessorError& error) {
+            fail(group.positions_element + ":", error.what());
+        }
+        for (std::size_t i = first; i < scene_.positions.size(); ++i) {
+            glm::dvec3& position = scene_.positions[i];
+            position = glm::dvec3(use.world * glm::dvec4(position, 1.0));
+            if (!std::isfinite(position.x) || !std::isfinite(position.y) ||
+                !std::isfinite(position.z))
+                fail(numbered("node", use.node), "moves vertex " + std::to_string(i - first) +
+                                                     " of " + numbered("mesh", use.mesh) +
+                                                     " to infinity");
+        }
+    }
+
+    void add_triangles(const Primitive& primitive, const Part& part, bool mirrored)
+    {
+        std::vector<std::uint32_t> indices;
+        if (primitive.indices)
+            indices = load_indices(primitive, part.vertex_count);
+        const auto vertex = [&](std::size_t i) {
+            return part.first_vertex +
+                   (primitive.indices ? indices[i] : static_cast<std::uint32_t>(i));
+        };
+        const bool list = primitive.mode == TINYGLTF_MODE_TRIANGLES;
+        const bool strip = primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP;
+        for (std::size_t i = 0; i < primitive.triangle_count; ++i) {
+            glm::uvec3 triangle;
+            if (list)
+                triangle = {vertex(3 * i), vertex(3 * i + 1), vertex(3 * i + 2)};
+            else if (strip)
+                triangle = {vertex(i), vertex(i + 1 + i % 2), vertex(i + 2 - i % 2)};
+            else
+                triangle = {vertex(i + 1), vertex(i + 2), vertex(0)};
+            // a strip repeats vertices to jump from one row to the next: no surface is meant
+            if (strip &&
+                (triangle.x == triangle.y || triangle.y == triangle.z || triangle.z == triangle.x))
+                continue;
+            if (mirrored)
+                std::swap(triangle.y, triangle.z);
+            scene_.triangles.push_back(triangle);
+        }
+    }
+
+    std::vector<std::uint32_t> load_indices(const Primitive& primitive,
+                                            std::size_t vertex_count) const
+    {
+        std::vector<std::uint32_t> indices;
+        try {
+            indices = read_indices(*primitive.indices);
+        } catch (const AccessorError& error) {
+            fail(primitive.indices_element + ":", error.what());
+        }
+        const std::uint32_t restart = largest_index(primitive.indices->component);
+        for (std::size_t i = 0; i < indices.size(); ++i) {
+            if (indices[i] >= vertex_count)
+                fail(primitive.indices_element + ":",
+                     "index " + std::to_string(i) + " is " + std::to_string(indices[i]) +
+                         ", but there are " + std::to_string(vertex_count) + " vertices");
+            if (indices[i] == restart)
+                fail(primitive.indices_element + ":",
+                     "index " + std::to_string(i) + " is " + std::to_string(restart) +
+                         ", the primitive restart value, which glTF does not allow");
+        }
+        return indices;
     }
 
     const tinygltf::Model& model_;
     GltfAsset& asset_;
     Scene& scene_;
-    std::uint64_t element_limit_ = 0;
-    std::vector<std::vector<Group>> groups_;  // per mesh
+    std::vector<std::optional<std::vector<Group>>> meshes_;  // those that are used
 };
 
 }  // namespace
