@@ -19,8 +19,10 @@ using nlohmann::json;
 /// Written files have about ten levels; recursion over the document is safe at this depth.
 constexpr int kMaxNesting = 256;
 
-/// Longest part of the file's own text in a message.
-constexpr std::size_t kMaxQuote = 200;
+/// Longest part of the file's own text in a message, in bytes.
+constexpr std::size_t kMaxQuote = 80;
+
+constexpr std::size_t kMaxParseError = 200;
 
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
 constexpr std::uint32_t kBinChunk = 0x004E4942;   // "BIN"
@@ -112,10 +114,15 @@ json parse_document(std::string_view text, const fs::path& path)
             fail_gltf(path, "JSON", "is not an object");
         return document;
     } catch (const json::exception& error) {
-        // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
-        const std::string_view what = error.what();
-        const std::size_t tag_end = what.find("] ");
-        fail_gltf(path, "JSON:", what.substr(tag_end == what.npos ? 0 : tag_end + 2, kMaxQuote));
+        // "[json.exception.parse_error.101] parse error at line 1, column 2: ..." with bytes of the
+        // file at its end
+        std::string what = error.what();
+        what.erase(0, what.find("] ") + 2);
+        if (what.size() > kMaxParseError)
+            what.replace(kMaxParseError, what.npos, "...");
+        std::ranges::replace_if(
+            what, [](unsigned char c) { return c >= 0x80; }, '?');
+        fail_gltf(path, "JSON:", what);
     }
 }
 
@@ -129,12 +136,12 @@ void check_version(const json& document, const fs::path& path)
         fail_gltf(path, "asset", "has no version");
     const auto& value = version->get_ref<const std::string&>();
     if (!value.starts_with("2."))
-        fail_gltf(path, "asset", "is glTF version " + value.substr(0, 16) + ", only 2.x is read");
+        fail_gltf(path, "asset", "is glTF version " + shortened(value) + ", only 2.x is read");
     const auto minimum = asset->find("minVersion");
     if (minimum != asset->end() && *minimum != "2.0")
-        fail_gltf(path, "asset",
-                  "demands a reader of version " + minimum->dump().substr(0, 16) +
-                      ", this one knows 2.0");
+        fail_gltf(
+            path, "asset",
+            "demands a reader of version " + shortened(minimum->dump()) + ", this one knows 2.0");
 }
 
 /// The contents that a buffer's uri stands for.
@@ -146,7 +153,7 @@ std::string load_uri(const std::string& uri, const fs::path& path, const std::st
             fail_gltf(path, element, "has a data URI that is not base64 or is broken");
         return *std::move(bytes);
     }
-    const std::string place = element + " uri \"" + uri.substr(0, 80) + '"';
+    const std::string place = element + " uri \"" + shortened(uri) + '"';
     const std::optional<fs::path> file = resolve_uri(path.parent_path(), uri);
     if (!file)
         fail_gltf(path, place, "is not the relative path of a file in the model's own folder");
@@ -199,6 +206,14 @@ void load_buffers(GltfAsset& asset)
 }
 
 }  // namespace
+
+std::string shortened(std::string_view text)
+{
+    std::size_t length = std::min(text.size(), kMaxQuote);
+    while (length > 0 && length < text.size() && (text[length] & 0xC0) == 0x80)
+        --length;
+    return std::string(text.substr(0, length));
+}
 
 void fail_gltf(const fs::path& path, std::string_view element, std::string_view fault)
 {

@@ -49,6 +49,9 @@ struct GltfAsset : SourceAsset {
 /// missing, shorter than declared, or outside the file's folder.
 void load_gltf_asset(const std::filesystem::path& path, std::string contents, GltfAsset& asset);
 
+/// Text out of the file for use in a message: cut to a bearable length, between characters.
+[[nodiscard]] std::string shortened(std::string_view text);
+
 /// Throws InputError: "model.gltf: element fault". The fault begins with a verb.
 [[noreturn]] void fail_gltf(const std::filesystem::path& path, std::string_view element,
                             std::string_view fault);

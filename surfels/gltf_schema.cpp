@@ -239,7 +239,7 @@ void check_extensions(const json& document, const fs::path& path)
         });
         if (!harmless)
             fail_gltf(path, "",
-                      "requires the extension " + name.substr(0, 80) + ", which is not supported");
+                      "requires the extension " + shortened(name) + ", which is not supported");
     }
 }
 
@@ -249,7 +249,7 @@ json checked_accessor(const Checker& check, const json& value, const std::string
     json accessor = check.object(value, kAccessor, element);
     const auto& type = accessor["type"].get_ref<const std::string&>();
     if (std::ranges::find(kTypeNames, type) == std::end(kTypeNames))
-        fail_gltf(path, element, "has the unknown type \"" + type.substr(0, 16) + '"');
+        fail_gltf(path, element, "has the unknown type \"" + shortened(type) + '"');
     const auto component_type = accessor["componentType"].get<std::uint64_t>();
     if (component_type < 5120 || component_type > 5126 || component_type == 5124)
         fail_gltf(path, element, "has the unknown componentType " + std::to_string(component_type));

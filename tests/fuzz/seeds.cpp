@@ -2,6 +2,7 @@
 #include "surfels/gltf_maker.h"
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 namespace {
@@ -42,17 +43,19 @@ GltfMaker everything()
     return maker;
 }
 
-void write_gltf_seeds(const fs::path& folder)
+void save(const fs::path& path, const std::string& bytes)
 {
-    fs::create_directories(folder);
-    one_triangle().save_glb(folder / "triangle.glb");
-    square().save_glb(folder / "square.glb");
-    sparse_square().save_glb(folder / "sparse.glb");
-    everything().save_glb(folder / "everything.glb");
-    GltfMaker text = one_triangle();
-    text.document["buffers"][0]["uri"] =
-        "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
-    write_file(folder / "triangle.gltf", text.document.dump());
+    fs::create_directories(path.parent_path());
+    std::ofstream(path, std::ios::binary) << bytes;
+}
+
+void save_gltf_seeds(const fs::path& folder)
+{
+    save(folder / "triangle.glb", one_triangle().glb());
+    save(folder / "square.glb", square().glb());
+    save(folder / "sparse.glb", sparse_square().glb());
+    save(folder / "everything.glb", everything().glb());
+    save(folder / "triangle.gltf", one_triangle().gltf(kTriangleUri));
 }
 
 }  // namespace
@@ -61,5 +64,5 @@ int main(int argc, char** argv)
 {
     if (argc != 2)
         return 2;
-    write_gltf_seeds(fs::path(argv[1]) / "gltf");
+    save_gltf_seeds(fs::path(argv[1]) / "gltf");
 }

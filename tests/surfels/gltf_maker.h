@@ -5,8 +5,6 @@
 
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -14,36 +12,6 @@
 #include <vector>
 
 namespace surfelao::test {
-
-/// A fresh folder that is gone at the end of the test.
-class TemporaryFolder {
-public:
-    TemporaryFolder()
-    {
-        std::string pattern = (std::filesystem::temp_directory_path() / "gltf_XXXXXX").string();
-        path_ = mkdtemp(pattern.data());
-    }
-    ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
-
-private:
-    std::filesystem::path path_;
-};
-
-inline std::filesystem::path write_file(const std::filesystem::path& path, std::string_view bytes)
-{
-    std::ofstream(path, std::ios::binary) << bytes;
-    return path;
-}
-
-inline std::string read_file(const std::filesystem::path& path)
-{
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 template <typename T>
 std::string bytes_of(std::initializer_list<T> values)
@@ -127,21 +95,18 @@ struct GltfMaker {
         return "glTF" + number(2) + number(12 + chunks.size()) + chunks;
     }
 
-    std::filesystem::path save_glb(const std::filesystem::path& path) const
-    {
-        return write_file(path, glb());
-    }
-
-    /// .gltf with the bytes in a file beside it.
-    std::filesystem::path save_gltf(const std::filesystem::path& path,
-                                    const std::string& buffer_name = "buffer.bin") const
+    /// The document as text, with `uri` for its buffer.
+    std::string gltf(const std::string& uri) const
     {
         nlohmann::json with_uri = document;
-        with_uri["buffers"][0]["uri"] = buffer_name;
-        write_file(path.parent_path() / buffer_name, bin);
-        return write_file(path, with_uri.dump());
+        with_uri["buffers"][0]["uri"] = uri;
+        return with_uri.dump();
     }
 };
+
+/// The 36 bytes of one_triangle(): 1.0f is 00 00 80 3F, at bytes 12 and 28.
+inline constexpr const char* kTriangleUri =
+    "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
 
 /// One triangle (0,0,0) (1,0,0) (0,1,0): accessor 0, mesh 0, node 0.
 inline GltfMaker one_triangle()
