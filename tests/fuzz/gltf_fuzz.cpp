@@ -1,9 +1,10 @@
 // The glTF reader on any bytes: refuses them in one sentence, or gives a scene that keeps its
 // promises and that survives being written and read again.
+#include "scene_checks.h"
+
 #include "surfels/errors.h"
 #include "surfels/gltf_io.h"
 
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,27 +12,6 @@
 namespace {
 
 using namespace surfelao;
-
-void check_invariants(const Scene& scene)
-{
-    SURFELAO_CHECK(!scene.triangles.empty());
-    for (const glm::dvec3& position : scene.positions)
-        SURFELAO_CHECK(std::isfinite(position.x + position.y + position.z));
-    std::uint64_t vertices = 0;
-    std::uint64_t triangles = 0;
-    for (const Part& part : scene.parts) {
-        SURFELAO_CHECK(part.first_vertex == vertices && part.first_triangle == triangles);
-        vertices += part.vertex_count;
-        triangles += part.triangle_count;
-        for (std::uint64_t t = part.first_triangle; t < triangles; ++t) {
-            for (int corner = 0; corner < 3; ++corner) {
-                const std::uint32_t vertex = scene.triangles[t][corner];
-                SURFELAO_CHECK(vertex >= part.first_vertex && vertex < vertices);
-            }
-        }
-    }
-    SURFELAO_CHECK(vertices == scene.positions.size() && triangles == scene.triangles.size());
-}
 
 void check_round_trip(const Scene& scene)
 {

@@ -1,6 +1,7 @@
 // Small good files for the fuzzers to start from: fuzz_seeds FOLDER fills FOLDER/<fuzzer>.
 #include "surfels/gltf_maker.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -58,11 +59,63 @@ void save_gltf_seeds(const fs::path& folder)
     save(folder / "triangle.gltf", one_triangle().gltf(kTriangleUri));
 }
 
+void save_text_seeds(const fs::path& folder)
+{
+    save(folder / "obj/square.obj",
+         "# square\nmtllib a.mtl\no one\nv 0 0 0\nv 1 0 0\nv 1 1 0 1\nv 0 1 0 .5 .5 .5\n"
+         "vt 0 0\nvn 0 0 1\ng a b\ns 1\nusemtl m\nf 1/1/1 2//1 3/1 4\nl 1 2\np 1\n");
+    save(folder / "obj/concave.obj",
+         "v -0 0 0\r\nv 4e0 0 0\r\nv 4 4. 0\r\nv 2 \\\r\n+1 0\r\nv .0 4 0 1 2 3 4\r\n"
+         "f -5 -4 -3 \\\r\n -2 -1\r\n");
+    save(folder / "off/square.off",
+         "OFF # square\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3 255 0 0\n");
+    save(folder / "off/colours.off",
+         "STCNOFF 3 2 3\n\n0 0 0 0 0 1 9 9 9 255 0 0\n1 0 0\n0 1 0\n2 0 1\n3 0 1 2\n");
+    save(folder / "stl/two.stl",
+         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+         "endloop\nendfacet\nendsolid a\nSOLID b\nFACET NORMAL 0 0 1\n OUTER LOOP\n"
+         " VERTEX 0 0 0\n VERTEX 1 0 0\n VERTEX 1 1 0\n ENDLOOP\nENDFACET\nENDSOLID b\n");
+    save(folder / "stl/binary.stl",
+         std::string(80, ' ') + bytes_of<std::uint32_t>({2}) +
+             bytes_of<float>({0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0}) + "ab" +
+             bytes_of<float>({0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 1, 0}) + "ab");
+}
+
+/// A square of one quad, in every format, with other properties and elements around it.
+void save_ply_seeds(const fs::path& folder)
+{
+    const std::string header =
+        "comment square\nobj_info none\nelement vertex 4\nproperty float x\nproperty float y\n"
+        "property float z\nproperty uchar red\nelement face 1\nproperty uchar flags\n"
+        "property list uchar int vertex_indices\n";
+    const std::string rows = "0 0 0 7\n1 0 0 7\n1 1 0 7\n0 1 0 7\n9 4 0 1 2 3\n";
+    save(folder / "ascii.ply", "ply\nformat ascii 1.0\n" + header + "end_header\n" + rows);
+    save(folder / "crlf.ply",
+         "ply\r\nformat ascii 1.0\r\nelement vertex 3\r\nproperty int x\r\nproperty short y\r\n"
+         "property double z\r\nelement tristrips 1\r\nproperty list int int vertex_indices\r\n"
+         "end_header\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n4 0 1 2 -1\r\n");
+
+    const auto vertex = [](float x, float y) { return bytes_of<float>({x, y, 0}) + "\x07"; };
+    save(folder / "little.ply", "ply\nformat binary_little_endian 1.0\n" + header + "end_header\n" +
+                                    vertex(0, 0) + vertex(1, 0) + vertex(1, 1) + vertex(0, 1) +
+                                    "\x09\x04" + bytes_of<std::int32_t>({0, 1, 2, 3}));
+    const std::string big_header =
+        "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty list uchar ushort tags\n"
+        "property int8 x\nproperty uint8 y\nproperty int16 z\nproperty float occlusion\n"
+        "element face 1\nproperty list uint32 uint16 vertex_index\nend_header\n";
+    const std::string big_rows("\0\0\0\0\0....\1ab\1\0\0\0....\0\0\1\0\0....\0\0\0\3\0\0\0\1\0\2",
+                               9 + 11 + 9 + 10);
+    save(folder / "big.ply", big_header + big_rows);
+}
+
 }  // namespace
 
 int main(int argc, char** argv)
 {
     if (argc != 2)
         return 2;
-    save_gltf_seeds(fs::path(argv[1]) / "gltf");
+    const fs::path folder = argv[1];
+    save_gltf_seeds(folder / "gltf");
+    save_ply_seeds(folder / "ply");
+    save_text_seeds(folder);
 }

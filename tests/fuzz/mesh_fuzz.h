@@ -1,0 +1,59 @@
+/// mesh_fuzz.h: a reader of OBJ, PLY, OFF or STL on any bytes: refuses them in one sentence, or
+/// gives a scene that keeps its promises and survives being written in every format and read again.
+#pragma once
+
+#include "scene_checks.h"
+
+#include "surfels/obj_io.h"
+#include "surfels/off_io.h"
+#include "surfels/ply_io.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace surfelao {
+
+/// Positions and triangles are the same; PLY may round coordinates to float, and then polygons may
+/// be cut differently.
+inline void check_same(const Scene& again, const Scene& scene, bool rounded)
+{
+    SURFELAO_CHECK(again.positions.size() == scene.positions.size());
+    SURFELAO_CHECK(again.triangles.size() == scene.triangles.size());
+    SURFELAO_CHECK(rounded || again.positions == scene.positions);
+    SURFELAO_CHECK(rounded || again.triangles == scene.triangles);
+}
+
+inline void check_round_trips(const Scene& scene, bool from_ply)
+{
+    std::vector<Occlusion> occlusion(scene.positions.size());
+    for (std::size_t v = 0; v < occlusion.size(); ++v)
+        occlusion[v] = {static_cast<float>(v % 8) / 7.0f, {0.0f, 0.0f, 1.0f}};
+    check_same(read_obj("obj", obj_contents(scene, occlusion)), scene, false);
+    check_same(read_off("off", off_contents(scene, occlusion)), scene, false);
+    const std::string ply = ply_contents(scene, occlusion);
+    const Scene again = read_ply("ply", ply);
+    check_same(again, scene, !from_ply);
+    // what we wrote is replaced, not added to
+    SURFELAO_CHECK(ply_contents(again, occlusion).size() == ply.size());
+}
+
+template <class Read>
+int fuzz_mesh(const Read& read, const std::uint8_t* data, std::size_t size)
+{
+    const std::string contents(reinterpret_cast<const char*>(data), size);
+    try {
+        const Scene scene = read("fuzzed", contents);
+        check_invariants(scene);
+        if (scene.positions.size() > 10'000)
+            return 0;
+        check_geometry(scene);
+        check_round_trips(scene, contents.starts_with("ply"));
+    } catch (const InputError& error) {
+        SURFELAO_CHECK(std::string_view(error.what()).starts_with("fuzzed: "));
+        SURFELAO_CHECK(std::string_view(error.what()).size() < 300);
+    }
+    return 0;
+}
+
+}  // namespace surfelao

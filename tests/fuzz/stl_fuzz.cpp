@@ -1,0 +1,8 @@
+#include "mesh_fuzz.h"
+
+#include "surfels/stl_io.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    return surfelao::fuzz_mesh(surfelao::read_stl, data, size);
+}
