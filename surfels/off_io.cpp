@@ -72,8 +72,13 @@ Counts read_header(const std::string& file_name, TextCursor& cursor)
     Counts counts;
     counts.vertices = read_count(cursor, "vertices");
     counts.faces = read_count(cursor, "faces");
-    if (!cursor.at_line_end())
-        cursor.integer({});  // edges
+    // the edges, which may be missing: a line with a single number is no vertex
+    ahead = cursor;
+    const bool same_line = !cursor.at_line_end();
+    if (same_line || (ahead.next_line() && !ahead.word().empty() && ahead.at_line_end())) {
+        next_word_line(cursor, "the number of edges is missing");
+        cursor.integer({});
+    }
     if (!cursor.at_line_end())
         cursor.fail(quoted(cursor.word()) + " stands behind the counts");
     check_room(cursor, counts);

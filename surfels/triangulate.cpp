@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace surfelao {
 namespace {
@@ -92,10 +93,7 @@ public:
             next_[i] = (i + 1) % n;
             previous_[i] = (i + n - 1) % n;
         }
-        for (std::uint32_t i = 0; i < n; ++i) {
-            if (turn_at(i) <= 0.0)
-                reflex_.push_back(i);
-        }
+        sort_reflex_into_cells();
     }
 
     template <class Emit>
@@ -103,15 +101,21 @@ public:
     {
         std::uint32_t left = static_cast<std::uint32_t>(flat_.size());
         std::uint32_t at = 0;
-        std::uint32_t refused = 0;  // corners in a row that were no ear
+        Demand demand = Demand::ear;
+        std::uint32_t refused = 0;  // corners in a row that did not meet the demand
+        std::uint32_t cuts = 0;     // to go until the demand is an ear again
         while (left > 3) {
-            // a round without an ear: the polygon touches or crosses itself, or is flat
-            const Demand demand = tests_left_ == 0 || refused >= 2 * left ? Demand::nothing
-                                  : refused >= left                       ? Demand::touching_ear
-                                                                          : Demand::ear;
+            if (tests_left_ == 0)
+                demand = Demand::nothing;
             if (!meets(demand, at)) {
                 at = next_[at];
-                ++refused;
+                if (++refused < left)
+                    continue;
+                // a round in vain: the polygon touches or crosses itself, or is flat. One lesser
+                // cut usually helps; many corners take a share at once, so that rounds stay few
+                demand = demand == Demand::ear ? Demand::touching_ear : Demand::nothing;
+                cuts = left / kRoundsInVain + 1;
+                refused = 0;
                 continue;
             }
             emit(previous_[at], at, next_[at]);
@@ -123,11 +127,15 @@ public:
             at = tests_left_ == 0 ? neighbour : next_[neighbour];
             refused = 0;
             --left;
+            if (demand != Demand::ear && --cuts == 0)
+                demand = Demand::ear;
         }
         emit(previous_[at], at, next_[at]);
     }
 
 private:
+    static constexpr std::uint32_t kRoundsInVain = 64;  ///< a bound for n ln n of them
+
     enum class Demand {
         ear,           ///< turns left, and no other corner lies in or on the triangle
         touching_ear,  ///< does not turn right, and no other corner lies inside the triangle
@@ -145,6 +153,7 @@ private:
     {
         if (demand == Demand::nothing)
             return true;
+        spend_test();
         const glm::dvec2 a = flat_[previous_[tip]];
         const glm::dvec2 b = flat_[tip];
         const glm::dvec2 c = flat_[next_[tip]];
@@ -154,34 +163,90 @@ private:
             return false;
         const glm::dvec2 low = glm::min(a, glm::min(b, c));
         const glm::dvec2 high = glm::max(a, glm::max(b, c));
-        for (std::size_t r = 0; r < reflex_.size();) {
-            if (tests_left_ > 0)
-                --tests_left_;
-            const std::uint32_t i = reflex_[r];
-            const glm::dvec2 p = flat_[i];
-            const bool apart = p.x < low.x || p.y < low.y || p.x > high.x || p.y > high.y ||
-                               p == a || p == b || p == c;
-            if (apart) {
-                ++r;
-                continue;
+        const glm::uvec2 first = cell_of(low);
+        const glm::uvec2 last = cell_of(high);
+        for (std::uint32_t y = first.y; y <= last.y; ++y) {
+            for (std::uint32_t x = first.x; x <= last.x; ++x) {
+                Cell& cell = cells_[y * cells_per_side_ + x];
+                spend_test();
+                for (std::uint32_t r = cell.begin; r < cell.end;) {
+                    spend_test();
+                    const std::uint32_t i = reflex_[r];
+                    const glm::dvec2 p = flat_[i];
+                    if (next_[i] == i || turn_at(i) > 0.0) {
+                        reflex_[r] = reflex_[--cell.end];
+                        continue;
+                    }
+                    ++r;
+                    if (p == a || p == b || p == c)
+                        continue;
+                    const double inside = std::min({turn(a, b, p), turn(b, c, p), turn(c, a, p)});
+                    if (strict ? inside >= 0.0 : inside > 0.0)
+                        return false;
+                }
             }
-            if (next_[i] == i || turn_at(i) > 0.0) {
-                reflex_[r] = reflex_.back();
-                reflex_.pop_back();
-                continue;
-            }
-            const double inside = std::min({turn(a, b, p), turn(b, c, p), turn(c, a, p)});
-            if (strict ? inside >= 0.0 : inside > 0.0)
-                return false;
-            ++r;
         }
         return true;
     }
 
+    /// A square grid over the polygon with about as many cells as corners: small ears then meet few
+    /// of the reflex corners.
+    void sort_reflex_into_cells()
+    {
+        low_ = high_ = flat_[0];
+        for (const glm::dvec2 p : flat_) {
+            low_ = glm::min(low_, p);
+            high_ = glm::max(high_, p);
+        }
+        cells_per_side_ =
+            static_cast<std::uint32_t>(std::sqrt(static_cast<double>(flat_.size()))) / 2 + 1;
+        cells_.resize(std::size_t{cells_per_side_} * cells_per_side_);
+        const auto cell_at = [this](std::uint32_t i) -> Cell& {
+            const glm::uvec2 cell = cell_of(flat_[i]);
+            return cells_[cell.y * cells_per_side_ + cell.x];
+        };
+        std::vector<std::uint32_t> reflex;
+        for (std::uint32_t i = 0; i < flat_.size(); ++i) {
+            if (turn_at(i) > 0.0)
+                continue;
+            reflex.push_back(i);
+            ++cell_at(i).end;
+        }
+        std::uint32_t begin = 0;
+        for (Cell& cell : cells_) {
+            const std::uint32_t count = cell.end;
+            cell = {begin, begin};
+            begin += count;
+        }
+        reflex_.resize(reflex.size());
+        for (const std::uint32_t i : reflex)
+            reflex_[cell_at(i).end++] = i;
+    }
+
+    /// Rises with either coordinate, so the corners of a box bound the cells of what lies in it.
+    [[nodiscard]] glm::uvec2 cell_of(glm::dvec2 p) const
+    {
+        const auto along = [this](double at, double low, double high) {
+            const double cell = high > low ? (at - low) / (high - low) * cells_per_side_ : 0.0;
+            return std::min(static_cast<std::uint32_t>(cell), cells_per_side_ - 1);
+        };
+        return {along(p.x, low_.x, high_.x), along(p.y, low_.y, high_.y)};
+    }
+
+    void spend_test() { tests_left_ -= tests_left_ > 0 ? 1 : 0; }
+
     const std::vector<glm::dvec2>& flat_;
     std::vector<std::uint32_t> next_;  ///< itself where the corner is gone
     std::vector<std::uint32_t> previous_;
-    std::vector<std::uint32_t> reflex_;
+    struct Cell {
+        std::uint32_t begin = 0;  ///< into reflex_
+        std::uint32_t end = 0;
+    };
+    std::vector<Cell> cells_;
+    std::vector<std::uint32_t> reflex_;  ///< cell by cell; those found convex or gone are dropped
+    glm::dvec2 low_{0.0};
+    glm::dvec2 high_{0.0};
+    std::uint32_t cells_per_side_ = 1;
     std::uint64_t tests_left_;
 };
 
@@ -196,11 +261,34 @@ void triangulate(std::span<const glm::dvec3> positions, std::span<const std::uin
     };
     if (corners.size() == 3)
         return emit(0, 1, 2);
-    const std::vector<glm::dvec2> flat = project(positions, corners);
+    std::vector<glm::dvec2> flat = project(positions, corners);
+
+    // a corner at the place of the one before it is cut off at once: it would hide the turn there
+    std::vector<std::uint32_t> kept;
+    std::vector<std::uint32_t> repeated;
+    for (std::uint32_t i = 0; i < flat.size(); ++i)
+        (i > 0 && flat[i] == flat[kept.back()] ? repeated : kept).push_back(i);
+    while (kept.size() > 1 && flat[kept.back()] == flat[kept.front()]) {
+        repeated.push_back(kept.back());
+        kept.pop_back();
+    }
+    while (kept.size() < 3) {
+        kept.push_back(repeated.back());
+        repeated.pop_back();
+    }
+    for (const std::uint32_t i : repeated)
+        emit(i, (i + 1) % flat.size(), (i + flat.size() - 1) % flat.size());
+    for (std::size_t i = 0; i < kept.size(); ++i)
+        flat[i] = flat[kept[i]];
+    flat.resize(kept.size());
+    const auto emit_kept = [&](std::size_t a, std::size_t b, std::size_t c) {
+        emit(kept[a], kept[b], kept[c]);
+    };
+
     if (!is_convex(flat))
-        return EarClipper(flat).run(emit);
-    for (std::size_t i = 2; i < corners.size(); ++i)
-        emit(0, i - 1, i);
+        return EarClipper(flat).run(emit_kept);
+    for (std::size_t i = 2; i < flat.size(); ++i)
+        emit_kept(0, i - 1, i);
 }
 
 }  // namespace surfelao

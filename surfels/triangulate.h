@@ -23,13 +23,14 @@ namespace surfelao {
 /// polygon that crosses itself has no right answer: every corner is used and nothing more is
 /// promised.
 ///
-/// O(n) for convex polygons, O(n * reflex corners) for others. After kEarTestsPerCorner * n tests
-/// the rest becomes a fan, so that no file costs more than a bounded time per corner: only polygons
-/// with thousands of reflex corners get there.
+/// O(n) for convex polygons. Others take about n log n where reflex corners are spread out, and n^2
+/// at worst; after kEarTestsPerCorner * n tests the rest becomes a fan, so that no file costs more
+/// than a bounded time per corner. Only
+/// contrived polygons of thousands of corners get there.
 void triangulate(std::span<const glm::dvec3> positions, std::span<const std::uint32_t> corners,
                  std::vector<glm::uvec3>& triangles);
 
-/// Tests of a reflex corner against an ear: a nanosecond or two each.
+/// A test is a reflex corner against an ear, a few nanoseconds.
 inline constexpr std::uint64_t kEarTestsPerCorner = 4096;
 
 }  // namespace surfelao
