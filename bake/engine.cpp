@@ -2,6 +2,8 @@
 
 #include "bake/text.h"
 #include "bake/timing.h"
+#include "gpu/context.h"
+#include "gpu/gpu_disks.h"
 #include "reference/rays.h"
 #include "reference/smoothing.h"
 #include "surfels/errors.h"
@@ -34,9 +36,19 @@ std::vector<OccluderSide> sides_of_surfels(const Geometry& geometry)
     return sides;
 }
 
+/// Made at first use and kept: shaders take longer to compile than a small scene to solve. Never
+/// destroyed: at exit the driver may be gone before.
+const GlContext& gpu_context()
+{
+    static const GlContext* context = new GlContext(GlContext::create());
+    context->make_current();
+    return *context;
+}
+
 EngineResult run_disks(const Geometry& geometry, std::span<const Receiver> receivers,
                        const EngineSettings& settings, const Progress& progress)
 {
+    const GlContext* gpu = settings.device == Device::gpu ? &gpu_context() : nullptr;
     EngineResult result;
     Stopwatch watch;
     const std::vector<Surfel> surfels = surfels_at_vertices(geometry);
@@ -50,7 +62,8 @@ EngineResult run_disks(const Geometry& geometry, std::span<const Receiver> recei
     options.opening = opening_at(settings.quality);
     options.passes = settings.passes;
     options.strength = settings.strength;
-    DiskResult solved = solve_disks(octree, receivers, options, progress);
+    DiskResult solved = gpu != nullptr ? solve_disks_gpu(*gpu, octree, receivers, options, progress)
+                                       : solve_disks(octree, receivers, options, progress);
     result.occlusion = std::move(solved.occlusion);
     if (!solved.residuals.empty())
         result.residual = solved.residuals.back();
@@ -115,10 +128,16 @@ bool knows_kernel(Engine, Kernel)
     return true;
 }
 
+bool runs_on(Engine engine, Device device)
+{
+    return device == Device::cpu || engine == Engine::disks;
+}
+
 std::string setting_of(const EngineSettings& settings)
 {
     if (settings.engine != Engine::rays)
-        return name_of_quality(settings.quality);
+        return name_of_quality(settings.quality) +
+               (settings.device == Device::gpu ? " on GPU" : "");
     return std::to_string(settings.rays) + (settings.rays == 1 ? " ray" : " rays") +
            (settings.smoothed ? ", smoothed" : "");
 }

@@ -20,12 +20,19 @@ enum class Engine {
     rays,   ///< ray casting (reference/rays.h): any exactness, slowest
 };
 
+/// Where the engine runs.
+enum class Device {
+    cpu,
+    gpu,  ///< OpenGL without a window (gpu/context.h); software where there is no GPU
+};
+
 /// One control for exactness against time, the same for every scene: 0, 1 and 2 are `draft`, `good`
 /// and `best`, and numbers between them lie between. Rays have their number instead.
 inline constexpr float kDraft = 0.0f, kGood = 1.0f, kBest = 2.0f;
 
 struct EngineSettings {
     Engine engine = Engine::disks;
+    Device device = Device::cpu;  ///< gpu: disks only
     Definition definition = {};
     float quality = kGood;     ///< disks: 0 to kBest
     int passes = 2;            ///< disks: >= 1 (tree/disks.h)
@@ -44,6 +51,8 @@ struct EngineResult {
 };
 
 /// Builds and solves. progress: of the solving. Throws Cancelled.
+/// Device::gpu: one OpenGL context serves all calls, which must come from one thread; throws
+/// std::runtime_error where there is none, or the scene does not fit the device.
 /// With settings.smoothed the receivers must be the geometry's vertices.
 [[nodiscard]] EngineResult run_engine(const Geometry& geometry, std::span<const Receiver> receivers,
                                       const EngineSettings& settings,
@@ -55,8 +64,10 @@ struct EngineResult {
 [[nodiscard]] float most_quality(Engine engine);
 /// Whether the engine can weigh directions so.
 [[nodiscard]] bool knows_kernel(Engine engine, Kernel kernel);
-/// What distinguishes settings of one engine: "good", "quality 1.5", "256 rays", "64 rays,
-/// smoothed".
+/// Whether the engine runs there.
+[[nodiscard]] bool runs_on(Engine engine, Device device);
+/// What distinguishes settings of one engine: "good", "good on GPU", "quality 1.5", "256 rays", "64
+/// rays, smoothed".
 [[nodiscard]] std::string setting_of(const EngineSettings& settings);
 
 /// How far an occluder may be, as a user says it.

@@ -8,6 +8,7 @@ Json json_of(const EngineSettings& settings)
 {
     const Definition& definition = settings.definition;
     Json json;
+    json["device"] = settings.device == Device::gpu ? "gpu" : "cpu";
     if (settings.engine == Engine::rays) {
         json["rays"] = settings.rays;
         json["smoothed"] = settings.smoothed;

@@ -24,6 +24,7 @@ struct CompareOptions {
     std::string output = ".";
     bool frontier = false;
     std::vector<std::string> engines = {"disks"};
+    std::vector<std::string> devices = {"cpu"};
     std::optional<std::vector<std::string>> qualities;
     MeasureOptions measure;
     std::uint32_t reference_rays = 4096;
@@ -52,12 +53,16 @@ CompareSettings compare_settings(const CompareOptions& options)
     CompareSettings settings = common_settings(options);
     settings.input = options.inputs.front();
     settings.smoothed_rays = {16};
+    const std::vector<std::string> qualities =
+        options.qualities.value_or(std::vector<std::string>{"draft", "good", "best"});
     for (const std::string& engine : options.engines) {
-        for (const std::string& quality :
-             options.qualities.value_or(std::vector<std::string>{"draft", "good", "best"})) {
-            EngineSettings& candidate = settings.candidates.emplace_back();
-            candidate.engine = engine_of(engine);
-            candidate.quality = quality_of(quality, candidate.engine);
+        for (const std::string& device : options.devices) {
+            for (const std::string& quality : qualities) {
+                EngineSettings& candidate = settings.candidates.emplace_back();
+                candidate.engine = engine_of(engine);
+                candidate.device = device_of(device);
+                candidate.quality = quality_of(quality, candidate.engine);
+            }
         }
     }
     return settings;
@@ -144,6 +149,8 @@ void check(const CompareOptions& options)
         throw UsageError("several files need --frontier.");
     if (options.frontier && options.qualities)
         throw UsageError("--frontier runs all qualities: it does not go with --qualities.");
+    if (options.frontier && options.devices != std::vector<std::string>{"cpu"})
+        throw UsageError("--frontier runs on the CPU: it does not go with --devices.");
     if (options.frontier && options.rounds < 3)
         throw UsageError("--frontier needs at least 3 rounds.");
     if (options.reference_rays % 2 != 0)
@@ -151,8 +158,10 @@ void check(const CompareOptions& options)
     if (options.json == "-" && options.csv == "-")
         throw UsageError("--json and --csv cannot both go to standard output.");
     const CompareSettings settings = compare_settings(options);
-    for (const EngineSettings& candidate : settings.candidates)
+    for (const EngineSettings& candidate : settings.candidates) {
         check_kernel(candidate.engine, settings.kernel);
+        check_device(candidate.engine, candidate.device);
+    }
 }
 
 }  // namespace
@@ -180,6 +189,13 @@ void add_compare_command(CLI::App& app, Work& work)
         ->delimiter(',')
         ->check(CLI::IsMember({"disks"}))
         ->type_name("E,...")
+        ->capture_default_str();
+    command
+        ->add_option("--devices", options->devices,
+                     "Where the engines run: cpu, gpu or both, side by side")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"cpu", "gpu"}))
+        ->type_name("D,...")
         ->capture_default_str();
     command
         ->add_option("--qualities", options->qualities,

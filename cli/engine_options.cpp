@@ -41,6 +41,13 @@ void add_engine_options(CLI::App& command, EngineOptions& options)
         ->default_str("disks")
         ->group("Engine");
     command
+        .add_option("--device", options.device,
+                    "Where --engine disks runs; gpu: OpenGL, no window needed")
+        ->check(CLI::IsMember({"cpu", "gpu"}))
+        ->type_name("cpu|gpu")
+        ->default_str("cpu")
+        ->group("Engine");
+    command
         .add_option("--quality", options.quality,
                     "Exactness against time, for --engine disks: draft, good, best, or a number "
                     "(0 = draft, 1 = good, 2 = best)")
@@ -105,6 +112,16 @@ Engine engine_of(const std::string& name)
     return name == "disks" ? Engine::disks : Engine::rays;
 }
 
+Device device_of(const std::string& name)
+{
+    return name == "gpu" ? Device::gpu : Device::cpu;
+}
+
+void check_device(Engine engine, Device device)
+{
+    refuse_unless(runs_on(engine, device), "--device gpu", "disks");
+}
+
 float quality_of(const std::string& text, Engine engine)
 {
     if (text == "draft")
@@ -134,6 +151,9 @@ EngineSettings settings_of(const EngineOptions& options)
     refuse_unless(!options.passes || disks, "--passes", "disks");
     refuse_unless(!options.strength || disks, "--strength", "disks");
 
+    if (options.device)
+        settings.device = device_of(*options.device);
+    check_device(settings.engine, settings.device);
     if (options.quality)
         settings.quality = quality_of(*options.quality, settings.engine);
     settings.rays = options.rays.value_or(settings.rays);

@@ -15,6 +15,7 @@ namespace surfelao {
 /// What was asked for: empty where an option was not given.
 struct EngineOptions {
     std::optional<std::string> engine;
+    std::optional<std::string> device;
     std::optional<std::string> quality;
     std::optional<std::uint32_t> rays;
     std::optional<int> passes;
@@ -45,5 +46,9 @@ void check_kernel(Engine engine, Kernel kernel);
 /// "draft", "good", "best", or a number in the engine's range.
 [[nodiscard]] float quality_of(const std::string& text, Engine engine);
 [[nodiscard]] Engine engine_of(const std::string& name);
+[[nodiscard]] Device device_of(const std::string& name);
+
+/// Throws UsageError where this engine does not run there.
+void check_device(Engine engine, Device device);
 
 }  // namespace surfelao

@@ -29,9 +29,12 @@ std::vector<glm::vec4> receiver_texels(std::span<const ReceiverGroup> groups)
 std::vector<glm::vec4> group_texels(std::span<const ReceiverGroup> groups)
 {
     std::vector<glm::vec4> texels;
-    texels.reserve(groups.size());
-    for (const ReceiverGroup& group : groups)
+    texels.reserve(groups.size() * 3);
+    for (const ReceiverGroup& group : groups) {
         texels.emplace_back(group.center, group.radius);
+        texels.emplace_back(group.axis, group.cone_cos);
+        texels.emplace_back(group.cone_sin, group.sag, 0.0f, 0.0f);
+    }
     return texels;
 }
 

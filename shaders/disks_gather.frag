@@ -19,7 +19,8 @@
 //                                side that the casting normal points to: slope.xyz constant
 //              u_far_back        the same for the other side                    (TWO_SIDED)
 //              u_receivers       RGBA32F, 2 texels a slot: position.xyz 0 | normal.xyz 0
-//              u_groups          RGBA32F, 1 texel a group of 16 slots: center.xyz radius
+//              u_groups          RGBA32F, 3 texels a group of 16 slots (tree/receiver_group.h):
+//                                center.xyz radius | axis.xyz cone_cos | cone_sin sag 0 0
 //              u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
 //              u_sums, u_at      out_sum and out_at of the draw before
 //              u_continued       0: there was none
@@ -77,9 +78,13 @@ void main()
     int   slot  = slot_at_pixel(pixel, u_blocks_per_row);
     if (slot >= u_slot_count)
         return;
-    vec3 position = texelFetch(u_receivers, slot * 2).xyz;
-    vec3 normal   = texelFetch(u_receivers, slot * 2 + 1).xyz;
-    vec4 group    = texelFetch(u_groups, slot / 16);
+    vec3  position = texelFetch(u_receivers, slot * 2).xyz;
+    vec3  normal   = texelFetch(u_receivers, slot * 2 + 1).xyz;
+    vec4  group    = texelFetch(u_groups, slot / 16 * 3);
+    vec4  cone     = texelFetch(u_groups, slot / 16 * 3 + 1);
+    vec2  rest     = texelFetch(u_groups, slot / 16 * 3 + 2).xy;
+    float cone_sin = rest.x;
+    float sag      = rest.y;
 
     vec4 sum = u_continued != 0 ? texelFetch(u_sums, pixel, 0) : vec4(0.0);
     int  at  = u_continued != 0 ? int(texelFetch(u_at, pixel, 0).x) : 0;
@@ -92,15 +97,22 @@ void main()
         do {
             ++steps;
             ball           = fetch_ball(u_records, at);
-            float distance = length(ball.xyz - group.xyz) - group.w;
+            vec3  offset    = ball.xyz - group.xyz;
+            float distance2 = dot(offset, offset);
+            float distance  = sqrt(distance2) - group.w;
+            // wholly below every receiver's horizon (receiver_group.h: sag), or out of reach
+            float along   = dot(offset, cone.xyz);
+            float top     = along * cone.w + sag + max(0.0, ball.w);
+            float across2 = (distance2 - along * along) * cone_sin * cone_sin;
+            bool  skip    = top < 0.0 && across2 < top * top;
 #if LIMITED
-            if (ball.w >= 0.0 && distance - ball.w > u_max_distance) {
-                at = int(fetch_links(u_records, at).x);
-                continue;
-            }
+            skip = skip || (ball.w >= 0.0 && distance - ball.w > u_max_distance);
 #endif
-            found = ball.w < u_opening * distance || ball.w < 0.0;
-            at += found ? 0 : 1;
+            found = !skip && (ball.w < u_opening * distance || ball.w < 0.0);
+            if (skip)
+                at = int(fetch_links(u_records, at).x);
+            else if (!found)
+                ++at;
         } while (!found && at < u_record_count && steps < u_step_limit);
         if (!found)
             break;
