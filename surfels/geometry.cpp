@@ -64,6 +64,52 @@ Frame frame_of(const Scene& scene)
     return {low + 0.5 * size, diagonal > 0.0 ? diagonal : 1.0};
 }
 
+/// Calls again(triangle) for each triangle whose three positions an earlier one has.
+///
+/// Nearly all meshes have none, so a bit per hash value sifts first: only triangles that share
+/// theirs with another one (a sixteenth by chance) are compared, in a table that fits the cache.
+template <class Again>
+void for_each_repeated(const std::vector<glm::uvec3>& triangles,
+                       const std::vector<std::uint32_t>& welded, const Again& again)
+{
+    const auto key_of = [&](glm::uvec3 t) {  // the positions in rising order
+        t = {welded[t.x], welded[t.y], welded[t.z]};
+        const std::uint32_t low = std::min({t.x, t.y, t.z}), high = std::max({t.x, t.y, t.z});
+        return glm::uvec3(low, t.x ^ t.y ^ t.z ^ low ^ high, high);
+    };
+    const auto hash_of = [](glm::uvec3 key) {
+        std::uint64_t hash = (std::uint64_t{key.x} << 32 | key.y) * 0x9E3779B97F4A7C15u;
+        hash = (hash ^ hash >> 29 ^ key.z) * 0x9E3779B97F4A7C15u;
+        return hash ^ hash >> 32;
+    };
+    const std::size_t bits = std::bit_ceil(triangles.size() * 16);
+    std::vector<bool> met(bits), met_again(bits);
+    std::size_t suspects = 0;
+    for (const glm::uvec3 triangle : triangles) {
+        const std::size_t bit = hash_of(key_of(triangle)) & (bits - 1);
+        if (met[bit]) {
+            met_again[bit] = true;
+            ++suspects;
+        }
+        met[bit] = true;
+    }
+
+    constexpr glm::uvec3 kEmpty{0, 0, 0};  // no triangle with area has its corners in one position
+    std::vector<glm::uvec3> slots(std::bit_ceil(suspects * 4 + 1), kEmpty);  // <= half full
+    for (const glm::uvec3 triangle : triangles) {
+        const glm::uvec3 key = key_of(triangle);
+        const std::uint64_t hash = hash_of(key);
+        if (!met_again[hash & (bits - 1)])
+            continue;
+        std::size_t slot = (hash >> 32) & (slots.size() - 1);
+        while (slots[slot] != kEmpty && slots[slot] != key)
+            slot = (slot + 1) & (slots.size() - 1);
+        if (slots[slot] == key)
+            again(triangle);
+        slots[slot] = key;
+    }
+}
+
 /// A position that only dropped triangles use takes the normal of the nearest neighbour along them
 /// (breadth first, so chains of degenerate triangles end at a real neighbour).
 void borrow_normals(const std::vector<glm::uvec3>& dropped, Geometry& geometry)
@@ -158,10 +204,18 @@ Geometry make_geometry(const Scene& scene)
     }
     geometry.dropped_triangles = dropped.size();
 
+    std::vector<double> repeated_area(vertex_count, 0.0);
+    for_each_repeated(geometry.triangles, geometry.welded, [&](glm::uvec3 triangle) {
+        const glm::dvec3 a = to_unit(triangle[0]);
+        const double area =
+            0.5 * glm::length(glm::cross(to_unit(triangle[1]) - a, to_unit(triangle[2]) - a));
+        for (int corner = 0; corner < 3; ++corner)
+            repeated_area[geometry.welded[triangle[corner]]] += area;
+    });
     for (std::uint32_t v = 0; v < vertex_count; ++v) {
         const std::uint32_t w = geometry.welded[v];
         if (w == v)
-            geometry.areas[v] = static_cast<float>(position_area[v] / 3.0);
+            geometry.areas[v] = static_cast<float>((position_area[v] - repeated_area[v]) / 3.0);
         if (own_area[v] == 0.0)
             continue;
         glm::dvec3 sum = position_sum[w];

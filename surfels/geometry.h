@@ -29,7 +29,9 @@ struct Geometry {
     std::vector<glm::uvec3> triangles;  ///< into positions; those without area are left out
     std::vector<std::uint32_t> welded;  ///< one per vertex: lowest vertex index at this position
     std::vector<float> areas;           ///< a third of the adjacent triangles, summed over welded
-                                        ///< vertices, at the lowest vertex; 0 elsewhere
+                                        ///< vertices, at the lowest vertex; 0 elsewhere. Of several
+                                        ///< triangles over the same three positions one counts:
+                                        ///< doubled faces occlude no more than single ones
     std::uint64_t dropped_triangles = 0;  ///< scene triangles without area
 };
 

@@ -59,6 +59,22 @@ TEST(Geometry, SurfelAreasSumToTheMeshArea)
 }
 
 // Vertices 0 and 4 stand at one place: a seam. Both get the mean normal of the fold.
+TEST(Geometry, DoubledFacesHaveTheAreaOfSingleOnesWhicheverWayTheyFace)
+{
+    const Geometry once = make_geometry(unit_square());
+    Scene scene = unit_square();
+    scene.triangles.push_back({2, 0, 1});  // the same corners from another one on
+    scene.triangles.push_back({0, 3, 2});  // its back
+    scene.positions.push_back({1, 1, 0});  // another vertex at the same place
+    scene.triangles.push_back({0, 1, 4});
+    const std::vector<float> areas = make_geometry(scene).areas;
+    for (std::size_t v = 0; v < 4; ++v)
+        EXPECT_FLOAT_EQ(areas[v], once.areas[v]);
+    EXPECT_EQ(areas[4], 0.0f);
+    scene.triangles.push_back({1, 2, 3});  // another triangle over the same square does add
+    EXPECT_GT(make_geometry(scene).areas[1], once.areas[1]);
+}
+
 TEST(Geometry, SeamsShareNormalAndArea)
 {
     Scene scene;
