@@ -4,6 +4,7 @@
 #include "surfels/surfel.h"
 #include "surfels/topology.h"
 #include "tree/disks.h"
+#include "tree/masks.h"
 
 #include <cmath>
 
@@ -50,6 +51,18 @@ Engine disks(const char* name, float opening, Bound bound)
             }};
 }
 
+Engine masks(const char* name, float quality, Bound bound)
+{
+    return {name, bound, false,
+            [quality](const Geometry& geometry, std::span<const Receiver> receivers,
+                      const Definition& definition) {
+                MaskOptions options;
+                options.definition = definition;
+                options.quality = quality;
+                return solve_masks(*build_mask_tree(geometry), receivers, options);
+            }};
+}
+
 }  // namespace
 
 std::vector<Engine> all_engines()
@@ -57,6 +70,9 @@ std::vector<Engine> all_engines()
     return {
         rays("rays 4096", RayScene::Build::robust, 4096),
         rays("rays 256", RayScene::Build::fast, 256),
+        masks("masks draft", MaskOptions::kDraft, {0.03, 0.25}),
+        masks("masks good", MaskOptions::kGood, {0.015, 0.15}),
+        masks("masks best", MaskOptions::kBest, {0.006, 0.06}),
         disks("disks draft", kDraftOpening, {0.05, 0.25}),
         disks("disks good", kGoodOpening, {0.03, 0.15}),
         disks("disks best", kBestOpening, {0.03, 0.15}),
