@@ -170,7 +170,7 @@ public:
             double change = 0.0;
             for (FarSide& side : sides) {
                 gather(side.grid, 0.5f * options_.definition.max_distance, meter);
-                change += fit(side);
+                change += fit(side, pass == 1 ? 1.0f : kDamping);
             }
             average(sides);
             const auto count = static_cast<double>(sides.size() * octree.surfels.size());
@@ -215,7 +215,7 @@ private:
     }
 
     /// From the sums in the side's grid. Returns the sum of the squared changes.
-    double fit(FarSide& side)
+    double fit(FarSide& side, float weight)
     {
         std::swap(side.found, side.before);
         Program& program = context_.program("fullscreen.vert", "disks_fit.frag");
@@ -224,6 +224,7 @@ private:
         program.set("u_records", records_texture_);
         program.set("u_slots", side.slots);
         program.set("u_side", side.sign);
+        program.set("u_weight", weight);
         program.set("u_before", side.before.color());
         draw_fullscreen(side.found, program, empty_);
 

@@ -12,8 +12,9 @@
 //            u_slots           R32UI: slot of each record; 0xFFFFFFFF: no surfel
 //            u_side            +1: the side of the casting normal, -1: the other
 //            u_before          out_far of the pass before
+//            u_weight          share of the way that the visibility goes
 // Writes     out_far           RGBA32F: FarVisibility, slope.xyz constant; nodes: zero
-//            out_change        R32F: square of the change of the constant
+//            out_change        R32F: square of the change of the mean over the hemisphere
 // CPU twin   fit and FarSide::update in tree/disks.cpp
 uniform sampler2D u_sums;
 uniform int u_blocks_per_row;
@@ -21,6 +22,7 @@ uniform usamplerBuffer u_records;
 uniform usamplerBuffer u_slots;
 uniform float u_side;
 uniform sampler2D u_before;
+uniform float u_weight;
 
 layout(location = 0) out vec4 out_far;
 layout(location = 1) out float out_change;
@@ -37,8 +39,11 @@ void main()
     vec4  sum    = texelFetch(u_sums, pixel_of_slot(int(slot), u_blocks_per_row), 0);
     vec3  normal = u_side * fetch_normal_and_flat_area(u_records, record).xyz;
     vec4  capped = sum / max(1.0, sum.w);
-    vec3  along  = capped.xyz - dot(capped.xyz, normal) * normal;
-    out_far      = vec4(-4.0 * along, 1.0 - capped.w);
-    float change = out_far.w - texelFetch(u_before, texel, 0).w;
+    vec3  mean   = 2.0 / 3.0 * normal;
+    vec3  slope  = -4.0 * (capped.xyz - capped.w * mean);
+    vec4  found  = vec4(slope, 1.0 - capped.w - dot(slope, mean));
+    vec4  step   = u_weight * (found - texelFetch(u_before, texel, 0));
+    out_far      = texelFetch(u_before, texel, 0) + step;
+    float change = step.w + dot(step.xyz, mean);
     out_change   = change * change;
 }

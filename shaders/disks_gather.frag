@@ -68,6 +68,7 @@ layout(location = 1) out uint out_at;
 
 const float kPi         = 3.14159265358979;
 const float kTinyLength = 1e-8;
+const float kLimitPenalty = 4.0;
 const float kNearDisk   = 1.0 / 9.0;
 
 void main()
@@ -108,7 +109,11 @@ void main()
 #if LIMITED
             skip = skip || (ball.w >= 0.0 && distance - ball.w > u_max_distance);
 #endif
-            found = !skip && (ball.w < u_opening * distance || ball.w < 0.0);
+            float size = ball.w;
+#if LIMITED
+            size *= distance + 2.0 * group.w + size > u_max_distance ? kLimitPenalty : 1.0;
+#endif
+            found = !skip && (size < u_opening * distance || ball.w < 0.0);
             if (skip)
                 at = int(fetch_links(u_records, at).x);
             else if (!found)

@@ -18,6 +18,9 @@ namespace {
 /// the unit frame could make of nothing.
 constexpr double kFlatThickness = 1e-7;
 
+/// Holes that are to be small span at most this share of their body's area.
+constexpr double kSmallHoles = 0.03;
+
 /// Sets of things that are connected.
 class UnionFind {
 public:
@@ -140,6 +143,44 @@ std::vector<bool> find_left_out(const std::vector<glm::uvec3>& triangles, std::s
     return left_out;
 }
 
+/// An edge with more faces in the one direction than in the other.
+struct OpenEdge {
+    std::uint32_t lower, upper;  ///< vertices
+    std::uint32_t face;          ///< any at this edge
+    int forward;                 ///< faces from lower to upper less those from upper to lower
+    std::uint32_t body = 0, loop = 0;
+};
+
+/// What it takes to close each body, at its root: the vector areas of the loops of its open edges,
+/// that is, of the least surfaces that could fill its holes or turn its misoriented patches.
+std::vector<double> hole_areas(const Geometry& geometry, std::vector<OpenEdge> edges,
+                               UnionFind& loops, UnionFind& bodies)
+{
+    for (OpenEdge& edge : edges) {
+        edge.body = bodies.root(edge.face);
+        edge.loop = loops.root(edge.lower);
+    }
+    const auto key = [](const OpenEdge& edge) {
+        return std::array{edge.body, edge.loop, edge.lower, edge.upper};
+    };
+    std::sort(edges.begin(), edges.end(),
+              [&](const OpenEdge& a, const OpenEdge& b) { return key(a) < key(b); });
+    std::vector<double> areas(geometry.triangles.size(), 0.0);
+    for (std::size_t i = 0; i < edges.size();) {
+        const OpenEdge& first = edges[i];
+        const glm::dvec3 origin = geometry.positions[first.loop];
+        glm::dvec3 vector_area(0.0);
+        for (; i < edges.size() && edges[i].body == first.body && edges[i].loop == first.loop;
+             ++i) {
+            const glm::dvec3 a = glm::dvec3(geometry.positions[edges[i].lower]) - origin;
+            const glm::dvec3 b = glm::dvec3(geometry.positions[edges[i].upper]) - origin;
+            vector_area += 0.5 * edges[i].forward * glm::cross(a, b);
+        }
+        areas[first.body] += glm::length(vector_area);
+    }
+    return areas;
+}
+
 }  // namespace
 
 Topology analyse_topology(const Geometry& geometry)
@@ -173,30 +214,37 @@ Topology analyse_topology(const Geometry& geometry)
     // bodies hang together over edges; they stay closed while all edges are balanced, either with
     // all faces or without those left out
     UnionFind bodies(triangles.size());
+    UnionFind loops(vertex_count);  // of open edges
+    std::vector<OpenEdge> open_edges;
     std::vector<bool> open_with_all(triangles.size(), false);
     std::vector<bool> open_without(triangles.size(), false);
     const auto same_edge = [](std::uint64_t a, std::uint64_t b) { return a >> 32 == b >> 32; };
-    by_lower.for_each_run(same_edge, [&](std::uint32_t, std::span<const std::uint64_t> faces) {
-        const std::uint32_t first = face_of(faces[0]);
-        int all_forward = 0;  // faces in the one direction less those in the other
-        int forward = 0;
-        int count = 0;
-        for (const std::uint64_t face : faces) {
-            const int step = face & 1 ? 1 : -1;
-            const int counts = left_out[face_of(face)] ? 0 : 1;
-            all_forward += step;
-            forward += counts * step;
-            count += counts;
-            bodies.join(first, face_of(face));
-        }
-        topology.boundary_edge_count += count == 1 ? 1 : 0;
-        topology.nonmanifold_edge_count += count > 2 ? 1 : 0;
-        topology.misoriented_edge_count += count == 2 && forward != 0 ? 1 : 0;
-        if (all_forward != 0)
-            open_with_all[first] = true;
-        if (forward != 0)
-            open_without[first] = true;
-    });
+    by_lower.for_each_run(
+        same_edge, [&](std::uint32_t lower, std::span<const std::uint64_t> faces) {
+            const std::uint32_t first = face_of(faces[0]);
+            int all_forward = 0;  // faces in the one direction less those in the other
+            int forward = 0;
+            int count = 0;
+            for (const std::uint64_t face : faces) {
+                const int step = face & 1 ? 1 : -1;
+                const int counts = left_out[face_of(face)] ? 0 : 1;
+                all_forward += step;
+                forward += counts * step;
+                count += counts;
+                bodies.join(first, face_of(face));
+            }
+            topology.boundary_edge_count += count == 1 ? 1 : 0;
+            topology.nonmanifold_edge_count += count > 2 ? 1 : 0;
+            topology.misoriented_edge_count += count == 2 && forward != 0 ? 1 : 0;
+            if (all_forward != 0)
+                open_with_all[first] = true;
+            if (forward != 0) {
+                open_without[first] = true;
+                const auto upper = static_cast<std::uint32_t>(faces[0] >> 32);
+                loops.join(lower, upper);
+                open_edges.push_back({lower, upper, first, forward});
+            }
+        });
     for (std::uint32_t face = 0; face < triangles.size(); ++face) {
         const std::uint32_t body = bodies.root(face);
         open_with_all[body] = open_with_all[body] || open_with_all[face];
@@ -224,8 +272,10 @@ Topology analyse_topology(const Geometry& geometry)
         volume[body] += glm::dot(a, glm::cross(b, c)) / 6.0;
         area[body] += glm::length(glm::cross(b - a, c - a)) / 2.0;
     }
+    const std::vector<double> holes = hole_areas(geometry, open_edges, loops, bodies);
     const auto side_of_body = [&](std::uint32_t body) {
-        if (is_open(body) || std::abs(volume[body]) <= kFlatThickness * area[body])
+        const bool has_a_back = !is_open(body) || holes[body] <= kSmallHoles * area[body];
+        if (!has_a_back || std::abs(volume[body]) <= kFlatThickness * area[body])
             return OccluderSide::both;
         return volume[body] > 0.0 ? OccluderSide::back : OccluderSide::front;
     };

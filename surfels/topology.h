@@ -26,9 +26,10 @@ namespace surfelao {
 
 /// From which side a surfel occludes in the disk engine (the masks and the rays are two-sided).
 enum class OccluderSide : std::uint8_t {
-    back,   ///< part of a closed, outward-facing body: seen from outside, its far side casts
-    front,  ///< part of a closed body whose triangles face inward
-    both,   ///< open, inconsistently oriented, or without volume
+    back,   ///< part of an outward-facing body, closed but for small holes (3 % of its area) and
+            ///< patches turned the wrong way: seen from outside, its far side casts
+    front,  ///< the same, but the triangles face inward
+    both,   ///< part of an open surface, or of one without volume
 };
 
 struct Topology {

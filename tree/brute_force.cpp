@@ -70,20 +70,28 @@ DiskResult solve_disks_brute_force(const Octree& octree, std::span<const Receive
     FarSides far = {std::vector<Far>(count), std::vector<Far>(count)};
     for (int pass = 1; pass < options.passes; ++pass) {
         const FarSides before = {far[0], far[1]};
-        double change = 0.0;
+        std::vector<double> changes(count, 0.0);
         for (int side = 0; side < (two_sided ? 2 : 1); ++side) {
             tbb::parallel_for(std::size_t{0}, count, [&](std::size_t s) {
                 const glm::vec3 normal = (side == 0 ? 1.0f : -1.0f) * octree.surfels[s].normal;
                 const Receiver at = {
                     octree.surfels[s].position + options.definition.offset * normal, normal};
                 const Sum sum = capped(gather(octree, before, beyond, limited, at));
-                const glm::dvec3 n(normal);
-                far[side][s] = {-4.0 * (sum.direction - glm::dot(sum.direction, n) * n),
-                                1.0 - sum.occlusion};
+                const glm::dvec3 mean = 2.0 / 3.0 * glm::dvec3(normal);
+                const glm::dvec3 slope = -4.0 * (sum.direction - sum.occlusion * mean);
+                const double constant = 1.0 - sum.occlusion - glm::dot(slope, mean);
+                const double weight = pass == 1 ? 1.0 : kDamping;
+                Far& now = far[side][s];
+                now.slope += weight * (slope - now.slope);
+                now.constant += weight * (constant - now.constant);
+                const Far& then = before[side][s];
+                changes[s] += std::pow(
+                    now.constant - then.constant + glm::dot(now.slope - then.slope, mean), 2);
             });
-            for (std::size_t s = 0; s < count; ++s)
-                change += std::pow(far[side][s].constant - before[side][s].constant, 2);
         }
+        double change = 0.0;
+        for (const double each : changes)
+            change += each;
         const double changed = static_cast<double>(count * (two_sided ? 2 : 1));
         result.residuals.push_back(count > 0 ? std::sqrt(change / changed) : 0.0);
         if (result.residuals.back() <= kSettled)

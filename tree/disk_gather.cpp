@@ -248,6 +248,7 @@ void list_disks(const Octree& octree, const ReceiverGroup& group, const GatherSe
     const Vec one = hn::Set(tag, 1.0f);
     const Vec group_radius = hn::Set(tag, group.radius);
     const Vec reach = hn::Set(tag, settings.definition.max_distance + group.radius);
+    const Vec inner_reach = hn::Set(tag, settings.definition.max_distance - group.radius);
     const Vec per_opening = hn::Set(tag, 1.0f / settings.opening);
     constexpr int kNodeStride = sizeof(OctreeNode) / sizeof(float);
     for (std::size_t at = 0; at < list.open_nodes.count;) {
@@ -263,7 +264,10 @@ void list_disks(const Octree& octree, const ReceiverGroup& group, const GatherSe
         const Mask out = hn::Or(hn::Gt(distance2, hn::Mul(limit, limit)),
                                 below_horizons(group, offset, distance2, radius));
         const Vec fold = hn::Mul(hn::Set(tag, kFoldPenalty), hn::Sub(one, flatness));
-        const Vec size = hn::Mul(radius, hn::Add(one, fold));
+        Vec size = hn::Mul(radius, hn::Add(one, fold));
+        const Vec inside = hn::Max(hn::Zero(tag), hn::Sub(inner_reach, size));
+        const Mask crosses_limit = hn::Gt(distance2, hn::Mul(inside, inside));
+        size = hn::Mul(size, hn::IfThenElse(crosses_limit, hn::Set(tag, kLimitPenalty), one));
         const Vec far = hn::Add(hn::Mul(size, per_opening), group_radius);
         const Mask is_far = hn::Gt(distance2, hn::Mul(far, far));
         const Mask alive = hn::AndNot(out, batch.valid);

@@ -39,14 +39,16 @@ DiskSum capped(const DiskSum& sum)
     return {scale * sum.occlusion, scale * sum.direction};
 }
 
-/// The linear function with the same mean over the hemisphere (cosine-weighted) as 1 - occlusion
-/// and the same first moments along the surface, of which the mean square is 1/4. The moment along
-/// the normal is left out: its mean square is small (1/18), so it would mostly amplify errors.
+/// A linear function with the same mean over the hemisphere (cosine-weighted) as 1 - occlusion. Its
+/// slope is what least squares gives along the surface, where the mean square of w is 1/4. Along
+/// the normal w varies less (variance 1/18 about its mean 2/3) and least squares would mostly
+/// amplify errors: the same factor there was measured to be best.
 FarVisibility fit(const DiskSum& sum, const glm::vec3& normal)
 {
     const DiskSum s = capped(sum);
-    const glm::vec3 along = s.direction - glm::dot(s.direction, normal) * normal;
-    return {-4.0f * along, 1.0f - s.occlusion};
+    const glm::vec3 mean = 2.0f / 3.0f * normal;
+    const glm::vec3 slope = -4.0f * (s.direction - s.occlusion * mean);
+    return {slope, 1.0f - s.occlusion - glm::dot(slope, mean)};
 }
 
 /// A node's visibility: the mean over its surfels, by area; two-sided surfels that face against the
@@ -86,15 +88,20 @@ struct FarSide {
     {
     }
 
-    /// Moves the surfels' visibility to what the sums say. Returns the sum of the squared changes.
-    double update(const Octree& octree, std::vector<FarVisibility>& surfels) const
+    /// Moves the surfels' visibility by `weight` of the way to what the sums say. Returns the sum
+    /// of the squared changes of their mean.
+    double update(const Octree& octree, float weight, std::vector<FarVisibility>& surfels) const
     {
         double change = 0.0;
         for (std::size_t i = 0; i < sums.size(); ++i) {
-            const FarVisibility next = fit(sums[i], sign * octree.surfels[i].normal);
-            const double difference = next.constant - surfels[i].constant;
-            change += difference * difference;
-            surfels[i] = next;
+            const glm::vec3 normal = sign * octree.surfels[i].normal;
+            const FarVisibility found = fit(sums[i], normal);
+            const glm::vec3 slope = weight * (found.slope - surfels[i].slope);
+            const float constant = weight * (found.constant - surfels[i].constant);
+            surfels[i].slope += slope;
+            surfels[i].constant += constant;
+            const double mean = constant + 2.0f / 3.0f * glm::dot(slope, normal);
+            change += mean * mean;
         }
         return change;
     }
@@ -168,9 +175,10 @@ DiskResult solve_disks(const Octree& octree, std::span<const Receiver> receivers
     for (int pass = 1; pass < options.passes; ++pass) {
         for (FarSide& side : sides)
             gather_all(octree, visibility, side.groups, beyond, side.sums, meter);
-        double change = sides[0].update(octree, visibility.surfel_front);
+        const float weight = pass == 1 ? 1.0f : kDamping;
+        double change = sides[0].update(octree, weight, visibility.surfel_front);
         if (two_sided)
-            change += sides[1].update(octree, visibility.surfel_back);
+            change += sides[1].update(octree, weight, visibility.surfel_back);
         average_over_nodes(octree, visibility.surfel_front, visibility.surfel_back,
                            visibility.node_front);
         if (two_sided)

@@ -52,6 +52,9 @@ static_assert(sizeof(OctreeNode) == 48);
 /// of 0; beyond 4 little changes.
 inline constexpr float kFoldPenalty = 4.0f;
 
+/// How much larger a node counts where max_distance may end inside it.
+inline constexpr float kLimitPenalty = 4.0f;
+
 /// A node stands for its surfels where this is below opening * distance.
 [[nodiscard]] inline float opening_size(const OctreeNode& node)
 {

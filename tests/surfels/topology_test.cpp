@@ -1,5 +1,7 @@
 #include "surfels/topology.h"
 
+#include "scenes.h"
+
 #include <gtest/gtest.h>
 
 // OpenMesh: a second opinion, from a library whose whole business is connectivity.
@@ -337,6 +339,36 @@ TEST(Topology, SlowAVertexOfEnormousValenceCostsNoMore)
     const Topology topology = topology_of(scene);
     EXPECT_EQ(topology.boundary_edge_count, kCount);
     EXPECT_EQ(topology.component_count, 1u);
+}
+
+// What a scan has: a body with small holes still has a back.
+TEST(Topology, SmallHolesAndTurnedPatchesLeaveABodyItsBack)
+{
+    const Scene whole = scenes::sphere({0, 0, 0}, 1.0, 8);  // 768 triangles of about 0.13 % each
+    const auto sides_without = [&](std::size_t triangles, bool turned) {
+        Scene scene = whole;
+        if (turned)
+            for (std::size_t i = 0; i < triangles; ++i)
+                std::swap(scene.triangles[i].y, scene.triangles[i].z);
+        else
+            scene.triangles.erase(scene.triangles.begin(),
+                                  scene.triangles.begin() + static_cast<std::ptrdiff_t>(triangles));
+        return topology_of(scene).sides.back();
+    };
+    EXPECT_EQ(sides_without(8, false), OccluderSide::back);    // 1 %
+    EXPECT_EQ(sides_without(128, false), OccluderSide::both);  // a sixth
+    EXPECT_EQ(sides_without(4, true), OccluderSide::back);
+    EXPECT_EQ(sides_without(128, true), OccluderSide::both);
+}
+
+// Two open ends whose vector areas cancel are holes all the same.
+TEST(Topology, ATubeHasNoBack)
+{
+    const Scene box = scenes::box({0, 0, 0}, {1, 1, 1}, 4);  // two sides are the lowest triangles
+    Scene tube = box;
+    tube.triangles.erase(tube.triangles.begin(), tube.triangles.begin() + 64);
+    EXPECT_EQ(topology_of(tube).sides.back(), OccluderSide::both);
+    EXPECT_EQ(topology_of(box).sides.back(), OccluderSide::back);
 }
 
 }  // namespace

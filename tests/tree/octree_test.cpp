@@ -91,8 +91,8 @@ TEST(Octree, EveryNodeHoldsItsDisksAndSumsTheirAreas)
         }
         // one rounding to float of sums that were made in double
         ASSERT_NEAR(node.area, area, 1e-6 * area);
-        ASSERT_NEAR(glm::distance(glm::dvec3(node.flatness * node.area * node.normal), vector_area), 0.0,
-                    1e-6 * area);
+        ASSERT_NEAR(glm::distance(glm::dvec3(node.flatness * node.area * node.normal), vector_area),
+                    0.0, 1e-6 * area);
     }
 }
 
