@@ -83,7 +83,7 @@ struct Header {
     std::uint64_t key_high = 0, key_low = 0;
     std::uint64_t count = 0;
     double noise = 0.0;
-    std::uint64_t check_high = 0, check_low = 0;  ///< of everything behind the header
+    std::uint64_t check_high = 0, check_low = 0;  ///< of noise and all behind the header
 };
 
 std::uint64_t file_size_of(std::uint64_t count)
@@ -96,6 +96,7 @@ ContentHash check_of(const Reference& reference)
     ContentHash hash;
     hash.add(std::span<const Occlusion>(reference.occlusion));
     hash.add(std::span<const float>(reference.change));
+    hash.add_word(std::bit_cast<std::uint64_t>(reference.noise));
     return hash;
 }
 
@@ -120,11 +121,11 @@ std::optional<Reference> load(const fs::path& path, const ContentHash& key, std:
               static_cast<std::streamsize>(count * sizeof(Occlusion)));
     file.read(reinterpret_cast<char*>(reference.change.data()),
               static_cast<std::streamsize>(count * sizeof(float)));
+    reference.noise = header.noise;
+    reference.from_cache = true;
     const ContentHash check = check_of(reference);
     if (!file || check.high() != header.check_high || check.low() != header.check_low)
         return std::nullopt;
-    reference.noise = header.noise;
-    reference.from_cache = true;
     return reference;
 }
 

@@ -1,0 +1,204 @@
+#include "bake/bake.h"
+
+#include "bake/info.h"
+#include "bake/threads.h"
+#include "scenes.h"
+#include "surfels/errors.h"
+#include "temporary_folder.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+namespace surfelao {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+BakeSettings settings_for(const fs::path& input, const fs::path& output)
+{
+    BakeSettings settings;
+    settings.input = input;
+    settings.output = output;
+    settings.engine.rays = 16;
+    return settings;
+}
+
+TEST(Bake, WritesTheFileAndReportsEveryStage)
+{
+    const TemporaryFolder folder;
+    write_obj(folder / "in.obj", scenes::bumpy_sphere(8));
+    for (const Engine engine : {Engine::disks, Engine::rays}) {
+        BakeSettings settings = settings_for(folder / "in.obj", folder / "out.ply");
+        settings.engine.engine = engine;
+        std::vector<std::string> stages;
+        const BakeReport report = bake(settings, [&](std::string_view stage, double done) {
+            EXPECT_GE(done, 0.0);
+            EXPECT_LE(done, 1.0);
+            if (stages.empty() || stages.back() != stage)
+                stages.emplace_back(stage);
+            return true;
+        });
+        EXPECT_TRUE(fs::exists(folder / "out.ply"));
+        EXPECT_EQ(report.vertices, 6u * 64 + 2);
+        EXPECT_EQ(report.triangles, 12u * 64);
+        EXPECT_NEAR(report.mean_occlusion, 0.3, 0.15);  // scenes.h: about 0.3
+        EXPECT_EQ(stages, (std::vector<std::string>{"read", "build", "solve", "write"}));
+        EXPECT_GE(report.seconds.total, report.seconds.read + report.seconds.solve);
+        EXPECT_GT(report.peak_rss_bytes, 1u << 20);
+        EXPECT_EQ(report.residual.has_value(), engine == Engine::disks);
+    }
+}
+
+TEST(Bake, CancelledAtAnyStageLeavesTheOldFile)
+{
+    const TemporaryFolder folder;
+    write_obj(folder / "in.obj", scenes::bumpy_sphere(8));
+    std::ofstream(folder / "out.ply") << "old";
+    for (const std::string stop : {"read", "build", "solve", "write"}) {
+        EXPECT_THROW(
+            static_cast<void>(bake(settings_for(folder / "in.obj", folder / "out.ply"),
+                                   [&](std::string_view stage, double) { return stage != stop; })),
+            Cancelled)
+            << stop;
+        EXPECT_EQ(read_text(folder / "out.ply"), "old");
+        EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2) << stop;
+    }
+}
+
+TEST(Bake, OutputThatCannotBeIsRefusedBeforeReading)
+{
+    const TemporaryFolder folder;
+    std::ofstream(folder / "in.obj") << "not a mesh";
+    for (const char* output : {"missing/out.ply", "out.xyz", "out.stl", "."}) {
+        bool read = false;
+        EXPECT_THROW(static_cast<void>(bake(settings_for(folder / "in.obj", folder / output),
+                                            [&](std::string_view, double) {
+                                                read = true;
+                                                return true;
+                                            })),
+                     InputError)
+            << output;
+        EXPECT_FALSE(read) << output;
+    }
+}
+
+TEST(Bake, JsonHasAllKeysAndNullForWhatIsNotThere)
+{
+    const TemporaryFolder folder;
+    write_obj(folder / "in.obj", scenes::bumpy_sphere(4));
+    BakeSettings settings = settings_for(folder / "in.obj", folder / "out.ply");
+    settings.engine.engine = Engine::rays;
+    BatchEntry done{settings.input, settings.output, bake(settings), ""};
+    const Json json = Json::parse(json_of({&done, 1}));
+    for (const char* key : {"input", "output", "vertices", "triangles", "dropped_triangles",
+                            "vertices_without_normal", "surfels", "engine", "settings", "seconds",
+                            "peak_rss_bytes", "residual", "mean_occlusion"})
+        EXPECT_TRUE(json.contains(key)) << key;
+    for (const char* key : {"read", "surfels", "tree", "solve", "write", "total"})
+        EXPECT_TRUE(json["seconds"].contains(key)) << key;
+    EXPECT_EQ(json["engine"], "rays");
+    EXPECT_EQ(json["settings"]["rays"], 16);
+    EXPECT_TRUE(json["residual"].is_null());
+    EXPECT_TRUE(json["settings"]["max_distance"].is_null());
+
+    const BatchEntry entries[] = {done, {"a.obj", "a.ply", {}, "a.obj: bad"}, {"b", "c", {}, ""}};
+    const Json list = Json::parse(json_of(entries));
+    ASSERT_EQ(list.size(), 3u);
+    EXPECT_EQ(list[1]["error"], "a.obj: bad");
+    EXPECT_EQ(list[2]["skipped"], true);
+}
+
+TEST(Definition, LimitIsInTheFilesUnitsOrPercentOfTheDiagonal)
+{
+    const Frame frame{{0, 0, 0}, 200.0};
+    EXPECT_FLOAT_EQ(definition_of({50.0, false, Falloff::none}, Kernel::cosine, frame).max_distance,
+                    0.25f);
+    EXPECT_FLOAT_EQ(definition_of({50.0, true, Falloff::none}, Kernel::cosine, frame).max_distance,
+                    0.5f);
+    EXPECT_EQ(definition_of({}, Kernel::cosine, frame).max_distance,
+              std::numeric_limits<float>::infinity());
+    EXPECT_THROW(
+        static_cast<void>(definition_of({1e-60, false, Falloff::none}, Kernel::cosine, frame)),
+        InputError);
+    // beyond a float's range: nothing is that far, so there is no limit and no falloff
+    const Definition far = definition_of({1e60, false, Falloff::smooth}, Kernel::cosine, frame);
+    EXPECT_TRUE(std::isinf(far.max_distance));
+    EXPECT_EQ(far.falloff, Falloff::none);
+}
+
+TEST(Batch, ResultsHaveTheirInputsNames)
+{
+    EXPECT_EQ(output_in_folder("x/a.obj", "out"), fs::path("out/a.obj"));
+    EXPECT_EQ(output_in_folder("x/a.STL", "out"), fs::path("out/a.ply"));
+    EXPECT_EQ(output_in_folder("x/a.glb", "out"), fs::path("out/a.glb"));
+}
+
+TEST(Batch, FinishedMeansThereAndNotOlder)
+{
+    const TemporaryFolder folder;
+    std::ofstream(folder / "in") << "1";
+    EXPECT_FALSE(is_finished(folder / "in", folder / "out"));
+    std::ofstream(folder / "out") << "2";
+    const auto now = fs::last_write_time(folder / "out");
+    fs::last_write_time(folder / "in", now - std::chrono::seconds(10));
+    EXPECT_TRUE(is_finished(folder / "in", folder / "out"));
+    fs::last_write_time(folder / "in", now + std::chrono::seconds(10));
+    EXPECT_FALSE(is_finished(folder / "in", folder / "out"));
+    EXPECT_FALSE(is_finished(folder / "none", folder / "out"));
+}
+
+TEST(Threads, TheLimitLivesAsLongAsItsObject)
+{
+    const int before = thread_count();
+    {
+        const ThreadLimit limit(1);
+        EXPECT_EQ(thread_count(), 1);
+    }
+    EXPECT_EQ(thread_count(), before);
+}
+
+TEST(Info, CountsWhatIsThereAndWhatIsOdd)
+{
+    const TemporaryFolder folder;
+    Scene scene = scenes::box({0, 0, 0}, {1, 2, 2}, 2);
+    const std::uint64_t used = scene.positions.size();
+    scene.positions.push_back({9, 9, 9});
+    scene.triangles.push_back(scene.triangles.front());
+    scene.triangles.push_back({0, 0, 1});
+    write_obj(folder / "in.obj", scene);
+    const Info info = inspect(folder / "in.obj");
+    EXPECT_EQ(info.vertices, used + 1);
+    EXPECT_EQ(info.unused_vertices, 1u);
+    EXPECT_EQ(info.vertices_without_normal, 1u);
+    EXPECT_EQ(info.dropped_triangles, 1u);
+    EXPECT_EQ(info.topology.duplicate_triangle_count, 1u);
+    EXPECT_EQ(info.low, glm::dvec3(0, 0, 0));
+    EXPECT_EQ(info.high, glm::dvec3(1, 2, 2));
+    EXPECT_NEAR(info.diagonal, 3.0, 1e-12);
+    EXPECT_NEAR(info.area, 16.0 + 0.5,
+                1e-4);  // the repeated triangle counts: a half of a 1 x 1 quad
+    const std::string text = text_of(info);
+    for (const char* words : {"1 triangle without area", "1 triangle repeated", "1 vertex in no",
+                              "1 vertex without a normal"})
+        EXPECT_NE(text.find(words), std::string::npos) << words << "\n" << text;
+    const Json json = Json::parse(json_of(info));
+    EXPECT_EQ(json["dropped_triangles"], 1);
+    EXPECT_EQ(json["parts"].size(), info.parts.size());
+}
+
+TEST(Info, ACleanBoxHasNothingOdd)
+{
+    const TemporaryFolder folder;
+    write_obj(folder / "in.obj", scenes::box({0, 0, 0}, {1, 1, 1}, 2));
+    const std::string text = text_of(inspect(folder / "in.obj"));
+    EXPECT_NE(text.find("nothing odd"), std::string::npos) << text;
+    EXPECT_NE(text.find("1 connected piece, 1 of them closed"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace surfelao
