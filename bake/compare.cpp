@@ -190,6 +190,9 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     for (const std::uint32_t rays : settings.smoothed_rays)
         rows.push_back(row_of_rays(definition, rays, true));
 
+    for (CompareRow& row : rows)
+        row.settings.instructions = settings.instructions;
+
     // rounds: one after the other, so that whatever slows the machine slows all alike
     std::vector<std::vector<double>> builds(rows.size()), solves(rows.size());
     const auto run = [&](std::size_t i) {
@@ -209,6 +212,7 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
             const std::uint32_t most =
                 *std::max_element(settings.rays.begin(), settings.rays.end());
             rows.push_back(row_of_rays(definition, 4 * most, false));
+            rows.back().settings.instructions = settings.instructions;
             builds.emplace_back();
             solves.emplace_back();
             run(rows.size() - 1);

@@ -32,6 +32,7 @@ struct CompareSettings {
     std::uint64_t sample = 0;             ///< receivers that are judged, evenly spread; 0 = all
     int rounds = 3;                       ///< >= 1
     bool use_cache = true;                ///< of references
+    Instructions instructions = Instructions::all;  ///< of the candidates and the opponent
 };
 
 /// Opponent's time over ours at our error: above 1 we are faster.

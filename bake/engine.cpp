@@ -10,8 +10,11 @@
 #include "surfels/surfel.h"
 #include "surfels/topology.h"
 #include "tree/disks.h"
+#include "tree/masks.h"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace surfelao {
@@ -71,12 +74,35 @@ EngineResult run_disks(const Geometry& geometry, std::span<const Receiver> recei
     return result;
 }
 
+EngineResult run_masks(const Geometry& geometry, std::span<const Receiver> receivers,
+                       const EngineSettings& settings, const Progress& progress)
+{
+    EngineResult result;
+    MaskOptions options;
+    options.definition = settings.definition;
+    options.quality = settings.quality;
+    if (settings.instructions == Instructions::avx2) {
+        const std::vector<MaskKernelSet> available = available_mask_kernels();
+        if (std::find(available.begin(), available.end(), MaskKernelSet::avx2) == available.end())
+            throw std::runtime_error("this processor has no AVX2");
+        options.kernel = MaskKernelSet::avx2;
+    }
+    Stopwatch watch;
+    const std::shared_ptr<const MaskTree> tree = build_mask_tree(geometry);
+    result.tree_s = watch.lap();
+    result.occlusion = solve_masks(*tree, receivers, options, progress);
+    result.solve_s = watch.lap();
+    return result;
+}
+
 EngineResult run_rays(const Geometry& geometry, std::span<const Receiver> receivers,
                       const EngineSettings& settings, const Progress& progress)
 {
     EngineResult result;
     Stopwatch watch;
-    const RayScene scene(geometry, RayScene::Build::fast);
+    const RayScene scene(
+        geometry, RayScene::Build::fast,
+        settings.instructions == Instructions::avx2 ? RayScene::Isa::avx2 : RayScene::Isa::best);
     result.tree_s = watch.lap();
     RayOptions options;
     options.definition = settings.definition;
@@ -86,25 +112,6 @@ EngineResult run_rays(const Geometry& geometry, std::span<const Receiver> receiv
         result.occlusion = smooth_occlusion(geometry, result.occlusion);
     result.solve_s = watch.lap();
     return result;
-}
-
-}  // namespace
-
-EngineResult run_engine(const Geometry& geometry, std::span<const Receiver> receivers,
-                        const EngineSettings& settings, const Progress& progress)
-{
-    switch (settings.engine) {
-        case Engine::disks:
-            return run_disks(geometry, receivers, settings, progress);
-        case Engine::rays:
-            return run_rays(geometry, receivers, settings, progress);
-    }
-    std::abort();
-}
-
-std::string name_of(Engine engine)
-{
-    return engine == Engine::disks ? "disks" : "rays";
 }
 
 std::string name_of_quality(float quality)
@@ -118,14 +125,51 @@ std::string name_of_quality(float quality)
     return "quality " + exact(quality);
 }
 
-float most_quality(Engine engine)
+}  // namespace
+
+EngineResult run_engine(const Geometry& geometry, std::span<const Receiver> receivers,
+                        const EngineSettings& settings, const Progress& progress)
 {
-    return engine == Engine::rays ? 0.0f : kBest;
+    switch (settings.engine) {
+        case Engine::masks:
+            return run_masks(geometry, receivers, settings, progress);
+        case Engine::disks:
+            return run_disks(geometry, receivers, settings, progress);
+        case Engine::rays:
+            return run_rays(geometry, receivers, settings, progress);
+    }
+    std::abort();
 }
 
-bool knows_kernel(Engine, Kernel)
+std::string name_of(Engine engine)
 {
-    return true;
+    switch (engine) {
+        case Engine::masks:
+            return "masks";
+        case Engine::disks:
+            return "disks";
+        case Engine::rays:
+            return "rays";
+    }
+    std::abort();
+}
+
+float most_quality(Engine engine)
+{
+    switch (engine) {
+        case Engine::masks:
+            return 4.0f;
+        case Engine::disks:
+            return kBest;
+        case Engine::rays:
+            return 0.0f;
+    }
+    std::abort();
+}
+
+bool knows_kernel(Engine engine, Kernel kernel)
+{
+    return kernel == Kernel::cosine || engine != Engine::masks;
 }
 
 bool runs_on(Engine engine, Device device)

@@ -16,6 +16,7 @@
 namespace surfelao {
 
 enum class Engine {
+    masks,  ///< visibility as bits (tree/masks.h): the default
     disks,  ///< summed form factors (tree/disks.h): preview quality
     rays,   ///< ray casting (reference/rays.h): any exactness, slowest
 };
@@ -30,15 +31,22 @@ enum class Device {
 /// and `best`, and numbers between them lie between. Rays have their number instead.
 inline constexpr float kDraft = 0.0f, kGood = 1.0f, kBest = 2.0f;
 
+/// Which instructions the inner loops of masks and rays may use.
+enum class Instructions {
+    all,   ///< the widest that the processor has
+    avx2,  ///< at most AVX2: what most machines have
+};
+
 struct EngineSettings {
-    Engine engine = Engine::disks;
+    Engine engine = Engine::masks;
     Device device = Device::cpu;  ///< gpu: disks only
     Definition definition = {};
-    float quality = kGood;     ///< disks: 0 to kBest
+    float quality = kGood;     ///< masks, disks: 0 to most_quality
     int passes = 2;            ///< disks: >= 1 (tree/disks.h)
     float strength = 1.0f;     ///< disks: >= 0
     std::uint32_t rays = 256;  ///< rays: 1 to kMostRays
     bool smoothed = false;     ///< rays: one smoothing step afterwards (reference/smoothing.h)
+    Instructions instructions = Instructions::all;
 };
 
 struct EngineResult {
@@ -50,7 +58,8 @@ struct EngineResult {
     std::optional<double> residual;  ///< disks: last RMS change of the emitters' visibility
 };
 
-/// Builds and solves. progress: of the solving. Throws Cancelled.
+/// Builds and solves. progress: of the solving. Throws Cancelled, and std::runtime_error where the
+/// processor lacks the instructions asked for.
 /// Device::gpu: one OpenGL context serves all calls, which must come from one thread; throws
 /// std::runtime_error where there is none, or the scene does not fit the device.
 /// With settings.smoothed the receivers must be the geometry's vertices.
@@ -58,7 +67,7 @@ struct EngineResult {
                                       const EngineSettings& settings,
                                       const Progress& progress = {});
 
-/// "disks", "rays"
+/// "masks", "disks", "rays"
 [[nodiscard]] std::string name_of(Engine engine);
 /// The upper end of `quality`; 0 for rays, which have none.
 [[nodiscard]] float most_quality(Engine engine);

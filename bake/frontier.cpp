@@ -16,9 +16,12 @@ namespace {
 constexpr int kPictureWidth = 400, kPictureHeight = 300;
 
 /// Settings of one engine from coarse to fine: its family, the same for every scene.
-std::vector<float> qualities_of(Engine)
+std::vector<float> qualities_of(Engine engine)
 {
-    return {0.0f, 0.5f, 1.0f, 1.5f, 2.0f};
+    std::vector<float> qualities = {0.0f, 0.5f, 1.0f, 1.5f, 2.0f};
+    if (engine == Engine::masks)
+        qualities.push_back(3.0f);
+    return qualities;
 }
 
 double seconds_of(const Comparison& comparison, const CompareRow& row, Cost cost)

@@ -19,6 +19,8 @@ Json json_of(const EngineSettings& settings)
         json["passes"] = settings.passes;
         json["strength"] = settings.strength;
     }
+    if (settings.instructions == Instructions::avx2)
+        json["instructions"] = "avx2";
     json["kernel"] = definition.kernel == Kernel::cosine ? "cosine" : "bunnell";
     json["max_distance"] =
         std::isfinite(definition.max_distance) ? Json(definition.max_distance) : Json();

@@ -36,9 +36,9 @@ void refuse_unless(bool allowed, const char* option, const char* engines)
 void add_engine_options(CLI::App& command, EngineOptions& options)
 {
     command.add_option("--engine", options.engine, "Who computes")
-        ->check(CLI::IsMember({"disks", "rays"}))
-        ->type_name("disks|rays")
-        ->default_str("disks")
+        ->check(CLI::IsMember({"masks", "disks", "rays"}))
+        ->type_name("masks|disks|rays")
+        ->default_str("masks")
         ->group("Engine");
     command
         .add_option("--device", options.device,
@@ -109,7 +109,11 @@ void add_thread_option(CLI::App& command, std::optional<int>& threads)
 
 Engine engine_of(const std::string& name)
 {
-    return name == "disks" ? Engine::disks : Engine::rays;
+    for (const Engine engine : {Engine::masks, Engine::disks}) {
+        if (name == name_of(engine))
+            return engine;
+    }
+    return Engine::rays;
 }
 
 Device device_of(const std::string& name)
@@ -146,7 +150,7 @@ EngineSettings settings_of(const EngineOptions& options)
         settings.engine = engine_of(*options.engine);
     const bool disks = settings.engine == Engine::disks;
     const bool rays = settings.engine == Engine::rays;
-    refuse_unless(!options.quality || !rays, "--quality", "disks");
+    refuse_unless(!options.quality || !rays, "--quality", "masks or disks");
     refuse_unless(!options.rays || rays, "--rays", "rays");
     refuse_unless(!options.passes || disks, "--passes", "disks");
     refuse_unless(!options.strength || disks, "--strength", "disks");
