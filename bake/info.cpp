@@ -43,12 +43,16 @@ std::vector<std::string> oddities(const Info& info)
     };
     add(info.dropped_triangles, "triangle", "without area: dropped, they occlude nothing");
     add(topology.duplicate_triangle_count, "triangle",
-        "repeated at the same place: no effect on masks and rays, too dark with disks");
+        "repeated at the same place: they count once");
     add(info.unused_vertices, "vertex|vertices", "in no triangle");
     add(info.vertices_without_normal, "vertex|vertices", "without a normal: they get occlusion 0");
     add(topology.nonmanifold_edge_count, "edge", "between more than two triangles");
     add(topology.misoriented_edge_count, "edge", "between triangles that face opposite ways");
-    add(topology.boundary_edge_count, "edge", "at a border");
+    add(info.half_edges.complex_triangle_count, "triangle",
+        "where the surface is no manifold: fans that meet in a point, or more than two at an edge");
+    add(topology.boundary_edge_count, "edge",
+        "at a border, around " + count_text(info.half_edges.hole_count, "hole") + " of up to " +
+            count_text(info.half_edges.largest_hole_edges, "edge"));
     add(info.ill_defined, "vertex|vertices",
         "of " + std::to_string(info.examined) +
             " examined without an answer of their own: in another surface's plane, or between "
@@ -70,6 +74,7 @@ Info inspect(const std::filesystem::path& input)
     info.dropped_triangles = geometry.dropped_triangles;
     info.diagonal = geometry.frame.diagonal;
     info.topology = analyse_topology(geometry);
+    info.half_edges = examine_half_edges(geometry);
 
     std::vector<bool> used(scene.positions.size(), false);
     info.low = info.high = scene.positions[scene.triangles.front().x];
@@ -111,7 +116,8 @@ std::string text_of(const Info& info)
         count_text(info.parts.size(), "part") + "\n  box " + point_text(info.low) + " to " +
         point_text(info.high) + ", diagonal " + exact(info.diagonal) + ", area " +
         exact(info.area) + "\n  " + count_text(topology.component_count, "connected piece") + ", " +
-        std::to_string(topology.closed_component_count) + " of them closed\n";
+        std::to_string(topology.closed_component_count) + " of them closed, " +
+        count_text(info.half_edges.handle_count, "handle") + "\n";
     if (info.parts.size() > 1) {
         Table table({"  part", "name", "vertices", "triangles"});
         for (std::size_t i = 0; i < std::min(kPartsShown, info.parts.size()); ++i) {
@@ -155,6 +161,10 @@ std::string json_of(const Info& info)
                        {"boundary_edges", topology.boundary_edge_count},
                        {"nonmanifold_edges", topology.nonmanifold_edge_count},
                        {"misoriented_edges", topology.misoriented_edge_count},
+                       {"complex_triangles", info.half_edges.complex_triangle_count},
+                       {"holes", info.half_edges.hole_count},
+                       {"largest_hole_edges", info.half_edges.largest_hole_edges},
+                       {"handles", info.half_edges.handle_count},
                        {"low", point(info.low)},
                        {"high", point(info.high)},
                        {"diagonal", info.diagonal},

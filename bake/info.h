@@ -1,6 +1,7 @@
 /// info.h: what a mesh file holds, and what is odd about it.
 #pragma once
 
+#include "surfels/half_edges.h"
 #include "surfels/scene.h"
 #include "surfels/topology.h"
 
@@ -25,6 +26,7 @@ struct Info {
     std::uint64_t ill_defined = 0;              ///< of `examined`: reference/well_defined.h
     std::uint64_t examined = 0;                 ///< vertices with a normal that were looked at
     Topology topology;
+    HalfEdgeReport half_edges;
     glm::dvec3 low{0.0}, high{0.0};  ///< box of the triangles' corners, the file's units
     double diagonal = 0.0;
     double area = 0.0;  ///< the file's units squared

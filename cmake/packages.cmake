@@ -3,7 +3,7 @@ find_package(Threads REQUIRED)
 find_package(glm CONFIG REQUIRED)
 find_package(hwy CONFIG REQUIRED)        # Highway: SIMD, one code for every instruction set
 find_package(TBB 2021 CONFIG REQUIRED COMPONENTS tbb)
-find_package(OpenMesh CONFIG REQUIRED)   # for a test; target OpenMeshCore, the package has no version file
+find_package(OpenMesh CONFIG REQUIRED)   # target OpenMeshCore; the package has no version file
 find_package(TinyGLTF CONFIG REQUIRED)   # Debian ships it compiled: no implementation macro
 find_package(embree 3.13 CONFIG REQUIRED)
 find_package(CLI11 2.1 CONFIG REQUIRED)
