@@ -1,6 +1,8 @@
-/// mesh_source.h: what the readers of OBJ, PLY, OFF and STL share: polygons in, Scene out.
+/// mesh_source.h: what the readers and writers of OBJ, PLY, OFF and STL share: polygons in, Scene
+/// out, and back.
 #pragma once
 
+#include "surfels/occlusion.h"
 #include "surfels/scene.h"
 
 #include <cstdint>
@@ -50,6 +52,9 @@ void for_each_face(const Scene& scene, const Visit& visit);
 
 /// How many times for_each_face calls.
 [[nodiscard]] std::size_t face_count(const Scene& scene);
+
+/// Visibility as a colour channel of 8 bits.
+[[nodiscard]] std::uint8_t grey(const Occlusion& occlusion);
 
 // ------------------------------------------------------------------------------------------------
 

@@ -5,8 +5,6 @@
 #include "surfels/number_text.h"
 #include "surfels/text_cursor.h"
 
-#include <cmath>
-
 namespace surfelao {
 namespace {
 
@@ -162,10 +160,8 @@ std::string off_contents(const Scene& scene, std::span<const Occlusion> occlusio
             append_shortest(text, scene.positions[v][axis]);
             text += ' ';
         }
-        const std::int64_t grey =
-            std::lround(255.0 * (1.0 - static_cast<double>(occlusion[v].occlusion)));
         for (int channel = 0; channel < 3; ++channel) {
-            append_integer(text, grey);
+            append_integer(text, grey(occlusion[v]));
             text += ' ';
         }
         text += "255\n";

@@ -299,6 +299,12 @@ std::vector<Case> cases()
              "5 0 1 -1 1 2\n",
          {"no faces"}},
 
+        {"ply_StrangeElement",
+         ply_header(v + "element \x01\x02" + std::string(1000, 'e') +
+                    " 1\nproperty int a\nproperty int b\n" + f) +
+             rows + "5\n3 0 1 2\n",
+         {"line 16", "??eee", "... 0 has fewer"}},
+
         // PLY: binary data
         {"ply_BinaryNan",
          binary_ply(v + f, bytes(0.f, 0.f, kNan) + kThreeVertices),
