@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -175,9 +176,11 @@ void load_buffers(GltfAsset& asset)
         if (!entry.is_object())
             fail_gltf(asset.path, element, "is not an object");
         const auto length = entry.find("byteLength");
-        if (length == entry.end() || !length->is_number_unsigned())
+        // as a double: 36.0 is a whole number too, and no buffer comes near 2^53 bytes
+        const double byte_length =
+            length != entry.end() && length->is_number() ? length->get<double>() : -1.0;
+        if (byte_length < 0.0 || byte_length != std::floor(byte_length))
             fail_gltf(asset.path, element, "has no byteLength that is a whole number");
-        const auto byte_length = length->get<std::uint64_t>();
 
         GltfBuffer& buffer = asset.buffers[i];
         const auto uri = entry.find("uri");
@@ -197,11 +200,11 @@ void load_buffers(GltfAsset& asset)
         } else {
             continue;
         }
-        if (byte_length > buffer.bytes.size())
+        if (byte_length > static_cast<double>(buffer.bytes.size()))
             fail_gltf(asset.path, element,
-                      "declares " + std::to_string(byte_length) + " bytes, but has " +
+                      "declares " + length->dump() + " bytes, but has " +
                           std::to_string(buffer.bytes.size()));
-        buffer.bytes = buffer.bytes.substr(0, byte_length);
+        buffer.bytes = buffer.bytes.substr(0, static_cast<std::size_t>(byte_length));
     }
 }
 

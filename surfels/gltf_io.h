@@ -12,6 +12,10 @@
 /// accessor; primitives of one mesh that share that accessor are one Part (Part::primitive is the
 /// first of them).
 ///
+/// Refused are compressed geometry (KHR_draco_mesh_compression, EXT_meshopt_compression without
+/// plain data), EXT_mesh_gpu_instancing, and any other extension that the file requires unless it
+/// is known to leave geometry alone (materials, textures, lights).
+///
 /// The file is taken as hostile: every index, offset, count, stride and type is checked before use,
 /// and what stands after the whole file has been multiplied by its nodes is bounded (see
 /// kInstancingBase).

@@ -264,14 +264,22 @@ json checked_accessor(const Checker& check, const json& value, const std::string
     return accessor;
 }
 
+bool has_extension(const json& entry, const char* name)
+{
+    const auto extensions = entry.find("extensions");
+    return extensions != entry.end() && extensions->is_object() && extensions->contains(name);
+}
+
 json checked_mesh(const Checker& check, const json& value, const std::string& element,
                   const fs::path& path)
 {
     json mesh = check.object(value, kMesh, element);
     json& primitives = mesh["primitives"] = json::array();
     const auto found = value.find("primitives");
-    if (found == value.end() || !found->is_array())
+    if (found == value.end())
         fail_gltf(path, element, "has no primitives");
+    if (!found->is_array())
+        fail_gltf(path, element + ": primitives", "is not an array");
     for (const json& entry : *found) {
         const std::string place = element + " primitive " + std::to_string(primitives.size());
         json primitive = check.object(entry, kPrimitive, place);
@@ -283,9 +291,7 @@ json checked_mesh(const Checker& check, const json& value, const std::string& el
         primitive["attributes"] =
             check.object(check.child(entry, "attributes", place), kAttributes, place);
         // even where plain accessors stand beside it: decoders may number its vertices otherwise
-        const auto extensions = entry.find("extensions");
-        if (extensions != entry.end() && extensions->is_object() &&
-            extensions->contains("KHR_draco_mesh_compression"))
+        if (has_extension(entry, "KHR_draco_mesh_compression"))
             fail_gltf(path, place,
                       "is compressed by KHR_draco_mesh_compression, which is not supported");
         primitives.push_back(std::move(primitive));
@@ -325,7 +331,11 @@ json geometry_document(const json& document, const fs::path& path)
         return checked_mesh(check, value, element, path);
     });
     collect("nodes", "node", [&](const json& value, const std::string& element) {
-        return check.object(value, kNode, element);
+        json node = check.object(value, kNode, element);
+        // even where it is not required: without its instances the occlusion would be wrong
+        if (has_extension(value, "EXT_mesh_gpu_instancing"))
+            fail_gltf(path, element, "uses EXT_mesh_gpu_instancing, which is not supported");
+        return node;
     });
     collect("scenes", "scene", [&](const json& value, const std::string& element) {
         return check.object(value, kScene, element);

@@ -192,7 +192,7 @@ const Malformed kMalformed[] = {
     // meshes
     {"MeshWithoutPrimitives", "mesh 0 has no primitives",
      [](GltfMaker& m) { m.document["meshes"][0] = json::object(); }},
-    {"PrimitivesNotArray", "mesh 0 has no primitives",
+    {"PrimitivesNotArray", "mesh 0: primitives is not an array",
      [](GltfMaker& m) { m.document["meshes"][0]["primitives"] = 1; }},
     {"PrimitiveIsNull", "mesh 0 primitive 0 is not an object",
      [](GltfMaker& m) { primitive(m) = nullptr; }},
@@ -221,6 +221,12 @@ const Malformed kMalformed[] = {
      [](GltfMaker& m) {
          primitive(m)["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}};
      }},
+    {"InstancedNode", "node 0 uses EXT_mesh_gpu_instancing, which is not supported",
+     [](GltfMaker& m) {
+         m.document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = json::object();
+     }},
+    {"BufferLengthFraction", "buffer 0 has no byteLength that is a whole number",
+     [](GltfMaker& m) { m.document["buffers"][0]["byteLength"] = 59.5; }},
     {"ColorsTooFew", "mesh 0 primitive 0 COLOR_0 accessor 2 has 1 elements for 4 vertices",
      [](GltfMaker& m) {
          primitive(m)["attributes"]["COLOR_0"] = m.add_vectors<float>({1, 1, 1});
