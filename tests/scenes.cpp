@@ -1,11 +1,11 @@
 #include "scenes.h"
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/type_precision.hpp>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <map>
+#include <unordered_map>
 
 namespace surfelao::scenes {
 namespace {
@@ -70,10 +70,14 @@ Scene box(glm::dvec3 low, glm::dvec3 high, int cells)
 {
     // lattice points of the cube's surface, numbered as they are met
     Scene scene;
-    std::map<std::array<int, 3>, std::uint32_t> numbers;
+    std::unordered_map<std::uint64_t, std::uint32_t> numbers;
+    numbers.reserve(6 * static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells) + 2);
     const auto vertex = [&](glm::ivec3 at) {
-        const auto [found, is_new] = numbers.try_emplace(
-            {at.x, at.y, at.z}, static_cast<std::uint32_t>(scene.positions.size()));
+        const auto lattice = static_cast<std::uint64_t>(cells) + 1;
+        const auto place = glm::u64vec3(at);
+        const auto [found, is_new] =
+            numbers.try_emplace((place.z * lattice + place.y) * lattice + place.x,
+                                static_cast<std::uint32_t>(scene.positions.size()));
         if (is_new)
             scene.positions.push_back(low + (high - low) * glm::dvec3(at) / double(cells));
         return found->second;

@@ -377,6 +377,21 @@ void gather(const Octree& octree, const EmitterVisibility& visibility,
     }
 }
 
+GatherCount count(const Octree& octree, std::span<const ReceiverGroup> groups,
+                  const GatherSettings& settings)
+{
+    GatherCount sum;
+    DiskList list;
+    for (const ReceiverGroup& group : groups) {
+        list_disks(octree, group, settings, list);
+        sum.tested_nodes += static_cast<double>(list.open_nodes.count);
+        sum.nodes += static_cast<double>(list.nodes.count);
+        sum.surfels += static_cast<double>(list.surfels.count);
+    }
+    const double per_group = 1.0 / static_cast<double>(std::max<std::size_t>(1, groups.size()));
+    return {per_group * sum.tested_nodes, per_group * sum.nodes, per_group * sum.surfels};
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace surfelao
@@ -386,12 +401,19 @@ HWY_AFTER_NAMESPACE();
 namespace surfelao {
 
 HWY_EXPORT(gather);
+HWY_EXPORT(count);
 
 void gather_disks(const Octree& octree, const EmitterVisibility& visibility,
                   std::span<const ReceiverGroup> groups, const GatherSettings& settings,
                   std::span<DiskSum> sums)
 {
     HWY_DYNAMIC_DISPATCH(gather)(octree, visibility, groups, settings, sums);
+}
+
+GatherCount count_gather(const Octree& octree, std::span<const ReceiverGroup> groups,
+                         const GatherSettings& settings)
+{
+    return HWY_DYNAMIC_DISPATCH(count)(octree, groups, settings);
 }
 
 }  // namespace surfelao

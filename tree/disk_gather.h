@@ -42,4 +42,15 @@ void gather_disks(const Octree& octree, const EmitterVisibility& visibility,
                   std::span<const ReceiverGroup> groups, const GatherSettings& settings,
                   std::span<DiskSum> sums);
 
+/// What one group costs on average.
+struct GatherCount {
+    double tested_nodes = 0.0;  ///< in the walk, once for the group
+    double nodes = 0.0;         ///< summed as disks, in every lane
+    double surfels = 0.0;       ///< the same, single ones
+};
+
+/// The walks alone, for benchmarks. O(groups * log n).
+[[nodiscard]] GatherCount count_gather(const Octree& octree, std::span<const ReceiverGroup> groups,
+                                       const GatherSettings& settings);
+
 }  // namespace surfelao
