@@ -20,7 +20,8 @@ struct MaskSettings {
         share_inner;   ///< u: group radius over distance below which a mask is shared, inner groups
     float share_leaf;  ///< r: the same for leaf groups
     float max_distance;
-    bool fill;  ///< close single-bit cracks where much is covered
+    float exact_radius;  ///< nodes with a smaller open_radius are never opened
+    bool fill;           ///< close single-bit cracks where much is covered
 };
 
 /// Neighbouring receivers: all points within `radius` of `center`, all normals within the cone, no
@@ -34,6 +35,9 @@ struct MaskGroup {
     std::uint32_t begin, end;   ///< receivers, in the order of the tree
     std::uint32_t first_child;  ///< two, side by side; 0 = leaf of at most 16 receivers
 };
+
+/// In MaskNode::first_child: the node is a patch without gaps, whose neighbours likely continue it.
+constexpr std::uint32_t kMaskSheet = 0x80000000u;
 
 /// A growing array of plain values.
 template <typename T>
@@ -51,8 +55,9 @@ void release(MaskBuffer<float>& buffer);
 /// Working memory of one thread.
 struct MaskScratch {
     MaskBuffer<std::uint32_t> frontier;
-    MaskBuffer<float> quads;      ///< chunks of 16: four corners x 3 coordinates x 16 lanes
-    MaskBuffer<float> triangles;  ///< chunks of 16: three corners x 3 coordinates x 16 lanes
+    MaskBuffer<float> clusters;    ///< chunks of 16: four corners x 3 coordinates x 16 lanes
+    MaskBuffer<float> rectangles;  ///< the same, of nodes that are exact
+    MaskBuffer<float> triangles;   ///< chunks of 16: three corners x 3 coordinates x 16 lanes
 };
 
 /// What all calls share.
@@ -76,9 +81,9 @@ struct MaskAnswers {
 
 struct MaskKernel {
     const char* name;
-    /// Draws the nodes of `in` that are far from the whole group into `mask` (kMaskWords), drops
-    /// those below all horizons or beyond the limit, and hands the others, opened to about the
-    /// group's size, to `out`.
+    /// Draws the nodes of `in` that are far from the whole group into `mask` (kMaskPairWords),
+    /// drops those below all horizons or beyond the limit, and hands the others, opened to about
+    /// the group's size, to `out`.
     void (*descend)(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* in,
                     std::size_t in_count, MaskBuffer<std::uint32_t>& out, std::uint32_t* mask,
                     MaskScratch& scratch);

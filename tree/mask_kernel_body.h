@@ -68,12 +68,40 @@ SURFELAO_MASK_INLINE Int16 row_bits(const MaskRaster& raster, float slope, float
     return bits_from(fma(all(slope), load(raster.row_v), all(start) - load(raster.row_shift)));
 }
 
+/// The bits of one face whose rays meet a plane within the limit: those inside of the circular cone
+/// n.d >= k |d| about the plane's normal n, where k = plane's distance / limit, 0 <= k < 1.
+/// With n.d = p + nu u and |d|^2 = q + u^2 in a row, u lies between or beyond the roots of
+/// (nu^2 - k^2) u^2 + 2 p nu u + p^2 - k^2 q = 0.
+SURFELAO_MASK_INLINE Int16 cone_bits(const MaskRaster& raster, float na, float nu, float nv,
+                                     float k)
+{
+    const Float16 v = load(raster.row_v);
+    const Float16 shift = load(raster.row_shift);
+    const Float16 zero = all(0.0f);
+    float a = nu * nu - k * k;
+    constexpr float kFlat = 1e-7f;  // a parabola is as good as a hyperbola next to it
+    if (a > -kFlat && a < kFlat)
+        a = a < 0.0f ? -kFlat : kFlat;
+    const Float16 p = fma(all(nv), v, all(na));
+    const Float16 root2 = fma(p, p, fma(v, v, all(1.0f)) * all(a));
+    const Float16 root = sqrt(max(root2, zero)) * all(k);
+    const Float16 b = p * all(nu);
+    const Float16 scale = all(16.0f / a);
+    const Float16 first = fms(root - b, scale, shift) + all(16.0f);
+    const Float16 second = fms(zero - root - b, scale, shift) + all(16.0f);
+    if (a < 0.0f) {
+        const Int16 between = bits_from(first) & ~bits_from(second);
+        return select((root2 > zero) & (p > zero), between, all(0u));
+    }
+    return nu > 0.0f ? bits_from(first) : ~bits_from(second);
+}
+
 /// Sixteen polygons at once up to the edges, then each by itself, 16 rows at a time.
 /// corner: 3 kCorners rows of `kStride` floats, relative to the receiver; target: word offset of
 /// the receiver's mask in `masks`.
-template <int kCorners, int kStride>
-void draw(const MaskRaster& raster, const float* corner, const std::uint32_t* target,
-          unsigned count, std::uint32_t* masks)
+template <int kCorners, int kStride, bool kLoose>
+void draw(const MaskRaster& raster, float max_distance, const float* corner,
+          const std::uint32_t* target, unsigned count, std::uint32_t* masks)
 {
     Vector16 c[kCorners];
     for (int i = 0; i < kCorners; ++i) {
@@ -107,7 +135,29 @@ void draw(const MaskRaster& raster, const float* corner, const std::uint32_t* ta
     beyond([](Vector16 p) { return p.y + p.z; }, all_syz, any_syz);
     beyond([](Vector16 p) { return p.z - p.x; }, all_dzx, any_dzx);
     beyond([](Vector16 p) { return p.z + p.x; }, all_szx, any_szx);
-    const Lanes drawn = first_lanes(count) & (nonzero(as_int(volume) & all(0x7fffffffu)));
+    Lanes drawn = first_lanes(count) & (nonzero(as_int(volume) & all(0x7fffffffu)));
+
+    // with a distance limit: planes beyond it are dropped, polygons that cross it are cut to a cone
+    unsigned cut = 0;
+    alignas(64) float plane[4][kLanes];
+    if (max_distance < __builtin_inff()) {
+        const Float16 limit = all(max_distance);
+        Vector16 normal = cross(c[1] - c[0], c[2] - c[0]);
+        const Float16 length2 = max(dot(normal, normal), all(kTinyComponent));
+        const Float16 inverse = inverse_sqrt(length2);
+        Float16 height = dot(normal, c[0]) * inverse;
+        const Int16 behind = sign_of(height);
+        height = flip(height, behind);
+        Float16 farthest2 = dot(c[0], c[0]);
+        for (int i = 1; i < kCorners; ++i)
+            farthest2 = max(farthest2, dot(c[i], c[i]));
+        drawn = drawn & (height < limit);
+        cut = bits(farthest2 > limit * limit);
+        store(plane[0], flip(normal.x * inverse, behind));
+        store(plane[1], flip(normal.y * inverse, behind));
+        store(plane[2], flip(normal.z * inverse, behind));
+        store(plane[3], height * all(1.0f / max_distance));
+    }
     Lanes in[6] = {without(drawn, negative(all_dxy | all_sxy | ~any_dzx | all_szx)),
                    without(drawn, negative(~any_sxy | ~any_dxy | all_dzx | ~any_szx)),
                    without(drawn, negative(~any_dxy | all_sxy | all_dyz | all_syz)),
@@ -160,17 +210,30 @@ void draw(const MaskRaster& raster, const float* corner, const std::uint32_t* ta
                     bits_from(fma(all(slope[i][lane]), row_v, all(start[i][lane])) - row_shift);
                 inside = and_xor(inside, from, all(below[i][lane]));
             }
+            if (cut >> lane & 1u) {
+                const std::uint32_t face = words[lane] / kMaskFaceWords % 8u;
+                const std::uint32_t a = face / 2;
+                const float na = plane[a][lane];
+                inside =
+                    inside & cone_bits(raster, face % 2 == 0 ? na : -na, plane[(a + 1) % 3][lane],
+                                       plane[(a + 2) % 3][lane], plane[3][lane]);
+            }
             std::uint32_t* face = masks + words[lane];
             store(face, load(face) | inside);
+            if constexpr (kLoose)
+                store(face + kMaskWords, load(face + kMaskWords) | inside);
         }
     }
 }
 
 /// Collects polygons of any receivers until 16 can be drawn at once.
-template <int kCorners>
+template <int kCorners, bool kLoose>
 class Stream {
 public:
-    Stream(const MaskRaster& raster, std::uint32_t* masks) : raster_(raster), masks_(masks) {}
+    Stream(const MaskWorld& world, std::uint32_t* masks)
+        : raster_(*world.raster), max_distance_(world.settings.max_distance), masks_(masks)
+    {
+    }
 
     /// corner: relative to the receiver whose mask begins at masks[target].
     SURFELAO_MASK_INLINE void add(const Vector16* corner, std::uint32_t target, Lanes chosen)
@@ -183,7 +246,8 @@ public:
         store(target_ + count_, all(target));
         count_ += static_cast<unsigned>(__builtin_popcount(bits(chosen)));
         if (count_ >= kLanes) {
-            draw<kCorners, 2 * kLanes>(raster_, corner_[0], target_, kLanes, masks_);
+            draw<kCorners, 2 * kLanes, kLoose>(raster_, max_distance_, corner_[0], target_, kLanes,
+                                               masks_);
             for (int i = 0; i < 3 * kCorners; ++i)
                 store(corner_[i], load(corner_[i] + kLanes));
             store(target_, load(target_ + kLanes));
@@ -194,12 +258,14 @@ public:
     void finish()
     {
         if (count_ > 0)
-            draw<kCorners, 2 * kLanes>(raster_, corner_[0], target_, count_, masks_);
+            draw<kCorners, 2 * kLanes, kLoose>(raster_, max_distance_, corner_[0], target_, count_,
+                                               masks_);
         count_ = 0;
     }
 
 private:
     const MaskRaster& raster_;
+    float max_distance_;
     std::uint32_t* masks_;
     unsigned count_ = 0;
     alignas(64) float corner_[3 * kCorners][2 * kLanes] = {};
@@ -219,7 +285,8 @@ struct Node16 {
     Vector16 axis_u() const { return {field[8], field[9], field[10]}; }
     Float16 open_radius() const { return field[11]; }
     Vector16 axis_v() const { return {field[12], field[13], field[14]}; }
-    Int16 first_child() const { return as_int(field[15]); }
+    Int16 links() const { return as_int(field[15]); }
+    Int16 first_child() const { return links() & all(~kMaskSheet); }
 
     SURFELAO_MASK_INLINE void quad(Vector16 origin, Vector16* corner) const
     {
@@ -286,8 +353,10 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
     const Float16 cone_sin = all(group.cone_sin);
     const Float16 zero = all(0.0f);
     const Float16 share = all(kLeaf ? settings.share_leaf : settings.share_inner);
-    Stream<4> quads(*world.raster, mask);
-    Stream<3> triangles(*world.raster, mask);
+    Stream<4, true> clusters(world, mask);
+    Stream<4, false> rectangles(world, mask);
+    Stream<3, false> triangles(world, mask);
+    const Float16 exact_radius = all(settings.exact_radius);
     MaskBuffer<std::uint32_t>& frontier = scratch.frontier;
 
     while (frontier.count > 0) {
@@ -324,8 +393,10 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         const Float16 relax = inverse_sqrt(weight);
 
         const Float16 cluster = min(all(settings.cluster) * relax, all(settings.cluster_limit));
-        const Lanes is_triangle = without(active, nonzero(node.first_child()));
-        const Lanes small = is_triangle | (node.open_radius() < cluster * distance);
+        const Lanes is_triangle = without(active, nonzero(node.links()));
+        const Lanes exact = is_triangle | (node.open_radius() < exact_radius);
+        const Lanes sheet = without(negative(node.links()), exact);
+        const Lanes small = exact | (node.open_radius() < cluster * distance);
         const Lanes far = group_radius < share * relax * nearest;
         const Lanes drawn = alive & small & far;
         const Lanes rest = without(alive, drawn);
@@ -334,13 +405,14 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
             node.triangle(origin, corner);
             triangles.add(corner, 0, drawn & is_triangle);
             node.quad(origin, corner);
-            quads.add(corner, 0, without(drawn, is_triangle));
+            rectangles.add(corner, 0, without(drawn, sheet | is_triangle));
+            clusters.add(corner, 0, drawn & sheet);
         }
 
         Lanes opened;
         if constexpr (kLeaf) {
             const Lanes listed =
-                rest & (is_triangle | (node.open_radius() < cluster * (distance - group_radius)));
+                rest & (exact | (node.open_radius() < cluster * (distance - group_radius)));
             opened = without(rest, listed);
             if (bits(listed) != 0) {
                 const Vector16 world_origin = {zero, zero, zero};
@@ -348,7 +420,8 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
                 node.triangle(world_origin, corner);
                 append<3>(scratch.triangles, corner, listed & is_triangle);
                 node.quad(world_origin, corner);
-                append<4>(scratch.quads, corner, without(listed, is_triangle));
+                append<4>(scratch.rectangles, corner, without(listed, sheet | is_triangle));
+                append<4>(scratch.clusters, corner, listed & sheet);
             }
         } else {
             opened = without(rest, small) & (group_radius < node.radius());
@@ -365,7 +438,8 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
             frontier.count += added;
         }
     }
-    quads.finish();
+    clusters.finish();
+    rectangles.finish();
     triangles.finish();
 }
 
@@ -477,18 +551,24 @@ SURFELAO_MASK_INLINE float along(const Sums& sums, const float* n)
 }
 
 /// A clear bit is a crack between two patches where its neighbours left and right are set, or those
-/// above and below, both of the two nearest in direction. No half-plane, nor any convex shape, is
-/// changed by that. Nothing is set outside of the face.
-SURFELAO_MASK_INLINE Int16 fill(const MaskRaster& raster, Int16 m)
+/// above and below, both of the two nearest in direction, and a cluster set one of them. No
+/// half-plane, nor any convex shape, is changed by that. Nothing is set outside of the face.
+SURFELAO_MASK_INLINE Int16 fill(const MaskRaster& raster, Int16 m, Int16 loose)
 {
+    const Lanes low_right = nonzero(load(raster.below_is_right));
+    const Lanes high_right = nonzero(load(raster.above_is_right));
+    const auto pair = [](Int16 row, Lanes right, auto join) {
+        return join(row, select(right, shift_left<1>(row), shift_right<1>(row)));
+    };
+    const auto both = [](Int16 a, Int16 b) { return a & b; };
+    const auto either = [](Int16 a, Int16 b) { return a | b; };
     const Int16 sides = shift_left<1>(m) & shift_right<1>(m);
-    const Int16 low = from_below(m);
-    const Int16 high = from_above(m);
-    const Int16 low_pair =
-        low & select(nonzero(load(raster.below_is_right)), shift_left<1>(low), shift_right<1>(low));
-    const Int16 high_pair = high & select(nonzero(load(raster.above_is_right)), shift_left<1>(high),
-                                          shift_right<1>(high));
-    return m | sides | (low_pair & high_pair);
+    const Int16 loose_sides = shift_left<1>(loose) | shift_right<1>(loose);
+    const Int16 stacked =
+        pair(from_below(m), low_right, both) & pair(from_above(m), high_right, both);
+    const Int16 loose_stacked =
+        pair(from_below(loose), low_right, either) | pair(from_above(loose), high_right, either);
+    return m | (sides & loose_sides) | (stacked & loose_stacked);
 }
 
 /// The bits above the plane through the receiver with normal n.
@@ -509,9 +589,10 @@ void horizon(const MaskRaster& raster, const float* n, std::uint32_t* above)
 // --- one group ---
 
 /// Draws the listed polygons that reach above the receiver's horizon.
-template <int kCorners>
+template <int kCorners, bool kLoose>
 SURFELAO_MASK_INLINE void draw_near(const MaskBuffer<float>& list, Vector16 position,
-                                    Vector16 normal, std::uint32_t target, Stream<kCorners>& stream)
+                                    Vector16 normal, std::uint32_t target,
+                                    Stream<kCorners, kLoose>& stream)
 {
     const Float16 ground = dot(position, normal);
     for (std::size_t first = 0; first < list.count; first += kLanes) {
@@ -549,34 +630,38 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
            MaskAnswers& answers, MaskScratch& scratch)
 {
     const MaskRaster& raster = *world.raster;
-    alignas(64) std::uint32_t far_mask[kMaskWords];
+    alignas(64) std::uint32_t far_mask[kMaskPairWords];
     std::memcpy(far_mask, shared, sizeof far_mask);
-    scratch.quads.count = 0;
+    scratch.clusters.count = 0;
+    scratch.rectangles.count = 0;
     scratch.triangles.count = 0;
     start_frontier(scratch, in, in_count);
     walk<true>(world, group, nullptr, far_mask, scratch);
 
-    alignas(64) std::uint32_t masks[kLanes * kMaskWords];
+    alignas(64) std::uint32_t masks[kLanes * kMaskPairWords];
     {
-        Stream<4> quads(raster, masks);
-        Stream<3> triangles(raster, masks);
+        Stream<4, true> clusters(world, masks);
+        Stream<4, false> rectangles(world, masks);
+        Stream<3, false> triangles(world, masks);
         for (unsigned i = 0; i < receivers.count; ++i) {
-            const std::uint32_t target = i * kMaskWords;
+            const std::uint32_t target = i * kMaskPairWords;
             std::memcpy(masks + target, far_mask, sizeof far_mask);
             const Vector16 position = {all(receivers.position[0][i]), all(receivers.position[1][i]),
                                        all(receivers.position[2][i])};
             const Vector16 normal = {all(receivers.normal[0][i]), all(receivers.normal[1][i]),
                                      all(receivers.normal[2][i])};
-            draw_near<4>(scratch.quads, position, normal, target, quads);
-            draw_near<3>(scratch.triangles, position, normal, target, triangles);
+            draw_near(scratch.clusters, position, normal, target, clusters);
+            draw_near(scratch.rectangles, position, normal, target, rectangles);
+            draw_near(scratch.triangles, position, normal, target, triangles);
         }
-        quads.finish();
+        clusters.finish();
+        rectangles.finish();
         triangles.finish();
     }
 
     for (unsigned i = 0; i < receivers.count; ++i) {
         const float n[3] = {receivers.normal[0][i], receivers.normal[1][i], receivers.normal[2][i]};
-        std::uint32_t* mask = masks + i * kMaskWords;
+        std::uint32_t* mask = masks + i * kMaskPairWords;
         alignas(64) std::uint32_t above[kMaskWords];
         alignas(64) std::uint32_t open[kMaskWords];
         horizon(raster, n, above);
@@ -591,7 +676,7 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
             for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
                 // what lies below the horizon is no opening
                 const Int16 closed = load(mask + w) | ~load(above + w);
-                store(open + w, ~fill(raster, closed));
+                store(open + w, ~fill(raster, closed, load(mask + kMaskWords + w)));
             }
             sums = sum_bits<true>(raster, open);
             const float filled = along(sums, n) / whole;

@@ -1,5 +1,6 @@
 #include "tree/mask_tree.h"
 
+#include "tree/mask_kernel.h"
 #include "tree/masks.h"
 
 #include <glm/common.hpp>
@@ -34,6 +35,15 @@ constexpr float kDilationSlope = 40.0f;
 /// A rectangle's area follows from its second moments; a disk's is 1.05 times as large as that, and
 /// no convex shape's is larger. What is above this factor overlaps itself.
 constexpr float kSpreadMargin = 1.1f;
+
+/// Triangles that tile a rectangle to within this share of its area and size are one rectangle.
+constexpr float kWhole = 1e-4f;
+
+/// A patch counts as a sheet without gaps where it is at least this flat and fills this share of
+/// the rectangle that its second moments describe. Cracks are filled, and rims drawn, at sheets
+/// only: between leaves there are none.
+constexpr float kSheetFlatness = 0.8f;
+constexpr float kSheetCover = 0.75f;
 
 /// Radius and thickness are measured at the corners up to this many triangles, and bounded by the
 /// children's above.
@@ -181,7 +191,7 @@ private:
             left = build_node(first, left_first, begin, middle, below);
             right = build_node(first + 1, right_first, middle, end, above);
         }
-        nodes_[index].first_child = static_cast<std::uint32_t>(first);
+        nodes_[index].links = static_cast<std::uint32_t>(first);
         return finish_inner(index, begin, end, left, right);
     }
 
@@ -261,7 +271,7 @@ private:
         node.normal = patch.normal;
         node.thickness = patch.thickness;
         node.open_radius = patch.radius * (1.0f + kFlatnessPenalty * (1.0f - flatness));
-        set_rectangle(node, patch, seen_area, flatness);
+        set_rectangle(node, patch, seen_area, flatness, begin, end);
         return patch;
     }
 
@@ -285,8 +295,7 @@ private:
         for (const Patch* child : {&left, &right}) {
             const glm::vec3 d = child->center - patch.center;
             patch.radius = std::max(patch.radius, glm::length(d) + child->radius);
-            const float tilt = glm::dot(child->normal, patch.normal);
-            const float rise = std::sqrt(std::max(0.0f, 1.0f - tilt * tilt)) * child->radius;
+            const float rise = glm::length(glm::cross(child->normal, patch.normal)) * child->radius;
             patch.thickness =
                 std::max(patch.thickness, std::abs(glm::dot(d, patch.normal)) +
                                               std::min(child->radius, child->thickness + rise));
@@ -295,7 +304,8 @@ private:
 
     /// Axes of the second moments in the plane; sides in the ratio of the spreads, scaled to the
     /// area, never longer than the node.
-    static void set_rectangle(MaskNode& node, const Patch& patch, float seen_area, float flatness)
+    void set_rectangle(MaskNode& node, const Patch& patch, float seen_area, float flatness,
+                       std::size_t begin, std::size_t end) const
     {
         const glm::vec3 t = perpendicular(patch.normal);
         const glm::vec3 b = glm::cross(patch.normal, t);
@@ -314,10 +324,23 @@ private:
             cosine = std::sqrt(std::max(0.0f, 0.5f * (1.0f + c2)));
             sine = std::copysign(std::sqrt(std::max(0.0f, 0.5f * (1.0f - c2))), tb);
         }
-        // sheets that lie on each other count once: their spread tells how wide they are together
+        const glm::vec3 axis = cosine * t + sine * b;
         const float wide = mean + deviation;
         const float narrow = std::max(mean - deviation, 1e-12f * mean);
         const float spread_area = 12.0f * std::sqrt(wide * narrow) / patch.area;
+
+        const bool may_be_whole = flatness > 1.0f - kWhole &&
+                                  std::abs(spread_area - patch.area) < 10.0f * kWhole * patch.area;
+        if (may_be_whole) {
+            // a square has no axes of its own: its triangles' edges lie along them
+            const Corners p = corners(keys_[begin].triangle);
+            for (const glm::vec3 direction : {axis, p.b - p.a, p.c - p.b, p.a - p.c}) {
+                if (set_whole_rectangle(node, patch, glm::normalize(direction), begin, end))
+                    return;
+            }
+        }
+
+        // sheets that lie on each other count once: their spread tells how wide they are together
         const float quarter = 0.25f * std::min(seen_area, kSpreadMargin * spread_area);
         float length_u = 0.0f;
         float length_v = 0.0f;
@@ -327,13 +350,53 @@ private:
             length_v = quarter / length_u;
             const float diagonal = std::sqrt(length_u * length_u + length_v * length_v);
             const float shrink = std::min(1.0f, patch.radius / diagonal);
-            const float grow =
-                1.0f + kDilation * std::max(0.0f, 1.0f - kDilationSlope * (1.0f - flatness));
+            const bool sheet = flatness > kSheetFlatness && patch.area > kSheetCover * spread_area;
+            const float rim = std::max(0.0f, 1.0f - kDilationSlope * (1.0f - flatness));
+            const float grow = sheet ? 1.0f + kDilation * rim : 1.0f;
+            if (sheet)
+                node.links |= kMaskSheet;
             length_u *= shrink * grow;
             length_v *= shrink * grow;
         }
-        node.axis_u = length_u * (cosine * t + sine * b);
-        node.axis_v = length_v * (cosine * b - sine * t);
+        node.axis_u = length_u * axis;
+        node.axis_v = length_v * glm::cross(patch.normal, axis);
+    }
+
+    /// Where the triangles tile a rectangle with sides along and across `axis`, the node is that
+    /// rectangle, no approximation, and need not ever be opened.
+    bool set_whole_rectangle(MaskNode& node, const Patch& patch, glm::vec3 axis, std::size_t begin,
+                             std::size_t end) const
+    {
+        const glm::vec3 across = glm::cross(patch.normal, axis);
+        glm::vec3 low(std::numeric_limits<float>::max());
+        glm::vec3 high(-std::numeric_limits<float>::max());
+        for (std::size_t i = begin; i < end; ++i) {
+            const Corners p = corners(keys_[i].triangle);
+            for (const glm::vec3 corner : {p.a, p.b, p.c}) {
+                const glm::vec3 d = corner - patch.center;
+                const glm::vec3 at(glm::dot(d, axis), glm::dot(d, across),
+                                   glm::dot(d, patch.normal));
+                low = glm::min(low, at);
+                high = glm::max(high, at);
+            }
+        }
+        const glm::vec3 half = 0.5f * (high - low);
+        const float along2 = glm::dot(patch.spread.times(axis), axis) / patch.area;
+        const float across2 = glm::dot(patch.spread.times(across), across) / patch.area;
+        const auto differ = [](float a, float b, float limit) {
+            return !(std::abs(a - b) <= limit * b);
+        };
+        if (half.z > kWhole * patch.radius || differ(patch.area, 4.0f * half.x * half.y, kWhole) ||
+            differ(along2, half.x * half.x / 3.0f, 10.0f * kWhole) ||
+            differ(across2, half.y * half.y / 3.0f, 10.0f * kWhole))
+            return false;
+        const glm::vec3 middle = 0.5f * (low + high);
+        node.center = patch.center + middle.x * axis + middle.y * across;
+        node.radius = std::sqrt(half.x * half.x + half.y * half.y);
+        node.open_radius = 0.0f;
+        node.axis_u = half.x * axis;
+        node.axis_v = half.y * across;
+        return true;
     }
 
     const Geometry& geometry_;

@@ -25,16 +25,17 @@ inline const glm::mat3 kMaskFrame{-0.26100944f, 0.93067852f,  0.25634268f,
 
 /// 16 floats in the order in which the kernels load them.
 struct alignas(64) MaskNode {
-    glm::vec3 center;           ///< centroid of the triangles, by area
-    float radius;               ///< no point of the node is farther from `center`
-    glm::vec3 normal;           ///< unit; of the triangle, or of the vector area
-    float thickness;            ///< no point is farther from the plane (center, normal)
-    glm::vec3 axis_u;           ///< rectangle: corners at center +- axis_u +- axis_v
-    float open_radius;          ///< the radius as the opening test sees it: larger where not flat;
-                                ///< 0 for a triangle, which cannot be opened
-    glm::vec3 axis_v;           ///< triangle: corners at center + axis_u, center + axis_v, and
-                                ///< center - axis_u - axis_v
-    std::uint32_t first_child;  ///< two children stand side by side; 0 = triangle
+    glm::vec3 center;     ///< centroid of the triangles, by area
+    float radius;         ///< no point of the node is farther from `center`
+    glm::vec3 normal;     ///< unit; of the triangle, or of the vector area
+    float thickness;      ///< no point is farther from the plane (center, normal)
+    glm::vec3 axis_u;     ///< rectangle: corners at center +- axis_u +- axis_v
+    float open_radius;    ///< the radius as the opening test sees it: larger where not flat;
+                          ///< 0 where the node is exact: a triangle, or several that tile
+                          ///< the rectangle
+    glm::vec3 axis_v;     ///< triangle: corners at center + axis_u, center + axis_v, and
+                          ///< center - axis_u - axis_v
+    std::uint32_t links;  ///< first of two children side by side, and kMaskSheet; 0 = triangle
 };
 static_assert(sizeof(MaskNode) == 64);
 

@@ -110,10 +110,10 @@ MaskSettings settings_of(const MaskOptions& options)
     if (options.definition.kernel != Kernel::cosine)
         throw std::invalid_argument("MaskOptions: masks know the cosine kernel only");
     MaskSettings settings{};
-    settings.max_distance = options.definition.max_distance;
     settings.fill = !options.exact;
     if (options.exact)
         return settings;
+    settings.exact_radius = std::numeric_limits<float>::min();
     const auto i = static_cast<std::size_t>(std::min(options.quality, last - 1.0f));
     const float t = options.quality - static_cast<float>(i);
     const FamilyPoint &a = kFamily[i], &b = kFamily[i + 1];
@@ -122,6 +122,30 @@ MaskSettings settings_of(const MaskOptions& options)
     settings.share_leaf = between(a.share_leaf, b.share_leaf, t);
     settings.share_inner = between(a.share_inner, b.share_inner, t);
     return settings;
+}
+
+/// A falloff is a mean over hits within several limits: with H(w) the weight of the distance t,
+/// H = integral over h in [0, 1] of (t < distance at which the weight is h). Midpoints of as many
+/// steps; a hit's weight is off by half a step at most.
+constexpr int kFalloffSteps = 8;
+
+std::vector<float> distance_limits(const Definition& definition)
+{
+    if (definition.falloff == Falloff::none)
+        return {definition.max_distance};
+    std::vector<float> limits;
+    for (int step = 0; step < kFalloffSteps; ++step) {
+        const float weight = (static_cast<float>(step) + 0.5f) / kFalloffSteps;
+        // hit_weight falls steadily: bisection keeps its formula in one place
+        float near = 0.0f;
+        float far = definition.max_distance;
+        for (int i = 0; i < 24; ++i) {
+            const float middle = 0.5f * (near + far);
+            (hit_weight(definition, middle) > weight ? near : far) = middle;
+        }
+        limits.push_back(far);
+    }
+    return limits;
 }
 
 std::vector<Receiver> in_mask_frame(std::span<const Receiver> receivers)
@@ -143,7 +167,8 @@ struct Workspace {
     ~Workspace()
     {
         release(scratch.frontier);
-        release(scratch.quads);
+        release(scratch.clusters);
+        release(scratch.rectangles);
         release(scratch.triangles);
         for (MaskBuffer<std::uint32_t>& list : lists)
             release(list);
@@ -161,7 +186,8 @@ public:
           receivers_(receivers),
           turned_(in_mask_frame(receivers)),
           groups_(group_for_masks(turned_)),
-          progress_(progress, groups_.order.size()),
+          limits_(distance_limits(options.definition)),
+          progress_(progress, groups_.order.size() * limits_.size()),
           answers_(receivers.size())
     {
     }
@@ -169,9 +195,21 @@ public:
     std::vector<Occlusion> run()
     {
         if (!groups_.groups.empty()) {
-            alignas(64) const std::uint32_t empty[kMaskWords] = {};
-            const std::uint32_t root = 0;
-            visit(0, &root, has_triangles_ ? 1 : 0, empty, 0);
+            for (const float limit : limits_) {
+                world_.settings.max_distance = limit;
+                alignas(64) const std::uint32_t empty[kMaskPairWords] = {};
+                const std::uint32_t root = 0;
+                visit(0, &root, has_triangles_ ? 1 : 0, empty, 0);
+            }
+        }
+        const float weight = 1.0f / static_cast<float>(limits_.size());
+        for (std::size_t i = 0; i < answers_.size(); ++i) {
+            Occlusion& answer = answers_[i];
+            answer.occlusion *= weight;
+            const float length = glm::length(answer.bent_normal);
+            // a row vector times a rotation: turned back
+            answer.bent_normal =
+                length > 0.0f ? (answer.bent_normal / length) * kMaskFrame : receivers_[i].normal;
         }
         return std::move(answers_);
     }
@@ -187,7 +225,7 @@ private:
             solve_leaf(group, in, in_count, mask);
             return;
         }
-        alignas(64) std::uint32_t own_mask[kMaskWords];
+        alignas(64) std::uint32_t own_mask[kMaskPairWords];
         std::memcpy(own_mask, mask, sizeof own_mask);
         const auto visit_child = [&](std::uint32_t child, const std::uint32_t* list,
                                      std::size_t count) {
@@ -230,11 +268,9 @@ private:
                       workspaces_.local().scratch);
         for (std::uint32_t i = 0; i < columns.count; ++i) {
             const std::uint32_t index = groups_.order[group.begin + i];
-            const glm::vec3 bent(found.bent[0][i], found.bent[1][i], found.bent[2][i]);
-            const float length = glm::length(bent);
-            // a row vector times a rotation: turned back
-            answers_[index] = {found.occlusion[i], length > 0.0f ? (bent / length) * kMaskFrame
-                                                                 : receivers_[index].normal};
+            answers_[index].occlusion += found.occlusion[i];
+            answers_[index].bent_normal +=
+                glm::vec3(found.bent[0][i], found.bent[1][i], found.bent[2][i]);
         }
         progress_.add(columns.count);
     }
@@ -245,6 +281,7 @@ private:
     std::span<const Receiver> receivers_;
     std::vector<Receiver> turned_;
     MaskGroups groups_;
+    std::vector<float> limits_;
     ProgressMeter progress_;
     std::vector<Occlusion> answers_;
     tbb::enumerable_thread_specific<Workspace> workspaces_;

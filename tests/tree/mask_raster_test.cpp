@@ -8,7 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -40,7 +42,8 @@ double inside_by(const std::vector<glm::dvec3>& corner, glm::dvec3 direction)
 }
 
 template <int kCorners>
-std::vector<std::uint32_t> drawn(const std::vector<glm::dvec3>& corner)
+std::vector<std::uint32_t> drawn(const std::vector<glm::dvec3>& corner,
+                                 float limit = std::numeric_limits<float>::infinity())
 {
     alignas(64) float columns[3 * kCorners][kLanes] = {};
     alignas(64) std::uint32_t target[kLanes] = {};
@@ -49,7 +52,7 @@ std::vector<std::uint32_t> drawn(const std::vector<glm::dvec3>& corner)
             columns[3 * i + k][0] = static_cast<float>(corner[static_cast<std::size_t>(i)][k]);
     }
     alignas(64) std::uint32_t mask[kMaskWords] = {};
-    draw<kCorners, kLanes>(mask_raster(), columns[0], target, 1, mask);
+    draw<kCorners, kLanes, false>(mask_raster(), limit, columns[0], target, 1, mask);
     return {mask, mask + kMaskWords};
 }
 
@@ -96,6 +99,67 @@ TEST(MaskRaster, RectanglesAreTheirPoints)
         expect_point_in_polygon<4>(
             {center + a + b, center - a + b, center - a - b, center + a - b});
     }
+}
+
+// Only what is nearer than the limit: the plane's distance along the direction decides.
+TEST(MaskRaster, ALimitCutsWherePlanesAreTooFar)
+{
+    std::mt19937 random(5);
+    const auto number = [&] { return random() / 2147483648.0 - 1.0; };
+    int cut = 0;
+    for (int i = 0; i < 400; ++i) {
+        std::vector<glm::dvec3> corner;
+        for (int k = 0; k < 3; ++k)
+            corner.push_back({number(), number(), number()});
+        const double limit = 0.2 + 0.5 * (number() + 1.0);
+        const std::vector<std::uint32_t> mask = drawn<3>(corner, static_cast<float>(limit));
+        const glm::dvec3 n =
+            glm::normalize(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
+        for (int face = 0; face < kMaskFaces; ++face) {
+            for (int y = 0; y < kMaskRows; ++y) {
+                for (int x = 0; x < 32; ++x) {
+                    const glm::dvec3 direction = glm::normalize(direction_of(face, y, x));
+                    const double depth = inside_by(corner, direction);
+                    const double distance = glm::dot(n, corner[0]) / glm::dot(n, direction);
+                    if (std::abs(depth) < 1e-5 || std::abs(distance - limit) < 1e-3 * limit)
+                        continue;
+                    const bool set = mask[static_cast<std::size_t>(16 * face + y)] >> x & 1u;
+                    ASSERT_EQ(set, depth > 0.0 && distance < limit)
+                        << "triangle " << i << " face " << face << " row " << y << " column " << x;
+                    cut += depth > 0.0 && distance > limit;
+                }
+            }
+        }
+    }
+    EXPECT_GT(cut, 1000);
+}
+
+// No half-plane is changed by the filling, whichever way its edge runs; a hole of one bit is
+// closed.
+TEST(MaskRaster, FillingKeepsHalfPlanes)
+{
+    const MaskRaster& raster = mask_raster();
+    std::mt19937 random(6);
+    const auto number = [&] { return random() / 2147483648.0 - 1.0; };
+    for (int i = 0; i < 2000; ++i) {
+        const float normal[3] = {float(number()), float(number()), float(number())};
+        alignas(64) std::uint32_t above[kMaskWords] = {};
+        horizon(raster, normal, above);
+        for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
+            alignas(64) std::uint32_t filled[kLanes];
+            store(filled, fill(raster, load(above + w), load(above + w)));
+            for (int y = 0; y < kLanes; ++y)
+                ASSERT_EQ(filled[y], above[w + y]) << "half-plane " << i << " row " << y;
+        }
+    }
+    alignas(64) std::uint32_t hole[kLanes];
+    std::fill(hole, hole + kLanes, ~0u);
+    hole[7] = ~(1u << 13);
+    alignas(64) std::uint32_t filled[kLanes];
+    store(filled, fill(raster, load(hole), all(~0u)));
+    EXPECT_EQ(filled[7], ~0u);
+    store(filled, fill(raster, load(hole), all(0u)));
+    EXPECT_EQ(filled[7], hole[7]) << "no cluster beside it";
 }
 
 // A fan right above, off by one rounding: edges through a face's centre, all but upright.

@@ -162,6 +162,65 @@ TEST(MaskWorlds, SphereInView)
     }
 }
 
+// A wide ceiling at height h: what lies within the limit D is a disk of radius sqrt(D^2 - h^2), so
+// 1 - (h/D)^2; with the falloff the mean of (1 - (t/D)^2)^2 over it, t = h / cos: in c = (h/D)^2,
+// integral over x = cos^2 from c to 1 of (1 - c/x)^2 dx = 1 - c^2 + 2 c log c.
+TEST(MaskWorlds, ACeilingWithinADistanceLimit)
+{
+    const Geometry geometry =
+        make_geometry(scenes::sheet({-50, -50, 1}, {0, 100, 0}, {100, 0, 0}, 40));
+    const auto diagonal = static_cast<float>(geometry.frame.diagonal);
+    for (const glm::dvec3 place : {glm::dvec3(0.3, 0.2, 0), glm::dvec3(-7.1, 3.3, 0)}) {
+        const Receiver below[] = {receiver_at(geometry, place, {0, 0, 1})};
+        const double h = 1.0 - kOffset * geometry.frame.diagonal;
+        for (const float limit : {0.9f, 1.2f, 2.0f, 5.0f}) {
+            for (Setting setting : settings()) {
+                setting.options.definition.max_distance = limit / diagonal;
+                const double c = std::min(1.0, h * h / (limit * limit));
+                EXPECT_NEAR(solve(geometry, below, setting.options)[0].occlusion, 1.0 - c, 0.01)
+                    << setting.name << ", limit " << limit;
+                setting.options.definition.falloff = Falloff::smooth;
+                EXPECT_NEAR(solve(geometry, below, setting.options)[0].occlusion,
+                            1.0 - c * c + 2.0 * c * std::log(c), 0.01)
+                    << setting.name << ", falloff " << limit;
+            }
+        }
+    }
+}
+
+TEST(MaskWorlds, RotationScaleAndOrderDoNotMatter)
+{
+    const Scene scene = scenes::bumpy_sphere(12) + scenes::box({0.9, 0.9, 0.9}, {1.6, 1.5, 1.4}, 6);
+    const auto answers_of = [](const Scene& s) {
+        const Geometry geometry = make_geometry(s);
+        return solve(geometry, receivers_at_vertices(geometry, kOffset), {});
+    };
+    const std::vector<Occlusion> expected = answers_of(scene);
+    const auto difference = [&](const Scene& other) {
+        const std::vector<Occlusion> found = answers_of(other);
+        double square = 0.0;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            const double d = found[i].occlusion - expected[i].occlusion;
+            square += d * d;
+        }
+        return std::sqrt(square / static_cast<double>(found.size()));
+    };
+    // scale and a far offset cost digits of the input only
+    EXPECT_LT(difference(scenes::moved(scene, [](glm::dvec3 p) { return 1e-6 * p; })), 1e-3);
+    EXPECT_LT(difference(scenes::moved(scene, [](glm::dvec3 p) { return 1e6 * p; })), 1e-3);
+    EXPECT_LT(difference(scenes::moved(scene, [](glm::dvec3 p) { return p + 1e6; })), 1e-3);
+    // other clusters and other directions: as large as the error of `good` itself
+    EXPECT_LT(difference(scenes::moved(scene,
+                                       [](glm::dvec3 p) {
+                                           return glm::dvec3(0.6 * p.x - 0.8 * p.y,
+                                                             0.8 * p.x + 0.6 * p.y, p.z);
+                                       })),
+              0.012);
+    Scene reversed = scene;
+    std::reverse(reversed.triangles.begin(), reversed.triangles.end());
+    EXPECT_LT(difference(reversed), 1e-3);
+}
+
 TEST(MaskWorlds, TheSameAnswerFromEveryKernel)
 {
     const Geometry geometry =
