@@ -155,6 +155,8 @@ EngineSettings settings_of(const EngineOptions& options)
     refuse_unless(!options.passes || disks, "--passes", "disks");
     refuse_unless(!options.strength || disks, "--strength", "disks");
 
+    if (options.strength && std::isnan(*options.strength))
+        throw UsageError("--strength: nan is not a number from 0 to 10.");
     if (options.device)
         settings.device = device_of(*options.device);
     check_device(settings.engine, settings.device);

@@ -1,0 +1,172 @@
+#include "../bake/temporary_folder.h"
+#include "program.h"
+#include "scenes.h"
+#include "surfels/scene_io.h"
+
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+
+namespace surfelao {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+class BakeCommand : public testing::Test {
+protected:
+    void SetUp() override
+    {
+        write_obj(folder_ / "a.obj", scenes::bumpy_sphere(4));
+        write_obj(folder_ / "b.obj", scenes::nested_shells(2, 0.2, 4));
+        fs::create_directory(folder_ / "out");
+    }
+    Outcome run(const std::vector<std::string>& arguments) const
+    {
+        return surfelao::run(folder_.path(), arguments);
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(BakeCommand, EveryEngineAndFormatWritesAFileThatReadsBack)
+{
+    for (const char* engine : {"masks", "disks", "rays"}) {
+        for (const char* name : {"x.ply", "x.obj", "x.off"}) {
+            const Outcome outcome =
+                run({"bake", folder_ / "a.obj", "-o", folder_ / name, "--engine", engine});
+            EXPECT_EQ(outcome.code, 0) << outcome.err;
+            EXPECT_NE(outcome.out.find("solve"), std::string::npos);
+            EXPECT_EQ(read_scene(folder_ / name).positions.size(), 6u * 16 + 2);
+        }
+    }
+}
+
+TEST_F(BakeCommand, SameBytesForAnyNumberOfThreads)
+{
+    for (const char* engine : {"masks", "disks", "rays"}) {
+        std::vector<std::string> bytes;
+        for (const char* threads : {"1", "2", "5"}) {
+            const Outcome outcome = run({"bake", folder_ / "b.obj", "-o", folder_ / "x.ply",
+                                         "--engine", engine, "--threads", threads});
+            EXPECT_EQ(outcome.code, 0) << outcome.err;
+            bytes.push_back(read_text(folder_ / "x.ply"));
+        }
+        EXPECT_EQ(bytes[0], bytes[1]) << engine;
+        EXPECT_EQ(bytes[0], bytes[2]) << engine;
+    }
+}
+
+TEST_F(BakeCommand, OptionsReachTheReport)
+{
+    const Outcome outcome = run({"bake",
+                                 folder_ / "a.obj",
+                                 "-o",
+                                 folder_ / "x.ply",
+                                 "--engine",
+                                 "disks",
+                                 "--passes",
+                                 "3",
+                                 "--strength",
+                                 "0.5",
+                                 "--quality",
+                                 "draft",
+                                 "--kernel",
+                                 "bunnell",
+                                 "--max-distance",
+                                 "25%",
+                                 "--falloff",
+                                 "smooth",
+                                 "--threads",
+                                 "1",
+                                 "--json",
+                                 folder_ / "report.json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const Json json = Json::parse(read_text(folder_ / "report.json"));
+    const Json& settings = json["settings"];
+    EXPECT_EQ(json["engine"], "disks");
+    EXPECT_EQ(settings["passes"], 3);
+    EXPECT_EQ(settings["strength"], 0.5);
+    EXPECT_EQ(settings["quality"], 0.0);
+    EXPECT_EQ(settings["kernel"], "bunnell");
+    EXPECT_EQ(settings["max_distance"], 0.25);
+    EXPECT_EQ(settings["falloff"], "smooth");
+    EXPECT_EQ(settings["threads"], 1);
+    for (const char* key : {"input", "vertices", "triangles", "dropped_triangles", "surfels",
+                            "engine", "settings", "seconds", "peak_rss_bytes", "residual"})
+        EXPECT_TRUE(json.contains(key)) << key;
+}
+
+TEST_F(BakeCommand, JsonToStandardOutputIsAllThatStandsThere)
+{
+    const Outcome outcome =
+        run({"bake", folder_ / "a.obj", "-o", folder_ / "x.ply", "--json", "-"});
+    EXPECT_EQ(Json::parse(outcome.out)["engine"], "masks");
+}
+
+TEST_F(BakeCommand, OneFailingFileDoesNotStopTheBatch)
+{
+    std::ofstream(folder_ / "bad.obj") << "v 1 2\n";
+    const Outcome outcome = run({"bake", folder_ / "a.obj", folder_ / "bad.obj", folder_ / "b.obj",
+                                 "-o", folder_ / "out", "--json", folder_ / "report.json"});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("bad.obj"), std::string::npos);
+    EXPECT_NE(outcome.err.find("1 of 3"), std::string::npos);
+    EXPECT_TRUE(fs::exists(folder_ / "out/a.obj"));
+    EXPECT_FALSE(fs::exists(folder_ / "out/bad.obj"));
+    EXPECT_TRUE(fs::exists(folder_ / "out/b.obj"));
+    const Json json = Json::parse(read_text(folder_ / "report.json"));
+    ASSERT_EQ(json.size(), 3u);
+    EXPECT_TRUE(json[0].contains("seconds"));
+    EXPECT_TRUE(json[1].contains("error"));
+}
+
+TEST_F(BakeCommand, ResumeSkipsWhatIsFinishedAndRedoesWhatIsOlder)
+{
+    const std::vector<std::string> arguments = {"bake", folder_ / "a.obj", folder_ / "b.obj",
+                                                "-o",   folder_ / "out",   "--resume"};
+    std::ofstream(folder_ / "out/a.obj") << "finished";
+    Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("skipped"), std::string::npos);
+    EXPECT_EQ(read_text(folder_ / "out/a.obj"), "finished");
+    EXPECT_TRUE(fs::exists(folder_ / "out/b.obj"));
+
+    fs::last_write_time(folder_ / "a.obj",
+                        fs::last_write_time(folder_ / "out/a.obj") + std::chrono::seconds(5));
+    EXPECT_EQ(run(arguments).code, 0);
+    EXPECT_NE(read_text(folder_ / "out/a.obj"), "finished");
+}
+
+TEST_F(BakeCommand, ReadOnlyTargetIsRefusedAndUntouched)
+{
+    if (geteuid() == 0)
+        GTEST_SKIP() << "root may write anywhere";
+    std::ofstream(folder_ / "x.ply") << "old";
+    fs::permissions(folder_ / "x.ply", fs::perms::owner_read);
+    const Outcome outcome = run({"bake", folder_ / "a.obj", "-o", folder_ / "x.ply"});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_EQ(read_text(folder_ / "x.ply"), "old");
+    fs::permissions(folder_ / "out", fs::perms::owner_read | fs::perms::owner_exec);
+    EXPECT_EQ(run({"bake", folder_ / "a.obj", "-o", folder_ / "out/x.ply"}).code, 1);
+}
+
+TEST_F(BakeCommand, AFullDiskIsAFailureThatLeavesTheOldFileAndNothingElse)
+{
+    const fs::path disk = folder_ / "out";
+    if (mount("none", disk.c_str(), "tmpfs", 0, "size=32k") != 0)
+        GTEST_SKIP() << "only root can mount a tiny disk";
+    std::ofstream(disk / "x.ply") << "old";
+    write_obj(folder_ / "large.obj", scenes::bumpy_sphere(24));
+    const Outcome outcome = run({"bake", folder_ / "large.obj", "-o", disk / "x.ply"});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_EQ(outcome.err.rfind("surfelao: ", 0), 0u) << outcome.err;
+    EXPECT_EQ(read_text(disk / "x.ply"), "old");
+    EXPECT_EQ(std::distance(fs::directory_iterator(disk), {}), 1);
+    umount(disk.c_str());
+}
+
+}  // namespace
+}  // namespace surfelao
