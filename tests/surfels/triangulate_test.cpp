@@ -64,7 +64,7 @@ void expect_exact_in_any_pose(const Polygon& polygon, const std::string& name)
             moved.push_back(frame[0] * p.x + frame[1] * p.y + frame[2] * p.z + glm::dvec3(7));
         for (std::size_t start = 0; start < std::min<std::size_t>(polygon.size(), 8); ++start) {
             expect_exact(moved, name + " from corner " + std::to_string(start));
-            std::ranges::rotate(moved, moved.begin() + 1);
+            std::rotate(moved.begin(), moved.begin() + 1, moved.end());
         }
     }
 }
