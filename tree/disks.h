@@ -18,9 +18,9 @@
 /// distance may end between a front and its back.
 ///
 /// Known limits: surfaces nearer to each other than three times the vertex spacing; the foot of a
-/// concave edge (what a vertex's own triangles hide from it is no disk's: 0.29 too little at a right
-/// angle); closed rooms with much in them (every ray passes many layers); floors of few large
-/// triangles; surfaces that lie on each other exactly (they count several times).
+/// concave edge (what a vertex's own triangles hide from it is no disk's: 0.29 too little at a
+/// right angle); closed rooms with much in them (every ray passes many layers); floors of few large
+/// triangles.
 ///
 /// Based on:
 ///   Bunnell. Dynamic Ambient Occlusion and Indirect Lighting. GPU Gems 2, ch. 14. 2005
@@ -40,9 +40,10 @@
 
 namespace surfelao {
 
-/// A node stands for its surfels where its radius is below opening * distance. From 1/sqrt(3) =
-/// 0.577 on the error of such a sum has no bound (Salmon, Warren 1994); larger values are allowed,
-/// for speed.
+/// A node stands for its surfels where its opening_size (octree.h: radius, more where it is folded)
+/// is below opening * distance to the nearest receiver of a group. From 1/sqrt(3) = 0.577 on the
+/// error of such a sum has no bound (Salmon, Warren 1994): draft is beyond, for speed. Error and
+/// time on the bunny, relative to good: draft 1.3 and 0.8, best 0.95 and 1.9.
 inline constexpr float kDraftOpening = 0.8f;
 inline constexpr float kGoodOpening = 0.5f;
 inline constexpr float kBestOpening = 0.25f;
@@ -65,8 +66,8 @@ struct DiskResult {
 /// Corrections stop when a pass changes the emitters by no more than this.
 inline constexpr double kSettled = 5e-4;
 
-/// From the second correction on, emitters go this share of the way to what the pass found. The map is
-/// order-reversing, so whole steps can end in a cycle of two (rooms); the first step starts from
+/// From the second correction on, emitters go this share of the way to what the pass found. The map
+/// is order-reversing, so whole steps can end in a cycle of two (rooms); the first step starts from
 /// "nothing is beyond" and is best taken whole.
 inline constexpr float kDamping = 0.7f;
 

@@ -37,9 +37,9 @@ namespace surfelao {
 struct OctreeNode {
     glm::vec3 center{0.0f};  ///< area-weighted mean of the surfel positions
     float radius = 0.0f;     ///< the ball about `center` holds all disks below, their rims too
-    glm::vec3 normal{0.0f};          ///< direction of the vector area S = sum of area * casting normal;
-                                     ///< unit length, or zero where S cancels
-    float flatness = 0.0f;           ///< |S| / area: 1 = all normals agree, 0 = they cancel
+    glm::vec3 normal{0.0f};  ///< direction of the vector area S = sum of area * casting normal;
+                             ///< unit length, or zero where S cancels
+    float flatness = 0.0f;   ///< |S| / area: 1 = all normals agree, 0 = they cancel
     std::uint32_t next = 0;  ///< the node after this subtree; own index + 1 = leaf
     std::uint32_t first_surfel = 0;  ///< into Octree::surfels
     std::uint32_t surfel_count = 0;  ///< > 0, inner nodes included
@@ -47,9 +47,9 @@ struct OctreeNode {
 };
 static_assert(sizeof(OctreeNode) == 48);
 
-/// How much larger than its ball a node counts in the opening test when its normals cancel wholly: a
-/// folded cluster is a poor disk. Measured on closed scans: 4 gives at equal time 0.6 times the error
-/// of 0; beyond 4 little changes.
+/// How much larger than its ball a node counts in the opening test when its normals cancel wholly:
+/// a folded cluster is a poor disk. Measured on closed scans: 4 gives at equal time 0.6 times the
+/// error of 0; beyond 4 little changes.
 inline constexpr float kFoldPenalty = 4.0f;
 
 /// How much larger a node counts where max_distance may end inside it.

@@ -15,6 +15,7 @@
 #include <cstring>
 #include <numbers>
 #include <random>
+#include <tuple>
 
 namespace surfelao {
 namespace {
@@ -514,8 +515,9 @@ TEST(Disks, WithoutSurfelsAllIsOpenAndWithoutNormalThereIsNoAnswer)
 TEST(Disks, ProgressCanCancel)
 {
     const World world(scenes::bumpy_sphere(12));
-    EXPECT_THROW(solve_disks(world.octree, world.receivers, {}, [](double) { return false; }),
-                 Cancelled);
+    EXPECT_THROW(
+        std::ignore = solve_disks(world.octree, world.receivers, {}, [](double) { return false; }),
+        Cancelled);
 }
 
 }  // namespace
