@@ -91,6 +91,20 @@ Records make_records(const Octree& octree)
     return result;
 }
 
+/// Receivers where disks are summed.
+struct GatherGrid {
+    ReceiverGrid grid;
+    TextureBuffer groups;
+
+    GatherGrid(const GlContext& context, std::span<const ReceiverGroup> receivers)
+        : grid(context, receivers, {{"u_sums", TexelFormat::rgba32f}}),
+          groups(upload_groups(context, receivers))
+    {
+    }
+    /// Sums of disks_gather.frag, at pixel_of_slot().
+    const Texture2D& sums() const { return grid.value(); }
+};
+
 TextureBuffer upload_slots(const GlContext& context, std::vector<std::uint32_t> slots)
 {
     slots.resize(padded_to_rows(slots.size()), kNoSlot);
@@ -101,7 +115,7 @@ TextureBuffer upload_slots(const GlContext& context, std::vector<std::uint32_t> 
 struct FarSide {
     float sign;  ///< +1: the side of the casting normal
     std::vector<ReceiverGroup> groups;
-    ReceiverGrid grid;
+    GatherGrid gathered;
     TextureBuffer slots;  ///< of each record in the grid
     Framebuffer found;    ///< disks_fit.frag: visibility and its change
     Framebuffer before;   ///< the same of the pass before
@@ -110,7 +124,7 @@ struct FarSide {
             float side)
         : sign(side),
           groups(group_receivers(far_sides(octree, offset, side))),
-          grid(context, groups),
+          gathered(context, groups),
           slots(upload_slots(context, slots_of_records(records))),
           found(make_rows(context, records.records.size(), kFormats)),
           before(make_rows(context, records.records.size(), kFormats))
@@ -169,7 +183,7 @@ public:
         for (int pass = 1; pass < options_.passes; ++pass) {
             double change = 0.0;
             for (FarSide& side : sides) {
-                gather(side.grid, 0.5f * options_.definition.max_distance, meter);
+                gather(side.gathered, 0.5f * options_.definition.max_distance, meter);
                 change += fit(side, pass == 1 ? 1.0f : kDamping);
             }
             average(sides);
@@ -190,7 +204,7 @@ private:
         return std::string("TWO_SIDED ") + (two_sided_ ? "1" : "0");
     }
 
-    void gather(ReceiverGrid& grid, float max_distance, ProgressMeter& meter)
+    void gather(GatherGrid& gathered, float max_distance, ProgressMeter& meter)
     {
         const bool bunnell = options_.definition.kernel == Kernel::bunnell;
         Program& program = context_.program(
@@ -211,7 +225,8 @@ private:
             program.set("u_smooth", options_.definition.falloff == Falloff::smooth ? 1 : 0);
         }
         program.set("u_step_limit", kStepLimit);
-        grid.compute(program, static_cast<std::uint32_t>(records_.records.size()), meter);
+        program.set("u_groups", gathered.groups);
+        gathered.grid.compute(program, static_cast<std::uint32_t>(records_.records.size()), meter);
     }
 
     /// From the sums in the side's grid. Returns the sum of the squared changes.
@@ -219,8 +234,8 @@ private:
     {
         std::swap(side.found, side.before);
         Program& program = context_.program("fullscreen.vert", "disks_fit.frag");
-        program.set("u_sums", side.grid.values());
-        program.set("u_blocks_per_row", side.grid.blocks_per_row());
+        program.set("u_sums", side.gathered.sums());
+        program.set("u_blocks_per_row", side.gathered.grid.blocks_per_row());
         program.set("u_records", records_texture_);
         program.set("u_slots", side.slots);
         program.set("u_side", side.sign);
@@ -270,14 +285,14 @@ private:
     std::vector<Occlusion> answer(std::span<const ReceiverGroup> groups, std::size_t count,
                                   ProgressMeter& meter)
     {
-        ReceiverGrid grid(context_, groups);
-        gather(grid, options_.definition.max_distance, meter);
+        GatherGrid gathered(context_, groups);
+        gather(gathered, options_.definition.max_distance, meter);
         const TextureBuffer slots = upload_slots(context_, slots_of_receivers(groups, count));
         const Framebuffer rows = make_rows(context_, count, {TexelFormat::rgba32f});
         Program& program = context_.program("fullscreen.vert", "disks_result.frag");
-        program.set("u_sums", grid.values());
-        program.set("u_blocks_per_row", grid.blocks_per_row());
-        program.set("u_receivers", grid.receivers());
+        program.set("u_sums", gathered.sums());
+        program.set("u_blocks_per_row", gathered.grid.blocks_per_row());
+        program.set("u_receivers", gathered.grid.receivers());
         program.set("u_slots", slots);
         program.set("u_strength", options_.strength);
         draw_fullscreen(rows, program, empty_);

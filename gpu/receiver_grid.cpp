@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -26,29 +27,19 @@ std::vector<glm::vec4> receiver_texels(std::span<const ReceiverGroup> groups)
     return texels;
 }
 
-std::vector<glm::vec4> group_texels(std::span<const ReceiverGroup> groups)
-{
-    std::vector<glm::vec4> texels;
-    texels.reserve(groups.size() * 3);
-    for (const ReceiverGroup& group : groups) {
-        texels.emplace_back(group.center, group.radius);
-        texels.emplace_back(group.axis, group.cone_cos);
-        texels.emplace_back(group.cone_sin, group.sag, 0.0f, 0.0f);
-    }
-    return texels;
-}
-
 /// Blocks in one row of a picture that is about square.
 int square_side(std::uint64_t blocks)
 {
     return std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(blocks)))));
 }
 
-Framebuffer make_target(const GlContext& context, int side)
+Framebuffer make_target(const GlContext& context, int side, std::span<const GridValue> values)
 {
-    return Framebuffer(
-        context,
-        {.width = side, .height = side, .colors = {TexelFormat::rgba32f, TexelFormat::r32ui}});
+    FramebufferOptions options = {.width = side, .height = side, .colors = {}};
+    for (const GridValue& value : values)
+        options.colors.push_back(value.format);
+    options.colors.push_back(TexelFormat::r32ui);
+    return Framebuffer(context, options);
 }
 
 std::uint64_t divide_up(std::uint64_t a, std::uint64_t b)
@@ -69,16 +60,29 @@ std::vector<std::uint32_t> slots_of_receivers(std::span<const ReceiverGroup> gro
     return slots;
 }
 
-ReceiverGrid::ReceiverGrid(const GlContext& context, std::span<const ReceiverGroup> groups)
+TextureBuffer upload_groups(const GlContext& context, std::span<const ReceiverGroup> groups)
+{
+    std::vector<glm::vec4> texels;
+    texels.reserve(groups.size() * 3);
+    for (const ReceiverGroup& group : groups) {
+        texels.emplace_back(group.center, group.radius);
+        texels.emplace_back(group.axis, group.cone_cos);
+        texels.emplace_back(group.cone_sin, group.sag, 0.0f, 0.0f);
+    }
+    return TextureBuffer(context, TexelFormat::rgba32f, std::span<const glm::vec4>(texels));
+}
+
+ReceiverGrid::ReceiverGrid(const GlContext& context, std::span<const ReceiverGroup> groups,
+                           std::vector<GridValue> values)
     : context_(&context),
       group_count_(groups.size()),
       blocks_per_row_(square_side(divide_up(groups.size(), kBlockGroups))),
       receivers_(context, TexelFormat::rgba32f,
                  std::span<const glm::vec4>(receiver_texels(groups))),
-      groups_(context, TexelFormat::rgba32f, std::span<const glm::vec4>(group_texels(groups))),
+      values_(std::move(values)),
       empty_(context),
-      targets_{make_target(context, blocks_per_row_ * kBlockSide),
-               make_target(context, blocks_per_row_ * kBlockSide)}
+      targets_{make_target(context, blocks_per_row_ * kBlockSide, values_),
+               make_target(context, blocks_per_row_ * kBlockSide, values_)}
 {
 }
 
@@ -90,24 +94,25 @@ void ReceiverGrid::compute_piece(Program& program, std::uint32_t end, const Rect
     std::size_t latest = 1;
     bool more = true;
     for (int continued = 0; more; continued = 1) {
-        program.set("u_sums", targets_[latest].color(0));
-        program.set("u_at", targets_[latest].color(1));
+        for (std::size_t i = 0; i < values_.size(); ++i)
+            program.set(values_[i].sampler, targets_[latest].color(i));
+        program.set("u_at", targets_[latest].color(values_.size()));
         program.set("u_continued", continued);
         latest = 1 - latest;
         draw_fullscreen(targets_[latest], program, empty_, state);
-        unfinished.set("u_at", targets_[latest].color(1));
+        unfinished.set("u_at", targets_[latest].color(values_.size()));
         // what is done is only copied by a further draw: one more brings the end to the first
         // target
         more = any_fragment(targets_[1 - latest], unfinished, empty_, state) || latest != 0;
     }
 }
 
-void ReceiverGrid::compute(Program& program, std::uint32_t end, ProgressMeter& meter)
+void ReceiverGrid::compute(Program& program, std::uint32_t end, ProgressMeter& meter,
+                           const std::function<void(const Rect& piece)>& then)
 {
     using Clock = std::chrono::steady_clock;
     program.set("u_receivers", receivers_);
-    program.set("u_groups", groups_);
-    program.set("u_slot_count", static_cast<int>(group_count_ * kGroupSize));
+    program.set("u_slot_count", slot_count());
     program.set("u_blocks_per_row", blocks_per_row_);
 
     const std::uint64_t row = static_cast<std::uint64_t>(blocks_per_row_);
@@ -124,6 +129,8 @@ void ReceiverGrid::compute(Program& program, std::uint32_t end, ProgressMeter& m
             static_cast<int>(columns) * kBlockSide, static_cast<int>(rows) * kBlockSide};
         const Clock::time_point start = Clock::now();
         compute_piece(program, end, piece);
+        if (then)
+            then(piece);
         context_->finish("computing occlusion");
         const std::chrono::duration<double> seconds = Clock::now() - start;
 

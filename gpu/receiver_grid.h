@@ -15,7 +15,9 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace surfelao {
@@ -27,23 +29,39 @@ inline constexpr std::uint32_t kNoSlot = 0xFFFFFFFF;
 [[nodiscard]] std::vector<std::uint32_t> slots_of_receivers(std::span<const ReceiverGroup> groups,
                                                             std::size_t receiver_count);
 
+/// RGBA32F, 3 texels a group: center.xyz radius | axis.xyz cone_cos | cone_sin sag 0 0.
+[[nodiscard]] TextureBuffer upload_groups(const GlContext& context,
+                                          std::span<const ReceiverGroup> groups);
+
+/// One value that a computation finds: an output of its fragment shader, in the order of locations,
+/// and the sampler through which the next draw goes on with it.
+struct GridValue {
+    std::string sampler;
+    TexelFormat format;
+};
+
 class ReceiverGrid {
 public:
     /// Throws std::runtime_error when the device cannot hold so many.
-    ReceiverGrid(const GlContext& context, std::span<const ReceiverGroup> groups);
+    ReceiverGrid(const GlContext& context, std::span<const ReceiverGroup> groups,
+                 std::vector<GridValue> values);
 
     /// Runs the program over all slots and counts finished groups into `meter`. Each receiver goes
-    /// along a list that ends at `end`. Sets the program's u_receivers, u_groups, u_slot_count,
-    /// u_blocks_per_row and, for going on where the last draw stopped, u_sums, u_at, u_continued
-    /// (disks_gather.frag). Throws Cancelled.
-    void compute(Program& program, std::uint32_t end, ProgressMeter& meter);
+    /// along a list that ends at `end`; its place is the last output, R32UI, and comes back in
+    /// u_at. Sets the program's u_receivers, u_slot_count, u_blocks_per_row and, for going on where
+    /// the last draw stopped, the values' samplers, u_at, u_continued. `then` is called with each
+    /// part of the targets that is done. Throws Cancelled.
+    void compute(Program& program, std::uint32_t end, ProgressMeter& meter,
+                 const std::function<void(const Rect& piece)>& then = {});
 
-    /// What compute() found, RGBA32F, at pixel_of_slot().
-    const Texture2D& values() const { return targets_[0].color(); }
+    /// What compute() found, at pixel_of_slot().
+    const Texture2D& value(std::size_t index = 0) const { return targets_[0].color(index); }
+    Rect rect() const { return targets_[0].rect(); }
     int blocks_per_row() const { return blocks_per_row_; }
 
     /// RGBA32F, 2 texels a slot: position.xyz 0 | normal.xyz 0
     const TextureBuffer& receivers() const { return receivers_; }
+    int slot_count() const { return static_cast<int>(group_count_ * kGroupSize); }
 
 private:
     void compute_piece(Program& program, std::uint32_t end, const Rect& piece);
@@ -53,9 +71,9 @@ private:
     std::uint64_t group_count_;
     int blocks_per_row_;
     TextureBuffer receivers_;
-    TextureBuffer groups_;
+    std::vector<GridValue> values_;
     VertexArray empty_;
-    std::array<Framebuffer, 2> targets_;  ///< value and place in the list; by turns
+    std::array<Framebuffer, 2> targets_;  ///< values and place in the list; by turns
 };
 
 }  // namespace surfelao

@@ -119,9 +119,12 @@ void main()
             else if (!found)
                 ++at;
         } while (!found && at < u_record_count && steps < u_step_limit);
-        if (!found)
+        // llvmpipe goes on computing for receivers that have left a loop as long as their neighbours
+        // are in it: `at` stays where it is then, and what was computed from it is the same again
+        if (!found || at >= u_record_count)
             break;
 
+        ball = fetch_ball(u_records, at);
         vec4  shape     = fetch_normal_and_flat_area(u_records, at);
         uvec4 links     = fetch_links(u_records, at);
         float area      = uintBitsToFloat(links.y);

@@ -11,6 +11,7 @@
 namespace surfelao {
 
 struct MaskRaster;
+struct MaskOptions;
 
 /// The members of the parameter family and of the definition that the kernels need.
 struct MaskSettings {
@@ -23,6 +24,9 @@ struct MaskSettings {
     float exact_radius;  ///< nodes with a smaller open_radius are never opened
     bool fill;           ///< close single-bit cracks where much is covered
 };
+
+/// Throws std::invalid_argument for options out of their range.
+[[nodiscard]] MaskSettings mask_settings(const MaskOptions& options);
 
 /// Neighbouring receivers: all points within `radius` of `center`, all normals within the cone, no
 /// receiver's tangent plane passes more than `rise` below the parallel plane through the centre.

@@ -102,7 +102,9 @@ float between(float a, float b, float t)
     return a * std::pow(b / a, t);
 }
 
-MaskSettings settings_of(const MaskOptions& options)
+}  // namespace
+
+MaskSettings mask_settings(const MaskOptions& options)
 {
     const float last = static_cast<float>(std::size(kFamily) - 1);
     if (!(options.quality >= 0.0f && options.quality <= last))
@@ -148,6 +150,8 @@ std::vector<float> distance_limits(const Definition& definition)
     return limits;
 }
 
+namespace {
+
 std::vector<Receiver> in_mask_frame(std::span<const Receiver> receivers)
 {
     std::vector<Receiver> turned(receivers.size());
@@ -181,7 +185,7 @@ public:
            const Progress& progress)
         : kernel_(*kernel_of(options.kernel)),
           world_{reinterpret_cast<const float*>(tree.nodes.data()), &mask_raster(),
-                 settings_of(options)},
+                 mask_settings(options)},
           has_triangles_(!tree.nodes.empty()),
           receivers_(receivers),
           turned_(in_mask_frame(receivers)),

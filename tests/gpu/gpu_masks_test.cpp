@@ -1,0 +1,108 @@
+#include "gpu/gpu_masks.h"
+
+#include "scenes.h"
+#include "tests/gpu/contexts.h"
+#include "tree/masks.h"
+
+#include <glm/geometric.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace surfelao {
+namespace {
+
+struct World {
+    Geometry geometry;
+    std::vector<Receiver> receivers;
+    std::shared_ptr<const MaskTree> tree;
+
+    explicit World(const Scene& scene)
+        : geometry(make_geometry(scene)),
+          receivers(receivers_at_vertices(geometry, Definition{}.offset)),
+          tree(build_mask_tree(geometry))
+    {
+    }
+};
+
+struct Difference {
+    double rms = 0.0, mean = 0.0, largest = 0.0;
+    double bent_normal = 0.0;  ///< RMS length of the difference
+};
+
+/// Of the GPU from the CPU, over all receivers.
+Difference difference(const World& world, const MaskOptions& options)
+{
+    const std::vector<Occlusion> cpu = solve_masks(*world.tree, world.receivers, options);
+    const std::vector<Occlusion> gpu =
+        solve_masks_gpu(test_context(), *world.tree, world.receivers, options);
+    Difference result;
+    for (std::size_t i = 0; i < cpu.size(); ++i) {
+        const double d = double{gpu[i].occlusion} - double{cpu[i].occlusion};
+        const double bent = double{glm::distance(gpu[i].bent_normal, cpu[i].bent_normal)};
+        result.mean += d;
+        result.rms += d * d;
+        result.bent_normal += bent * bent;
+        result.largest = std::max(result.largest, std::abs(d));
+    }
+    const double n = static_cast<double>(cpu.size());
+    result.mean /= n;
+    result.rms = std::sqrt(result.rms / n);
+    result.bent_normal = std::sqrt(result.bent_normal / n);
+    return result;
+}
+
+// Every triangle for every receiver on both: only bits whose direction an edge passes to within
+// rounding differ. A bit is at most 1/700 of the hemisphere.
+TEST(GpuMasks, ExactMasksDifferBySingleBitsAtEdges)
+{
+    const Difference d = difference(World(scenes::bumpy_sphere(6)), {.exact = true});
+    EXPECT_LT(d.rms, 2e-4);
+    EXPECT_LT(d.largest, 3e-3);
+    EXPECT_LT(d.bent_normal, 1e-3);
+}
+
+// Large groups share clusters on the CPU and not here. Measured: RMS 0.0010 and mean -0.00002,
+// beside errors of 0.0008 (CPU) and 0.0010 (GPU) against exact masks; at 2402 vertices 0.0013 and
+// 0.0012.
+TEST(GpuMasks, GoodMasksAgreeToTheErrorOfTheSetting)
+{
+    const Difference d = difference(World(scenes::bumpy_sphere(12)), {});
+    EXPECT_LT(d.rms, 3e-3);
+    EXPECT_LT(std::abs(d.mean), 1e-3);
+}
+
+TEST(GpuMasks, ADistanceLimitIsRefused)
+{
+    const World world(scenes::sphere({0, 0, 0}, 1.0, 2));
+    EXPECT_THROW(static_cast<void>(solve_masks_gpu(test_context(), *world.tree, world.receivers,
+                                                   {.definition = {.max_distance = 0.2f}})),
+                 std::invalid_argument);
+}
+
+TEST(GpuMasks, InsideAClosedBoxAllIsClosedAndAloneAllIsOpen)
+{
+    World world(scenes::box({0, 0, 0}, {1, 1, 1}, 2));
+    world.receivers = {{{0, 0, 0}, {0, 0, 1}}, {{5, 5, 5}, {0, 1, 0}}, {{0, 0, 0}, {0, 0, 0}}};
+    const std::vector<Occlusion> found =
+        solve_masks_gpu(test_context(), *world.tree, world.receivers, {.exact = true});
+    EXPECT_EQ(found[0].occlusion, 1.0f);
+    EXPECT_EQ(found[0].bent_normal, glm::vec3(0, 0, 1));
+    EXPECT_LT(found[1].occlusion, 0.01f);
+    EXPECT_EQ(found[2].occlusion, 0.0f) << "no normal, no hemisphere";
+}
+
+TEST(GpuMasks, StopsWhenAsked)
+{
+    const World world(scenes::bumpy_sphere(8));
+    EXPECT_THROW(static_cast<void>(solve_masks_gpu(test_context(), *world.tree, world.receivers, {},
+                                                   [](double) { return false; })),
+                 Cancelled);
+}
+
+}  // namespace
+}  // namespace surfelao
