@@ -14,6 +14,8 @@ namespace {
 constexpr float kImportanceFloor = 0.1f;  ///< directions weigh at least this in the opening tests
 constexpr float kFillFrom = 0.4f;         ///< no filling below this occlusion ...
 constexpr float kFillRange = 0.5f;        ///< ... and full weight this much above
+constexpr float kCloseFrom = 0.9f;        ///< the same for cracks of two bits
+constexpr float kCloseRange = 0.06f;
 constexpr float kTinyComponent =
     1e-30f;  ///< stands for 0 in divisions; edge normals are above 1e-20
 
@@ -571,6 +573,32 @@ SURFELAO_MASK_INLINE Int16 fill(const MaskRaster& raster, Int16 m, Int16 loose)
     return m | (sides & loose_sides) | (stacked & loose_stacked);
 }
 
+/// Closes cracks of two bits too, for places where nearly all is covered: what is set is grown by
+/// one bit along the rows, then across them, and shrunk again. Only beside bits that clusters set.
+SURFELAO_MASK_INLINE Int16 close(const MaskRaster& raster, Int16 m, Int16 loose)
+{
+    const Lanes low_right = nonzero(load(raster.below_is_right));
+    const Lanes high_right = nonzero(load(raster.above_is_right));
+    const auto beside = [](Int16 row, Lanes right) {
+        return select(right, shift_left<1>(row), shift_right<1>(row));
+    };
+    const auto grown_across = [&](Int16 x) {
+        const Int16 low = from_below(x);
+        const Int16 high = from_above(x);
+        return x | low | beside(low, low_right) | high | beside(high, high_right);
+    };
+    const auto shrunk_across = [&](Int16 x) {
+        const Int16 low = from_below(x);
+        const Int16 high = from_above(x);
+        return x & low & beside(low, low_right) & high & beside(high, high_right);
+    };
+    const Int16 wide = m | shift_left<1>(m) | shift_right<1>(m);
+    const Int16 rows = wide & shift_left<1>(wide) & shift_right<1>(wide);
+    const Int16 columns = shrunk_across(grown_across(m));
+    const Int16 near = grown_across(loose | shift_left<1>(loose) | shift_right<1>(loose));
+    return m | ((rows | columns) & near);
+}
+
 /// The bits above the plane through the receiver with normal n.
 void horizon(const MaskRaster& raster, const float* n, std::uint32_t* above)
 {
@@ -681,6 +709,15 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
             sums = sum_bits<true>(raster, open);
             const float filled = along(sums, n) / whole;
             openness += (fill_weight < 1.0f ? fill_weight : 1.0f) * (filled - openness);
+
+            const float close_weight = (1.0f - openness - kCloseFrom) / kCloseRange;
+            if (close_weight > 0.0f && openness > 0.0f) {
+                for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
+                    store(open + w, ~close(raster, ~load(open + w), load(mask + kMaskWords + w)));
+                sums = sum_bits<true>(raster, open);
+                const float sealed = along(sums, n) / whole;
+                openness += (close_weight < 1.0f ? close_weight : 1.0f) * (sealed - openness);
+            }
         }
         openness = openness < 0.0f ? 0.0f : openness > 1.0f ? 1.0f : openness;
         answers.occlusion[i] = 1.0f - openness;

@@ -150,6 +150,9 @@ TEST(MaskRaster, FillingKeepsHalfPlanes)
             store(filled, fill(raster, load(above + w), load(above + w)));
             for (int y = 0; y < kLanes; ++y)
                 ASSERT_EQ(filled[y], above[w + y]) << "half-plane " << i << " row " << y;
+            store(filled, close(raster, load(above + w), load(above + w)));
+            for (int y = 0; y < kLanes; ++y)
+                ASSERT_EQ(filled[y], above[w + y]) << "half-plane " << i << " row " << y;
         }
     }
     alignas(64) std::uint32_t hole[kLanes];
