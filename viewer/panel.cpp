@@ -1,0 +1,397 @@
+#include "viewer/panel.h"
+
+#include "image/heat_map.h"
+
+#include <imgui.h>
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace surfelao {
+namespace {
+
+constexpr float kWidth = 330.0f;        // of the panel, unscaled pixels
+constexpr float kDegreesPerPixel = 0.35f;
+constexpr float kZoomPerNotch = 0.88f;
+constexpr int kBins = 48;
+
+constexpr const char* kColorNames[] = {"visibility", "rays",   "difference", "bent normals",
+                                       "normals",    "levels", "environment"};
+constexpr const char* kSurfaceNames[] = {"triangles", "splats", "affine", "points"};
+
+constexpr const char* kHelp[][2] = {
+    {"left drag", "orbit"},
+    {"right or middle drag", "pan"},
+    {"wheel, + and -", "zoom"},
+    {"F", "frame all"},
+    {"1 .. 7", "colours, in the panel's order"},
+    {"T", "next surface: triangles, splats, affine, points"},
+    {"R", "ray reference on or off"},
+    {"W", "wipe to the reference on or off"},
+    {"G", "ground on or off"},
+    {"Esc", "cancel what runs in the background"},
+    {"P", "save the picture"},
+    {"B", "save the baked file"},
+    {"H", "this help"},
+    {"Q", "quit"},
+    {"drop a file", "open it"},
+};
+
+ImVec4 shown(glm::vec3 linear)
+{
+    return {srgb_encode(linear.r), srgb_encode(linear.g), srgb_encode(linear.b), 1.0f};
+}
+
+void style_widgets(float scale)
+{
+    ImGui::StyleColorsDark();
+    ImGuiStyle& style = ImGui::GetStyle();
+    style.WindowRounding = 5.0f;
+    style.FrameRounding = 3.0f;
+    style.GrabRounding = 3.0f;
+    style.WindowBorderSize = 0.0f;
+    style.Colors[ImGuiCol_WindowBg].w = 0.86f;
+    style.ScaleAllSizes(scale);
+    ImGui::GetIO().FontGlobalScale = scale;
+}
+
+/// True when the value is final: dragging a slider asks for nothing until it is let go.
+bool was_set() { return ImGui::IsItemDeactivatedAfterEdit(); }
+
+/// edited: what the widgets show while they are dragged; next: what is to be solved.
+void solver_widgets(SolveSettings& edited, SolveSettings& next, const Session& session)
+{
+    if (!ImGui::IsAnyItemActive())
+        edited = next;
+    const std::vector<EngineTraits>& engines = session.services().engines;
+    bool apply = false;
+    if (ImGui::BeginCombo("engine", engines[edited.engine].name.c_str())) {
+        for (std::size_t i = 0; i < engines.size(); ++i) {
+            if (ImGui::Selectable(engines[i].name.c_str(), i == edited.engine)) {
+                edited.engine = i;
+                edited.quality = std::min(edited.quality, engines[i].most_quality);
+                apply = true;
+            }
+        }
+        ImGui::EndCombo();
+    }
+    const EngineTraits& traits = engines[edited.engine];
+    if (traits.most_quality > 0.0f) {
+        ImGui::SliderFloat("quality", &edited.quality, 0.0f, traits.most_quality, "%.2f",
+                           ImGuiSliderFlags_AlwaysClamp);
+        apply |= was_set();
+    }
+    if (traits.has_disk_options) {
+        ImGui::SliderInt("passes", &edited.passes, 1, 8, "%d", ImGuiSliderFlags_AlwaysClamp);
+        apply |= was_set();
+        ImGui::SliderFloat("strength", &edited.strength, 0.0f, 2.0f, "%.2f",
+                           ImGuiSliderFlags_AlwaysClamp);
+        apply |= was_set();
+    }
+    if (traits.has_rays) {
+        ImGui::SliderInt("rays", &edited.rays, 1, 4096, "%d",
+                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+        apply |= was_set();
+    }
+    ImGui::SliderFloat("distance", &edited.max_distance_percent, 0.0f, 100.0f,
+                       edited.max_distance_percent > 0.0f ? "%.1f %%" : "unlimited",
+                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    apply |= was_set();
+    if (edited.max_distance_percent > 0.0f)
+        apply |= ImGui::Checkbox("smooth falloff", &edited.smooth_falloff);
+    if (apply)
+        next = edited;
+}
+
+bool view_widgets(PanelState& state)
+{
+    ViewOptions& view = state.view;
+    bool changed = false;
+    int colors = static_cast<int>(view.colors);
+    if (ImGui::Combo("colours", &colors, kColorNames, IM_ARRAYSIZE(kColorNames))) {
+        view.colors = static_cast<Colors>(colors);
+        changed = true;
+    }
+    int surface = static_cast<int>(view.surface);
+    if (ImGui::Combo("surface", &surface, kSurfaceNames, IM_ARRAYSIZE(kSurfaceNames))) {
+        view.surface = static_cast<Surface>(surface);
+        changed = true;
+    }
+    if (view.surface != Surface::triangles)
+        changed |= ImGui::SliderFloat("splat radius", &view.radius_scale, 0.1f, 4.0f, "%.2f",
+                                      ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    if (view.colors == Colors::environment)
+        changed |= ImGui::SliderFloat("exposure", &view.exposure, -6.0f, 6.0f, "%.1f EV",
+                                      ImGuiSliderFlags_AlwaysClamp);
+    if (view.colors == Colors::difference)
+        changed |= ImGui::SliderFloat("full scale", &view.difference_scale, 0.001f, 1.0f, "%.3f",
+                                      ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    changed |= ImGui::Checkbox("ground", &view.ground);
+    return changed;
+}
+
+void progress_line(const char* what, double done)
+{
+    char text[64];
+    std::snprintf(text, sizeof text, "%s %.0f %%", what, 100.0 * done);
+    ImGui::ProgressBar(static_cast<float>(done), ImVec2(-1.0f, 0.0f), text);
+}
+
+void stage_lines(const SessionState& s)
+{
+    ImGui::Text("read %.3f s   build %.3f s   solve %.3f s", s.read_s, s.build_s, s.solve_s);
+    if (s.reference_s > 0.0)
+        ImGui::Text("reference %.3f s", s.reference_s);
+    if (s.error)
+        ImGui::Text("RMSE %.4f   bias %+.4f\n95 %% %.4f   max %.4f", s.error->rmse, s.error->bias,
+                    s.error->p95, s.error->max);
+}
+
+void histogram(const SessionState& s)
+{
+    if (s.occlusion.empty())
+        return;
+    std::array<float, kBins> bins{};
+    const std::size_t vertices = s.model->geometry.positions.size();
+    for (std::size_t v = 0; v < vertices; ++v) {
+        const float position = s.occlusion[v].occlusion * static_cast<float>(kBins);
+        bins[std::min(static_cast<std::size_t>(position), bins.size() - 1)] += 1.0f;
+    }
+    ImGui::PlotHistogram("##occlusion", bins.data(), kBins, 0, "vertices by occlusion, 0 to 1", 0.0f,
+                         FLT_MAX, ImVec2(-1.0f, 70.0f * ImGui::GetIO().FontGlobalScale));
+}
+
+/// The twin of draw_heat_legend, in the lower right corner of the window.
+void legend(const char* title, float low, float high)
+{
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(display.x - 10.0f, display.y - 10.0f), ImGuiCond_Always,
+                            ImVec2(1.0f, 1.0f));
+    ImGui::Begin("##legend", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+                     ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoSavedSettings);
+    ImGui::TextUnformatted(title);
+    const float scale = ImGui::GetIO().FontGlobalScale;
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const ImVec2 size(220.0f * scale, 14.0f * scale);
+    constexpr int kSteps = 32;
+    for (int i = 0; i < kSteps; ++i) {
+        const auto at = [&](int step) { return corner.x + size.x * static_cast<float>(step) / kSteps; };
+        const auto color = [](int step) {
+            return ImGui::GetColorU32(shown(heat_color(static_cast<float>(step) / kSteps)));
+        };
+        ImGui::GetWindowDrawList()->AddRectFilledMultiColor(
+            ImVec2(at(i), corner.y), ImVec2(at(i + 1), corner.y + size.y), color(i), color(i + 1),
+            color(i + 1), color(i));
+    }
+    ImGui::Dummy(size);
+    ImGui::Text("%.3g", static_cast<double>(low));
+    ImGui::SameLine(size.x - 30.0f * scale);
+    ImGui::Text("%.3g", static_cast<double>(high));
+    ImGui::End();
+}
+
+void help_window(bool& open)
+{
+    ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - 10.0f, 10.0f), ImGuiCond_Always,
+                            ImVec2(1.0f, 0.0f));
+    if (ImGui::Begin("Keys", &open,
+                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse |
+                         ImGuiWindowFlags_NoSavedSettings) &&
+        ImGui::BeginTable("keys", 2)) {
+        for (const auto& line : kHelp) {
+            ImGui::TableNextColumn();
+            ImGui::TextColored(ImVec4(1.0f, 0.8f, 0.5f, 1.0f), "%s", line[0]);
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(line[1]);
+        }
+        ImGui::EndTable();
+    }
+    ImGui::End();
+}
+
+/// Wipe needs a reference, and so do two of the colours.
+void ask_for_reference(PanelState& state)
+{
+    if (needs_reference(state.view))
+        state.wants_reference = true;
+}
+
+void keys(PanelState& state, PanelInput& input)
+{
+    if (ImGui::GetIO().WantTextInput)
+        return;
+    // GLFW's codes of letters and digits are those of ASCII
+    const auto pressed = [](char key) { return ImGui::IsKeyPressed(key, false); };
+    for (char digit = '1'; digit <= '7'; ++digit) {
+        if (pressed(digit)) {
+            state.view.colors = static_cast<Colors>(digit - '1');
+            input.view_changed = true;
+        }
+    }
+    if (pressed('T')) {
+        state.view.surface = static_cast<Surface>((static_cast<int>(state.view.surface) + 1) % 4);
+        input.view_changed = true;
+    }
+    if (pressed('G')) {
+        state.view.ground = !state.view.ground;
+        input.view_changed = true;
+    }
+    if (pressed('W')) {
+        state.view.wipe = state.view.wipe < 1.0f ? 1.0f : 0.5f;
+        input.view_changed = true;
+    }
+    if (pressed('R'))
+        state.wants_reference = !state.wants_reference;
+    if (pressed('H'))
+        state.shows_help = !state.shows_help;
+    input.frame_all |= pressed('F');
+    input.save_picture |= pressed('P');
+    input.save_baked |= pressed('B');
+    input.close |= pressed('Q');
+    input.cancel |= ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
+    if (ImGui::IsKeyPressed('='))
+        input.zoom *= kZoomPerNotch;
+    if (ImGui::IsKeyPressed('-'))
+        input.zoom /= kZoomPerNotch;
+}
+
+void mouse(PanelInput& input)
+{
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.WantCaptureMouse)
+        return;
+    if (io.MouseDown[ImGuiMouseButton_Left])
+        input.orbit_deg = kDegreesPerPixel * glm::vec2(-io.MouseDelta.x, io.MouseDelta.y);
+    if (io.MouseDown[ImGuiMouseButton_Right] || io.MouseDown[ImGuiMouseButton_Middle])
+        input.pan = glm::vec2(io.MouseDelta.x, -io.MouseDelta.y) / std::max(1.0f, io.DisplaySize.y);
+    input.zoom *= std::pow(kZoomPerNotch, io.MouseWheel);
+}
+
+}  // namespace
+
+Panel::Panel(GLFWwindow* window, float scale)
+{
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;  // leaves no file behind
+    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    ImGui_ImplOpenGL3_Init("#version 330 core");
+    style_widgets(scale);
+}
+
+Panel::~Panel()
+{
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+}
+
+PanelInput Panel::build(PanelState& state, const Session& session, const PanelFigures& figures)
+{
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    PanelInput input;
+    const SessionState& shown_state = session.state();
+
+    ImGui::SetNextWindowPos(ImVec2(10.0f, 10.0f), ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize(ImVec2(kWidth, 0.0f), ImGuiCond_Always);
+    ImGui::Begin("surfelao", nullptr, ImGuiWindowFlags_NoResize);
+    ImGui::PushItemWidth(-100.0f);
+    if (shown_state.model)
+        ImGui::Text("%s\n%zu vertices, %zu triangles", shown_state.path.filename().c_str(),
+                    shown_state.model->geometry.positions.size(),
+                    shown_state.model->geometry.triangles.size());
+    else if (!session.opening())
+        ImGui::TextUnformatted("Drop a mesh file on this window.");
+    if (session.opening())
+        ImGui::TextUnformatted("reading ...");
+
+    if (ImGui::CollapsingHeader("Solve", ImGuiTreeNodeFlags_DefaultOpen)) {
+        solver_widgets(edited_, state.settings, session);
+        if (session.solving() && !session.opening()) {
+            progress_line(shown_state.occlusion.empty() ? "draft" : "solving",
+                          session.solve_progress());
+            input.cancel |= ImGui::Button("cancel");
+        } else if (shown_state.is_draft && !session.opening()) {
+            ImGui::TextUnformatted("cancelled: the draft is shown");
+        }
+        stage_lines(shown_state);
+        histogram(shown_state);
+    }
+    if (ImGui::CollapsingHeader("Show", ImGuiTreeNodeFlags_DefaultOpen)) {
+        input.view_changed |= view_widgets(state);
+        input.frame_all |= ImGui::Button("frame all");
+    }
+    if (ImGui::CollapsingHeader("Ray reference", ImGuiTreeNodeFlags_DefaultOpen)) {
+        ImGui::Checkbox("trace", &state.wants_reference);
+        ImGui::SameLine();
+        int half = state.reference_rays / 2;
+        if (ImGui::SliderInt("rays##reference", &half, 8, 4096, "2 x %d",
+                             ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
+            state.reference_rays = 2 * half;
+        bool wipes = state.view.wipe < 1.0f;
+        if (ImGui::Checkbox("wipe", &wipes)) {
+            state.view.wipe = wipes ? 0.5f : 1.0f;
+            input.view_changed = true;
+        }
+        if (wipes)
+            input.view_changed |= ImGui::SliderFloat("left | right", &state.view.wipe, 0.0f, 0.999f,
+                                                     "%.2f", ImGuiSliderFlags_AlwaysClamp);
+        if (session.tracing())
+            progress_line("tracing", session.trace_progress());
+    }
+    if (ImGui::CollapsingHeader("Save")) {
+        ImGui::InputText("##picture", state.picture_path, sizeof state.picture_path);
+        ImGui::SameLine();
+        input.save_picture |= ImGui::Button("picture");
+        ImGui::InputText("##baked", state.baked_path, sizeof state.baked_path);
+        ImGui::SameLine();
+        input.save_baked |= ImGui::Button("baked");
+    }
+    ImGui::Separator();
+    ImGui::Text("%.1f ms (%.0f frames/s), %d samples", figures.frame_ms,
+                figures.frame_ms > 0.0 ? 1000.0 / figures.frame_ms : 0.0, figures.samples);
+    ImGui::TextDisabled("%s", figures.device.c_str());
+    if (ImGui::SmallButton("keys (H)"))
+        state.shows_help = !state.shows_help;
+    const ImVec4 warning(1.0f, 0.55f, 0.45f, 1.0f);
+    ImGui::PushTextWrapPos(0.0f);
+    if (!shown_state.message.empty())
+        ImGui::TextColored(warning, "%s", shown_state.message.c_str());
+    if (!figures.note.empty())
+        ImGui::TextUnformatted(figures.note.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopItemWidth();
+    ImGui::End();
+
+    if (state.shows_help)
+        help_window(state.shows_help);
+    if (state.view.colors == Colors::difference)
+        legend("occlusion difference to rays", 0.0f, state.view.difference_scale);
+    if (state.view.colors == Colors::levels && shown_state.model) {
+        const glm::vec2 range = level_range(*shown_state.model);
+        legend("octree level", range.x, range.y);
+    }
+    if (state.view.wipe < 1.0f) {
+        const float x = state.view.wipe * ImGui::GetIO().DisplaySize.x;
+        ImGui::GetBackgroundDrawList()->AddLine(ImVec2(x, 0.0f),
+                                                ImVec2(x, ImGui::GetIO().DisplaySize.y),
+                                                IM_COL32(255, 255, 255, 120), 1.0f);
+    }
+    keys(state, input);
+    mouse(input);
+    ask_for_reference(state);
+    ImGui::Render();
+    return input;
+}
+
+void Panel::draw() { ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData()); }
+
+}  // namespace surfelao

@@ -1,0 +1,34 @@
+/// window.h: the interactive viewer.
+#pragma once
+
+#include "image/image.h"
+#include "viewer/panel.h"
+#include "viewer/session.h"
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace surfelao {
+
+struct WindowOptions {
+    std::filesystem::path input;  ///< may be empty: files can be dropped on the window
+    int width = 1280, height = 800;
+    UpAxis up = UpAxis::y;
+    std::string camera;                ///< parse_camera's words, for every file that is opened
+    PanelState panel;                  ///< what the widgets begin with
+    std::optional<Image> environment;  ///< a panorama; none = builtin_sky()
+
+    /// Called after each frame with what the window shows; false closes it. For tests: drawing
+    /// waits for every frame's pixels where it is set.
+    std::function<bool(const Image& shown, const Session& session)> on_frame;
+};
+
+/// Opens a window and returns when it is closed. Moving the camera draws, and solves nothing; a view
+/// at rest gets smoother, sample by sample, and costs nothing once it is done. Throws
+/// std::runtime_error when there is no display or no OpenGL 3.3; everything later (files that cannot
+/// be read or written) is told in the window.
+void show_window(const WindowOptions& options, const Services& services);
+
+}  // namespace surfelao
