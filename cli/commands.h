@@ -20,6 +20,7 @@ void add_bake_command(CLI::App& app, Work& work);
 void add_compare_command(CLI::App& app, Work& work);
 void add_info_command(CLI::App& app, Work& work);
 void add_render_command(CLI::App& app, Work& work);
+void add_view_command(CLI::App& app, Work& work);
 
 /// Options that do not go together, or a value out of range. what() is one complete sentence.
 class UsageError : public std::runtime_error {

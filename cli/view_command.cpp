@@ -3,15 +3,19 @@
 #include "bake/threads.h"
 #include "cli/commands.h"
 #include "cli/engine_options.h"
+#include "cli/interrupt.h"
 #include "cli/view_options.h"
 #include "image/image_file.h"
-#include "surfels/scene_io.h"
+#include "surfels/errors.h"
 #include "viewer/window.h"
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 namespace surfelao {
 namespace {
@@ -25,10 +29,29 @@ struct ViewCommandOptions {
     std::optional<int> threads;
 };
 
+/// Who can be chosen in the window, in this order.
+struct Choice {
+    Engine engine;
+    Device device;
+};
+
+std::vector<Choice> choices()
+{
+    std::vector<Choice> all;
+    for (const Engine engine : {Engine::disks, Engine::rays}) {
+        for (const Device device : {Device::cpu, Device::gpu}) {
+            if (runs_on(engine, device))
+                all.push_back({engine, device});
+        }
+    }
+    return all;
+}
+
 Solved solve(const Model& model, const SolveSettings& settings, const Progress& progress)
 {
     EngineSettings engine;
-    engine.engine = kEngines[settings.engine];
+    engine.engine = choices()[settings.engine].engine;
+    engine.device = choices()[settings.engine].device;
     engine.definition = definition_of(settings);
     engine.quality = settings.quality;
     engine.passes = settings.passes;
@@ -41,11 +64,12 @@ Solved solve(const Model& model, const SolveSettings& settings, const Progress& 
 Services services()
 {
     Services all;
-    for (const Engine engine : kEngines)
-        all.engines.push_back({.name = name_of(engine),
-                               .most_quality = most_quality(engine),
-                               .has_disk_options = engine == Engine::disks,
-                               .has_rays = engine == Engine::rays});
+    for (const Choice& choice : choices())
+        all.engines.push_back(
+            {.name = name_of(choice.engine) + (choice.device == Device::gpu ? " on GPU" : ""),
+             .most_quality = most_quality(choice.engine),
+             .has_disk_options = choice.engine == Engine::disks,
+             .has_rays = choice.engine == Engine::rays});
     all.solve = solve;
     all.measure = [](std::span<const Occlusion> answer, std::span<const Occlusion> reference) {
         const ErrorStatistics error = error_statistics(answer, reference);
@@ -72,8 +96,10 @@ int run(const ViewCommandOptions& options)
 
     const EngineSettings engine = settings_of(options.engine);
     SolveSettings& settings = window.panel.settings;
-    settings.engine = static_cast<std::size_t>(
-        std::find(std::begin(kEngines), std::end(kEngines), engine.engine) - std::begin(kEngines));
+    const std::vector<Choice> known = choices();
+    while (known[settings.engine].engine != engine.engine ||
+           known[settings.engine].device != engine.device)
+        ++settings.engine;
     settings.quality = std::min(engine.quality, most_quality(engine.engine));
     settings.passes = engine.passes;
     settings.strength = engine.strength;
@@ -83,7 +109,10 @@ int run(const ViewCommandOptions& options)
         settings.max_distance_percent = static_cast<float>(distance.value);
         settings.smooth_falloff = distance.falloff == Falloff::smooth;
     }
+    window.keep_open = [] { return caught_signal() == 0; };
     show_window(window, services());
+    if (caught_signal() != 0)
+        return kKilledBy + caught_signal();
     return kDone;
 }
 

@@ -4,7 +4,9 @@
 
 namespace surfelao {
 
-BackgroundWorker::BackgroundWorker() : thread_([this] { run(); }) {}
+BackgroundWorker::BackgroundWorker() : thread_([this] { run(); })
+{
+}
 
 BackgroundWorker::~BackgroundWorker()
 {

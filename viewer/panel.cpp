@@ -15,7 +15,7 @@
 namespace surfelao {
 namespace {
 
-constexpr float kWidth = 330.0f;        // of the panel, unscaled pixels
+constexpr float kWidth = 330.0f;  // of the panel, unscaled pixels
 constexpr float kDegreesPerPixel = 0.35f;
 constexpr float kZoomPerNotch = 0.88f;
 constexpr int kBins = 48;
@@ -61,7 +61,10 @@ void style_widgets(float scale)
 }
 
 /// True when the value is final: dragging a slider asks for nothing until it is let go.
-bool was_set() { return ImGui::IsItemDeactivatedAfterEdit(); }
+bool was_set()
+{
+    return ImGui::IsItemDeactivatedAfterEdit();
+}
 
 /// edited: what the widgets show while they are dragged; next: what is to be solved.
 void solver_widgets(SolveSettings& edited, SolveSettings& next, const Session& session)
@@ -162,8 +165,11 @@ void histogram(const SessionState& s)
         const float position = s.occlusion[v].occlusion * static_cast<float>(kBins);
         bins[std::min(static_cast<std::size_t>(position), bins.size() - 1)] += 1.0f;
     }
-    ImGui::PlotHistogram("##occlusion", bins.data(), kBins, 0, "vertices by occlusion, 0 to 1", 0.0f,
-                         FLT_MAX, ImVec2(-1.0f, 70.0f * ImGui::GetIO().FontGlobalScale));
+    for (float& bin : bins)
+        bin = std::sqrt(bin);  // so that the many open vertices do not flatten the rest
+    ImGui::PlotHistogram("##occlusion", bins.data(), kBins, 0,
+                         "vertices by occlusion 0 .. 1, root scale", 0.0f, FLT_MAX,
+                         ImVec2(-1.0f, 70.0f * ImGui::GetIO().FontGlobalScale));
 }
 
 /// The twin of draw_heat_legend, in the lower right corner of the window.
@@ -181,7 +187,9 @@ void legend(const char* title, float low, float high)
     const ImVec2 size(220.0f * scale, 14.0f * scale);
     constexpr int kSteps = 32;
     for (int i = 0; i < kSteps; ++i) {
-        const auto at = [&](int step) { return corner.x + size.x * static_cast<float>(step) / kSteps; };
+        const auto at = [&](int step) {
+            return corner.x + size.x * static_cast<float>(step) / kSteps;
+        };
         const auto color = [](int step) {
             return ImGui::GetColorU32(shown(heat_color(static_cast<float>(step) / kSteps)));
         };
@@ -392,6 +400,9 @@ PanelInput Panel::build(PanelState& state, const Session& session, const PanelFi
     return input;
 }
 
-void Panel::draw() { ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData()); }
+void Panel::draw()
+{
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
 
 }  // namespace surfelao

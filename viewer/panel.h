@@ -16,7 +16,7 @@ namespace surfelao {
 struct PanelState {
     ViewOptions view;
     SolveSettings settings;
-    int reference_rays = 1024;         ///< even
+    int reference_rays = 1024;  ///< even
     bool wants_reference = false;
     bool shows_help = false;
     char picture_path[512] = "picture.png";
@@ -25,23 +25,23 @@ struct PanelState {
 
 /// What is shown besides, per frame.
 struct PanelFigures {
-    double frame_ms = 0.0;        ///< to draw the model once
-    int samples = 0;              ///< per pixel, so far
-    std::string note;             ///< of the window: saved files, failures; one line or empty
-    std::string device;           ///< what draws
+    double frame_ms = 0.0;  ///< to draw the model once
+    int samples = 0;        ///< per pixel, so far
+    std::string note;       ///< of the window: saved files, failures; one line or empty
+    std::string device;     ///< what draws
 };
 
 /// What the user did in one frame.
 struct PanelInput {
-    bool view_changed = false;    ///< PanelState::view
+    bool view_changed = false;  ///< PanelState::view
     bool frame_all = false;
     bool save_picture = false;
     bool save_baked = false;
     bool cancel = false;
     bool close = false;
-    glm::vec2 orbit_deg{0.0f};    ///< azimuth, elevation
-    glm::vec2 pan{0.0f};          ///< shares of the window's height, y upwards
-    float zoom = 1.0f;            ///< factor on the distance
+    glm::vec2 orbit_deg{0.0f};  ///< azimuth, elevation
+    glm::vec2 pan{0.0f};        ///< shares of the window's height, y upwards
+    float zoom = 1.0f;          ///< factor on the distance
 };
 
 /// Dear ImGui in a window whose context is current in this thread. At most one at a time.

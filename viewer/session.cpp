@@ -61,7 +61,9 @@ Definition definition_of(const SolveSettings& settings)
     return definition;
 }
 
-Session::Session(Services services) : services_(std::move(services)) {}
+Session::Session(Services services) : services_(std::move(services))
+{
+}
 Session::~Session() = default;
 
 void Session::open(const std::filesystem::path& path, UpAxis up)
@@ -228,8 +230,8 @@ Session::Changes Session::update()
         const Geometry& geometry = state_.model->geometry;
         has_answer_.assign(geometry.positions.size(), false);
         for (std::size_t v = 0; v < has_answer_.size(); ++v)
-            has_answer_[v] = geometry.normals[v] != glm::vec3(0.0f) &&
-                             traced->reference.well_defined(v);
+            has_answer_[v] =
+                geometry.normals[v] != glm::vec3(0.0f) && traced->reference.well_defined(v);
         state_.reference = std::move(traced->reference.occlusion);
         state_.reference_s = traced->seconds;
         changes.reference = true;

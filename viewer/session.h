@@ -30,13 +30,13 @@ struct EngineTraits {
 
 /// What is solved, and how. Equal settings give equal answers.
 struct SolveSettings {
-    std::size_t engine = 0;              ///< into Services::engines
+    std::size_t engine = 0;  ///< into Services::engines
     float quality = 1.0f;
     int passes = 2;
     float strength = 1.0f;
     int rays = 256;
-    float max_distance_percent = 0.0f;   ///< of the diagonal; 0 = unlimited
-    bool smooth_falloff = false;         ///< only with a distance limit
+    float max_distance_percent = 0.0f;  ///< of the diagonal; 0 = unlimited
+    bool smooth_falloff = false;        ///< only with a distance limit
     bool operator==(const SolveSettings&) const = default;
 };
 
@@ -69,15 +69,15 @@ struct Services {
 
 /// A picture of the session for one frame.
 struct SessionState {
-    std::filesystem::path path;         ///< of the model shown
+    std::filesystem::path path;          ///< of the model shown
     std::shared_ptr<const Scene> scene;  ///< null until a file was read
     std::shared_ptr<const Model> model;
-    std::vector<Occlusion> occlusion;   ///< empty until something was solved
-    std::vector<Occlusion> reference;   ///< empty until it was traced for the same definition
-    bool is_draft = false;              ///< `occlusion` is the rough answer
+    std::vector<Occlusion> occlusion;  ///< empty until something was solved
+    std::vector<Occlusion> reference;  ///< empty until it was traced for the same definition
+    bool is_draft = false;             ///< `occlusion` is the rough answer
     double read_s = 0.0, build_s = 0.0, solve_s = 0.0, reference_s = 0.0;
     std::optional<ErrorFigures> error;  ///< of `occlusion` against `reference`
-    std::string message;                ///< the last thing that went wrong, one sentence; else empty
+    std::string message;  ///< the last thing that went wrong, one sentence; else empty
 };
 
 /// For one thread, the window's; update() takes over what the background threads have finished.
@@ -90,8 +90,8 @@ public:
     /// until the file turns out to be readable.
     void open(const std::filesystem::path& path, UpAxis up);
 
-    /// Solves the model with these settings: a draft first where the engine has one, then the whole.
-    /// What is running is given up. Does nothing when they are the last settings.
+    /// Solves the model with these settings: a draft first where the engine has one, then the
+    /// whole. What is running is given up. Does nothing when they are the last settings.
     void solve(const SolveSettings& settings);
 
     /// An even number of rays: the reference is traced now and whenever the definition changes.

@@ -9,6 +9,7 @@
 
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <memory>
@@ -95,7 +96,7 @@ public:
     void run()
     {
         bool keep_open = true;
-        while (keep_open && !glfwWindowShouldClose(window_)) {
+        while (keep_open && options_.keep_open() && !glfwWindowShouldClose(window_)) {
             wait_for_events();
             int width = 0, height = 0;
             glfwGetFramebufferSize(window_, &width, &height);
@@ -156,13 +157,13 @@ private:
         glfwGetFramebufferSize(window_, &width, &height);
         const Model& model = *session_.state().model;
         try {
-            camera_ = parse_camera(options_.camera,
-                                   {.points = model.seen,
-                                    .frame_centre = model.geometry.frame.centre,
-                                    .frame_diagonal = model.geometry.frame.diagonal,
-                                    .up = model.up,
-                                    .aspect = static_cast<float>(std::max(1, width)) /
-                                              static_cast<float>(std::max(1, height))});
+            camera_ =
+                parse_camera(options_.camera, {.points = model.seen,
+                                               .frame_centre = model.geometry.frame.centre,
+                                               .frame_diagonal = model.geometry.frame.diagonal,
+                                               .up = model.up,
+                                               .aspect = static_cast<float>(std::max(1, width)) /
+                                                         static_cast<float>(std::max(1, height))});
         } catch (const InputError& error) {
             note_ = error.what();
             camera_ = frame_points(model.seen, model.up, 1.0f);

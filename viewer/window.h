@@ -20,15 +20,18 @@ struct WindowOptions {
     PanelState panel;                  ///< what the widgets begin with
     std::optional<Image> environment;  ///< a panorama; none = builtin_sky()
 
+    /// Asked at least twice a second; false closes the window (an interrupt, for example).
+    std::function<bool()> keep_open = [] { return true; };
+
     /// Called after each frame with what the window shows; false closes it. For tests: drawing
     /// waits for every frame's pixels where it is set.
     std::function<bool(const Image& shown, const Session& session)> on_frame;
 };
 
-/// Opens a window and returns when it is closed. Moving the camera draws, and solves nothing; a view
-/// at rest gets smoother, sample by sample, and costs nothing once it is done. Throws
-/// std::runtime_error when there is no display or no OpenGL 3.3; everything later (files that cannot
-/// be read or written) is told in the window.
+/// Opens a window and returns when it is closed. Moving the camera draws, and solves nothing; a
+/// view at rest gets smoother, sample by sample, and costs nothing once it is done. Throws
+/// std::runtime_error when there is no display or no OpenGL 3.3; everything later (files that
+/// cannot be read or written) is told in the window.
 void show_window(const WindowOptions& options, const Services& services);
 
 }  // namespace surfelao
