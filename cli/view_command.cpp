@@ -38,7 +38,7 @@ struct Choice {
 std::vector<Choice> choices()
 {
     std::vector<Choice> all;
-    for (const Engine engine : {Engine::disks, Engine::rays}) {
+    for (const Engine engine : {Engine::masks, Engine::disks, Engine::rays}) {
         for (const Device device : {Device::cpu, Device::gpu}) {
             if (runs_on(engine, device))
                 all.push_back({engine, device});

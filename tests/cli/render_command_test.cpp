@@ -1,0 +1,101 @@
+#include "../bake/temporary_folder.h"
+#include "image/image_file.h"
+#include "program.h"
+#include "scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace surfelao {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RenderCommand : public testing::Test {
+protected:
+    void SetUp() override { write_obj(folder_ / "a.obj", scenes::bumpy_sphere(4)); }
+
+    /// A small picture with these options besides.
+    Outcome render(const char* output, std::vector<std::string> options = {}) const
+    {
+        std::vector<std::string> arguments = {
+            "render", folder_ / "a.obj", "-o", folder_ / output, "--width", "64", "--height",
+            "48",     "--samples",       "2",  "--context",      "osmesa"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        return run(folder_.path(), arguments);
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(RenderCommand, WritesAPictureOfTheSizeAskedFor)
+{
+    for (const char* name : {"x.png", "x.jpg", "x.exr"}) {
+        const Outcome outcome = render(name);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        EXPECT_EQ(outcome.err, "");
+        const Image image = read_image(folder_ / name);
+        EXPECT_EQ(image.width, 64);
+        EXPECT_EQ(image.height, 48);
+    }
+}
+
+TEST_F(RenderCommand, EveryModeAndSurfaceIsAnotherPicture)
+{
+    std::vector<std::vector<glm::vec4>> pictures;
+    for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
+             {},
+             {"--surface", "splats"},
+             {"--surface", "affine"},
+             {"--surface", "points"},
+             {"--mode", "rays", "--reference-rays", "16"},
+             {"--mode", "difference", "--reference-rays", "16"},
+             {"--mode", "bent-normals"},
+             {"--mode", "normals"},
+             {"--mode", "levels"},
+             {"--mode", "environment"},
+             {"--no-ground"},
+             {"--camera", "azimuth=90"},
+         }) {
+        const Outcome outcome = render("x.png", options);
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        pictures.push_back(read_image(folder_ / "x.png").pixels);
+        for (std::size_t i = 0; i + 1 < pictures.size(); ++i)
+            EXPECT_NE(pictures[i], pictures.back()) << i << " and " << pictures.size() - 1;
+    }
+}
+
+TEST_F(RenderCommand, RefusesWhatCannotBeDoneInOneSentence)
+{
+    const auto refused = [&](int code, const char* words, const char* output,
+                             const std::vector<std::string>& options) {
+        const Outcome outcome = render(output, options);
+        EXPECT_EQ(outcome.code, code) << words;
+        EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+        EXPECT_FALSE(fs::exists(folder_ / output));
+    };
+    refused(1, "written as .png, .jpg or .exr", "x.bmp", {});
+    refused(1, "there is no folder", "none/x.png", {});
+    refused(1, "none.hdr: no such file", "x.png", {"--environment", "none.hdr"});
+    refused(1, "cannot be read as a picture", "x.png",
+            {"--environment", (folder_ / "a.obj").string()});
+    refused(1, "camera: \"azimuth=x\"", "x.png", {"--camera", "azimuth=x"});
+    refused(1, "pixels was asked for", "x.png", {"--width", "32768"});
+    refused(2, "only for --mode environment", "x.png",
+            {"--environment", "sky.hdr", "--mode", "rays"});
+    refused(2, "--reference-rays must be an even number", "x.png", {"--reference-rays", "15"});
+    refused(2, "--mode", "x.png", {"--mode", "colourful"});
+}
+
+TEST(ViewCommand, WithoutADisplayItSaysSoAndFails)
+{
+    if (std::getenv("DISPLAY"))
+        GTEST_SKIP() << "there is a display";
+    const TemporaryFolder folder;
+    const Outcome outcome = run(folder.path(), {"view"});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("no window can be opened"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace surfelao
