@@ -80,11 +80,21 @@ TEST_F(RenderCommand, RefusesWhatCannotBeDoneInOneSentence)
     refused(1, "cannot be read as a picture", "x.png",
             {"--environment", (folder_ / "a.obj").string()});
     refused(1, "camera: \"azimuth=x\"", "x.png", {"--camera", "azimuth=x"});
-    refused(1, "pixels was asked for", "x.png", {"--width", "32768"});
     refused(2, "only for --mode environment", "x.png",
             {"--environment", "sky.hdr", "--mode", "rays"});
     refused(2, "--reference-rays must be an even number", "x.png", {"--reference-rays", "15"});
     refused(2, "--mode", "x.png", {"--mode", "colourful"});
+}
+
+// 16,384 is the most that software draws; 32,768 the most that may be asked for.
+TEST_F(RenderCommand, RefusesASizeThatTheDeviceCannotDraw)
+{
+    const Outcome outcome =
+        run(folder_.path(), {"render", folder_ / "a.obj", "-o", folder_ / "x.png", "--width",
+                             "32768", "--height", "8", "--context", "osmesa"});
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_NE(outcome.err.find("pixels was asked for"), std::string::npos) << outcome.err;
+    EXPECT_FALSE(fs::exists(folder_ / "x.png"));
 }
 
 TEST(ViewCommand, WithoutADisplayItSaysSoAndFails)
