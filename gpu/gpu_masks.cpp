@@ -108,11 +108,10 @@ public:
                 if (slot % kGroupSize >= group.count)
                     continue;
                 const std::uint32_t receiver = group.receiver[slot % kGroupSize];
-                const glm::vec3 bent(values[slot]);
-                const float length = glm::length(bent);
                 // a row vector times a rotation: turned back
-                result[receiver] = {values[slot].w, length > 0.0f ? (bent / length) * kMaskFrame
-                                                                  : receivers[receiver].normal};
+                const glm::vec3 bent = glm::vec3(values[slot]) * kMaskFrame;
+                result[receiver] = {values[slot].w,
+                                    bent_normal_of(bent, receivers[receiver].normal)};
             }
         }
         return result;

@@ -20,6 +20,15 @@ uniform float u_strength;
 
 out vec4 out_result;
 
+// bent_normal_of in surfels/occlusion.cpp
+vec3 bent_normal_of(vec3 open, vec3 normal)
+{
+    float size = length(open);
+    open -= min(0.0, dot(open, normal)) * normal;
+    float left = length(open);
+    return left > 0.01 * size ? open / left : normal;
+}
+
 void main()
 {
     out_result = vec4(0.0);
@@ -30,7 +39,6 @@ void main()
     vec3  normal = texelFetch(u_receivers, int(slot) * 2 + 1).xyz;
     vec4  capped = sum / max(1.0, sum.w);
     vec3  open   = 2.0 / 3.0 * normal - capped.xyz;
-    float size   = length(open);
-    out_result.xyz = capped.w < 1.0 && size > 0.0 ? open / size : normal;
+    out_result.xyz = capped.w < 1.0 ? bent_normal_of(open, normal) : normal;
     out_result.w   = clamp(u_strength * sum.w, 0.0, 1.0);
 }

@@ -1,5 +1,9 @@
 #include "surfels/occlusion.h"
 
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+
 namespace surfelao {
 
 float hit_weight(const Definition& definition, float t)
@@ -11,6 +15,15 @@ float hit_weight(const Definition& definition, float t)
     const float x = t / definition.max_distance;
     const float y = 1.0f - x * x;
     return y * y;
+}
+
+glm::vec3 bent_normal_of(glm::vec3 open, glm::vec3 normal)
+{
+    constexpr float kNothingLeft = 0.01f;  // of its length: the rest is mostly rounding
+    const float length = glm::length(open);
+    open -= std::min(0.0f, glm::dot(open, normal)) * normal;
+    const float left = glm::length(open);
+    return left > kNothingLeft * length ? open / left : normal;
 }
 
 }  // namespace surfelao

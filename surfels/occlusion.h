@@ -53,4 +53,9 @@ struct Definition {
 /// The weight in [0, 1] of a hit at distance t >= 0; 0 at and beyond max_distance.
 [[nodiscard]] float hit_weight(const Definition& definition, float t);
 
+/// The bent normal from an estimate of the integral of (1 - H(w)) w (n.w), of any scale. The
+/// integral never points below the horizon; an estimate may, where next to nothing is open: that
+/// part is taken off, and what was (nearly) all below is n. normal zero and open zero: zero.
+[[nodiscard]] glm::vec3 bent_normal_of(glm::vec3 open, glm::vec3 normal);
+
 }  // namespace surfelao

@@ -107,9 +107,8 @@ DiskResult solve_disks_brute_force(const Octree& octree, std::span<const Receive
         const glm::dvec3 open = 2.0 / 3.0 * normal - capped(sum).direction;
         Occlusion& out = result.occlusion[i];
         out.occlusion = static_cast<float>(std::clamp(options.strength * sum.occlusion, 0.0, 1.0));
-        out.bent_normal = sum.occlusion < 1.0 && glm::length(open) > 0.0
-                              ? glm::vec3(glm::normalize(open))
-                              : receivers[i].normal;
+        out.bent_normal = sum.occlusion < 1.0 ? bent_normal_of(glm::vec3(open), receivers[i].normal)
+                                              : receivers[i].normal;
     });
     return result;
 }

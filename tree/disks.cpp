@@ -114,8 +114,7 @@ Occlusion to_occlusion(const DiskSum& sum, const glm::vec3& normal, float streng
     result.occlusion = std::clamp(strength * sum.occlusion, 0.0f, 1.0f);
     // the open part of the hemisphere, whose own first moment is 2/3 of the normal
     const glm::vec3 open = 2.0f / 3.0f * normal - s.direction;
-    const float length = glm::length(open);
-    result.bent_normal = s.occlusion < 1.0f && length > 0.0f ? open / length : normal;
+    result.bent_normal = s.occlusion < 1.0f ? bent_normal_of(open, normal) : normal;
     return result;
 }
 

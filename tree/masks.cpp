@@ -210,10 +210,9 @@ public:
         for (std::size_t i = 0; i < answers_.size(); ++i) {
             Occlusion& answer = answers_[i];
             answer.occlusion *= weight;
-            const float length = glm::length(answer.bent_normal);
             // a row vector times a rotation: turned back
             answer.bent_normal =
-                length > 0.0f ? (answer.bent_normal / length) * kMaskFrame : receivers_[i].normal;
+                bent_normal_of(answer.bent_normal * kMaskFrame, receivers_[i].normal);
         }
         return std::move(answers_);
     }

@@ -1,5 +1,6 @@
 #include "surfels/geometry.h"
 
+#include "surfels/occlusion.h"
 #include "surfels/receiver.h"
 #include "surfels/surfel.h"
 
@@ -137,6 +138,18 @@ TEST(Geometry, AllVerticesInOnePointGiveNoTrianglesAndNoNormals)
     EXPECT_TRUE(geometry.triangles.empty());
     EXPECT_EQ(geometry.frame.diagonal, 1.0);
     EXPECT_EQ(geometry.normals[1], glm::vec3(0));
+}
+
+TEST(BentNormal, NeverPointsBelowTheHorizon)
+{
+    const glm::vec3 up(0, 0, 1);
+    EXPECT_NEAR(glm::distance(bent_normal_of({3, 0, 3}, up), {0.70710678f, 0, 0.70710678f}), 0.0f,
+                1e-6f);
+    EXPECT_EQ(bent_normal_of({0.3f, 0, -0.1f}, up), glm::vec3(1, 0, 0));
+    EXPECT_EQ(bent_normal_of({0, 0, -0.1f}, up), up);
+    EXPECT_EQ(bent_normal_of({1e-9f, 0, -0.1f}, up), up);  // a direction made of rounding
+    EXPECT_EQ(bent_normal_of({0, 0, 0}, up), up);
+    EXPECT_EQ(bent_normal_of({0, 0, 0}, {0, 0, 0}), glm::vec3(0.0f));
 }
 
 TEST(Receiver, StandsAboveTheSurfaceByTheOffset)
