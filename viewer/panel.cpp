@@ -167,9 +167,9 @@ void histogram(const SessionState& s)
     }
     for (float& bin : bins)
         bin = std::sqrt(bin);  // so that the many open vertices do not flatten the rest
-    ImGui::PlotHistogram("##occlusion", bins.data(), kBins, 0,
-                         "vertices by occlusion 0 .. 1, root scale", 0.0f, FLT_MAX,
-                         ImVec2(-1.0f, 70.0f * ImGui::GetIO().FontGlobalScale));
+    ImGui::PlotHistogram(
+        "##occlusion", bins.data(), kBins, 0, "vertices by occlusion 0 .. 1, root scale", 0.0f,
+        FLT_MAX, ImVec2(ImGui::GetContentRegionAvail().x, 70.0f * ImGui::GetIO().FontGlobalScale));
 }
 
 /// The twin of draw_heat_legend, in the lower right corner of the window.
