@@ -51,6 +51,13 @@ private:
     unsigned saved_;
 };
 
+/// TBB gives to all its threads, for good, the floating-point mode that a thread has at its first
+/// parallel loop. Embree's commit changes the mode and then starts one: ours comes first.
+void keep_floating_point_mode()
+{
+    tbb::parallel_for(0, 2, [](int) {});
+}
+
 /// Embree's packet types and calls by width.
 template <int width>
 struct Packets;
@@ -312,6 +319,7 @@ struct RayScene::Impl {
 
 RayScene::RayScene(const Geometry& geometry, Build build, Isa isa) : impl_(std::make_unique<Impl>())
 {
+    keep_floating_point_mode();
     const RTCDevice device = device_for(isa);
     impl_->wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
     impl_->scene = rtcNewScene(device);

@@ -309,10 +309,12 @@ private:
     {
         const glm::vec3 t = perpendicular(patch.normal);
         const glm::vec3 b = glm::cross(patch.normal, t);
-        const glm::vec3 st = patch.spread.times(t);
+        // mean squares, not integrals: the products below must not underflow at small triangles
+        const float per_area = patch.area > 0.0f ? 1.0f / patch.area : 0.0f;
+        const glm::vec3 st = per_area * patch.spread.times(t);
         const float tt = glm::dot(st, t);
         const float tb = glm::dot(st, b);
-        const float bb = glm::dot(patch.spread.times(b), b);
+        const float bb = per_area * glm::dot(patch.spread.times(b), b);
         // eigenvalues of ((tt, tb), (tb, bb)): mean +- deviation; the axis by half angles
         const float mean = 0.5f * (tt + bb);
         const float half = 0.5f * (tt - bb);
@@ -327,7 +329,7 @@ private:
         const glm::vec3 axis = cosine * t + sine * b;
         const float wide = mean + deviation;
         const float narrow = std::max(mean - deviation, 1e-12f * mean);
-        const float spread_area = 12.0f * std::sqrt(wide * narrow) / patch.area;
+        const float spread_area = 12.0f * std::sqrt(wide * narrow);
 
         const bool may_be_whole = flatness > 1.0f - kWhole &&
                                   std::abs(spread_area - patch.area) < 10.0f * kWhole * patch.area;
