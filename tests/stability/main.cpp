@@ -31,7 +31,7 @@ char mark(Verdict verdict)
 bool asked_for(const Case& item, const std::vector<std::string>& texts)
 {
     return texts.empty() || std::any_of(texts.begin(), texts.end(), [&](const std::string& text) {
-               return (item.group + " " + item.name).find(text) != std::string::npos;
+               return (item.group + ": " + item.name).find(text) != std::string::npos;
            });
 }
 
