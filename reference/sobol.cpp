@@ -7,8 +7,13 @@
 #include <numbers>
 
 // One clone per vector width, chosen when the program is loaded. Without contraction and with only
-// correctly rounded operations all clones give the same bytes.
+// correctly rounded operations all clones give the same bytes. The thread sanitizer is not
+// up yet when the choice is made, and crashes.
+#if defined(__SANITIZE_THREAD__)
+#define SURFELAO_CLONES
+#else
 #define SURFELAO_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
 
 namespace surfelao {
 namespace {

@@ -15,6 +15,7 @@
 #include "tree/masks.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
 
@@ -34,6 +35,7 @@ constexpr int kAlone = 1;
 
 #if defined(__SANITIZE_THREAD__)
 constexpr int kPlaces[] = {kAlone};
+const tbb::global_control no_workers(tbb::global_control::max_allowed_parallelism, 1);
 #else
 constexpr int kPlaces[] = {kAlone, tbb::task_arena::automatic};
 #endif
