@@ -140,14 +140,14 @@ void main()
         vec3 c1 = triangle ? center + axis_v : center - axis_u + axis_v;
         vec3 c2 = center - axis_u - axis_v;
         vec3 c3 = triangle ? c0 : center + axis_u - axis_v;
-        vec3 n0 = cross(c0, c1);
-        vec3 n3 = triangle ? n0 : cross(c3, c0);
-        float volume = dot(n0, c2);
+        vec3 n0 = cross(c0, c1 - c0);
+        vec3 n3 = triangle ? n0 : cross(c3, c0 - c3);
+        float volume = dot(n0, c2 - c1);
         float turn   = volume < 0.0 ? -1.0 : 1.0;
         Rows inside = all_bits();
         cut(inside, turn * n0);
-        cut(inside, turn * cross(c1, c2));
-        cut(inside, turn * cross(c2, c3));
+        cut(inside, turn * cross(c1, c2 - c1));
+        cut(inside, turn * cross(c2, c3 - c2));
         cut(inside, turn * n3);
         // not where it lies wholly below the horizon or beside the face: seen edge-on, its planes are
         // rounding noise and may enclose directions anywhere

@@ -111,11 +111,12 @@ void draw(const MaskRaster& raster, float max_distance, const float* corner,
                 load(corner + (3 * i + 2) * kStride)};
     }
 
-    // planes through the receiver and each edge, turned inward
+    // planes through the receiver and each edge, turned inward; from the edges, not from pairs of
+    // corners, whose product is mere rounding where they are next to each other
     Vector16 n[kCorners];
     for (int i = 0; i < kCorners; ++i)
-        n[i] = cross(c[i], c[(i + 1) % kCorners]);
-    const Float16 volume = dot(n[0], c[2]);
+        n[i] = cross(c[i], c[(i + 1) % kCorners] - c[i]);
+    const Float16 volume = dot(n[0], c[2] - c[1]);
     const Int16 turn = sign_of(volume);
     for (int i = 0; i < kCorners; ++i)
         n[i] = {flip(n[i].x, turn), flip(n[i].y, turn), flip(n[i].z, turn)};

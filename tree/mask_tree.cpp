@@ -162,7 +162,10 @@ private:
 
     Key key_of(std::uint32_t triangle) const
     {
-        const Corners p = corners(triangle);
+        // in the scene's own axes: what is built along them is cut along them
+        const glm::uvec3 t = geometry_.triangles[triangle];
+        const Corners p{geometry_.positions[t.x], geometry_.positions[t.y],
+                        geometry_.positions[t.z]};
         const glm::vec3 center = (p.a + p.b + p.c) * (1.0f / 3.0f);
         const glm::vec3 cross = glm::cross(p.b - p.a, p.c - p.a);
         const float length = glm::length(cross);

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -102,6 +103,34 @@ TEST(MaskRaster, RectanglesAreTheirPoints)
 }
 
 // Only what is nearer than the limit: the plane's distance along the direction decides.
+/// Products of corners that are next to each other are rounding; what they enclose could be half of
+/// all directions.
+TEST(MaskRaster, SpecksAndSliversDrawNextToNothing)
+{
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> anywhere(-1.0, 1.0);
+    const auto point = [&] {
+        return glm::dvec3(anywhere(random), anywhere(random), anywhere(random));
+    };
+    const auto count = [](const std::vector<std::uint32_t>& mask) {
+        int bits = 0;
+        for (const std::uint32_t word : mask)
+            bits += std::popcount(word);
+        return bits;
+    };
+    for (int round = 0; round < 1000; ++round) {
+        const glm::dvec3 at = point();
+        EXPECT_EQ(count(drawn<4>({at, at, at, at})), 0);
+        EXPECT_EQ(count(drawn<3>({at, at, at})), 0);
+        for (const double size : {1e-3, 1e-5, 1e-6, 1e-7}) {
+            const glm::dvec3 u = size * point();
+            const glm::dvec3 v = 1e-3 * size * point();
+            EXPECT_LE(count(drawn<4>({at + u + v, at - u + v, at - u - v, at + u - v})), 4);
+            EXPECT_LE(count(drawn<3>({at + u, at + v, at - u - v})), 4);
+        }
+    }
+}
+
 TEST(MaskRaster, ALimitCutsWherePlanesAreTooFar)
 {
     std::mt19937 random(5);
