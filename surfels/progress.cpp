@@ -24,7 +24,7 @@ void ProgressMeter::add(std::uint64_t units)
         return;
     const double share = total_ > 0 ? std::min(1.0, static_cast<double>(done) / total_) : 1.0;
     reported_ = std::max(reported_, share);
-    next_report_.store(done + std::max<std::uint64_t>(1, total_ / 100), std::memory_order_relaxed);
+    next_report_.store(done + std::max<std::uint64_t>(1, total_ / 1000), std::memory_order_relaxed);
     if (!progress_(reported_)) {
         stopped_.store(true, std::memory_order_relaxed);
         throw Cancelled();

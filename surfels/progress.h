@@ -10,7 +10,7 @@
 namespace surfelao {
 
 /// Told the share of the work that is done, 0 to 1, never going back, by one thread at a time and
-/// about a hundred times per job. Returns false to stop the work. Empty = nobody is listening.
+/// up to a thousand times per job. Returns false to stop the work. Empty = nobody is listening.
 using Progress = std::function<bool(double done)>;
 
 /// Thrown out of any long function whose Progress returned false. Its results are lost, its inputs
