@@ -45,6 +45,10 @@ constexpr float kWhole = 1e-4f;
 constexpr float kSheetFlatness = 0.8f;
 constexpr float kSheetCover = 0.75f;
 
+/// A patch with gaps would be drawn as one rectangle in their midst: it is opened as if its radius
+/// were larger by this factor times what its cover lacks of a sheet's.
+constexpr float kGapPenalty = 10.0f;
+
 /// Radius and thickness are measured at the corners up to this many triangles, and bounded by the
 /// children's above.
 constexpr std::size_t kExactBounds = 32;
@@ -334,6 +338,8 @@ private:
         const float narrow = std::max(mean - deviation, 1e-12f * mean);
         const float spread_area = 12.0f * std::sqrt(wide * narrow);
 
+        const float cover = spread_area > 0.0f ? patch.area / spread_area : 1.0f;
+        node.open_radius += patch.radius * kGapPenalty * std::max(0.0f, kSheetCover - cover);
         const bool may_be_whole = flatness > 1.0f - kWhole &&
                                   std::abs(spread_area - patch.area) < 10.0f * kWhole * patch.area;
         if (may_be_whole) {
