@@ -2,20 +2,20 @@
 # From a real model to a baked file, its error and a picture: demo.sh SURFELAO MODELS OUT
 set -euo pipefail
 surfelao=$1
-model=$2/engine.glb
+model=$2/bunny.obj
 out=$3
 mkdir -p "$out"
 
 echo "1. bake: occlusion and bent normals at every vertex"
-"$surfelao" bake "$model" -o "$out/engine.glb"
+"$surfelao" bake "$model" -o "$out/bunny.ply"
 echo
 echo "2. compare: the same model by ray tracing, error at 5000 of its vertices"
-"$surfelao" compare "$model" --qualities draft,good --sample 5000 --rounds 1 -o "$out"
+"$surfelao" compare "$model" --engines masks --qualities draft,good --sample 5000 --rounds 1 -o "$out"
 echo
 echo "3. render: a picture of the visibility"
-"$surfelao" render "$model" -o "$out/engine.png"
+"$surfelao" render "$model" -o "$out/bunny.png"
 echo
 echo "written:"
-for file in engine.glb difference.ply engine.png; do
+for file in bunny.ply difference.ply bunny.png; do
     echo "  $(realpath --relative-to=. "$out/$file")"
 done
