@@ -50,6 +50,7 @@ struct WorstVertex {
 
 struct CompareRow {
     EngineSettings settings;
+    int rounds = 0;        ///< times it ran
     double build_s = 0.0;  ///< median seconds
     double solve_s = 0.0;
     double us_per_vertex = 0.0;  ///< of solving
@@ -82,7 +83,8 @@ struct Comparison {
 };
 
 /// When a candidate is more exact than the opponent's last row, one row of four times as many rays
-/// is added, so that the ratio needs no extrapolation. Throws InputError, Cancelled.
+/// is added, so that the ratio needs no extrapolation. That row runs once. Throws InputError,
+/// Cancelled.
 [[nodiscard]] Comparison compare(const CompareSettings& settings,
                                  const StageProgress& progress = {});
 
@@ -96,7 +98,8 @@ struct Comparison {
 [[nodiscard]] std::vector<CurvePoint> embree_curve(const Comparison& comparison, bool with_builds);
 
 /// Keys input, vertices, triangles, threads, rounds, reference{rays, noise, ...},
-/// rows[{engine, setting, build_s, solve_s, us_per_vertex, rmse, bias, p95, max, embree_ratio,
+/// rows[{engine, setting, rounds, build_s, solve_s, us_per_vertex, rmse, bias, p95, max,
+/// embree_ratio,
 /// ...}].
 [[nodiscard]] std::string json_of(const Comparison& comparison);
 

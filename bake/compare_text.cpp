@@ -57,6 +57,7 @@ Json json_object_of(const Comparison& comparison)
         json["rows"].push_back({{"engine", name_of(row.settings.engine)},
                                 {"setting", setting_of(row.settings)},
                                 {"settings", json_of(row.settings)},
+                                {"rounds", row.rounds},
                                 {"build_s", row.build_s},
                                 {"solve_s", row.solve_s},
                                 {"us_per_vertex", row.us_per_vertex},
@@ -118,6 +119,16 @@ std::string text_of(const std::optional<EmbreeRatio>& ratio)
     return fixed(ratio->ratio, 2) + (ratio->extrapolated ? "*" : "");
 }
 
+std::string rows_run_once(const Comparison& comparison)
+{
+    std::string text;
+    for (const CompareRow& row : comparison.rows) {
+        if (row.rounds == 1 && comparison.rounds != 1)
+            text += name_of(row.settings.engine) + ' ' + setting_of(row.settings) + " ran once\n";
+    }
+    return text;
+}
+
 std::string table_of(const Comparison& comparison)
 {
     Table table({"engine", "setting", "build s", "solve s", "us/vertex", "RMSE", "bias", "p95",
@@ -142,6 +153,7 @@ std::string table_of(const Comparison& comparison)
     if (comparison.without_normal > 0)
         text += "; " + std::to_string(comparison.without_normal) + " without a normal left out";
     text += "\n\n" + table.text();
+    text += rows_run_once(comparison);
     for (const CompareRow& row : comparison.rows) {
         if (row.solve_ratio && row.solve_ratio->extrapolated) {
             text += "* extrapolated beyond the rows of rays\n";

@@ -18,4 +18,7 @@ namespace surfelao {
 /// "4.81"; "4.81*" where extrapolated, "-" where there is none.
 [[nodiscard]] std::string text_of(const std::optional<EmbreeRatio>& ratio);
 
+/// A line per row that ran once where the others ran in every round; mostly empty.
+[[nodiscard]] std::string rows_run_once(const Comparison& comparison);
+
 }  // namespace surfelao

@@ -240,7 +240,8 @@ std::string scene_html(const FrontierScene& scene)
             (std::isfinite(definition.max_distance) ? exact(definition.max_distance) : "none") +
             (definition.falloff == Falloff::smooth ? " with smooth falloff" : "") +
             " (in diagonals).</p>\n";
-    html += plot_of(comparison) + rows_html(comparison);
+    html +=
+        plot_of(comparison) + rows_html(comparison) + "<p>" + rows_run_once(comparison) + "</p>\n";
     for (const auto& [caption, png] : scene.pictures) {
         html += "<figure><img alt=\"" + escaped(caption) + "\" src=\"data:image/png;base64," +
                 base64(png) + "\"><figcaption>" + escaped(caption) + "</figcaption></figure>\n";

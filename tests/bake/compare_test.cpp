@@ -95,9 +95,14 @@ TEST_F(Compare, AddsARowOfRaysWhereACandidateIsMoreExact)
 {
     CompareSettings settings = quick(folder_ / "in.obj");
     settings.rays = {1, 2};
+    settings.rounds = 2;
     const Comparison c = compare(settings);  // disks beat 2 rays
     ASSERT_EQ(c.rows.size(), 5u);
     EXPECT_EQ(c.rows.back().settings.rays, 8u);
+    EXPECT_EQ(c.rows.back().rounds, 1);
+    EXPECT_EQ(c.rows.front().rounds, 2);
+    EXPECT_EQ(Json::parse(json_of(c))["rows"][4]["rounds"], 1);
+    EXPECT_NE(table_of(c).find("8 rays ran once"), std::string::npos);
 }
 
 TEST_F(Compare, OpenScenesHaveNoRatioAndNoError)
@@ -117,8 +122,8 @@ TEST_F(Compare, ReportsHaveTheirKeysAndColumns)
     EXPECT_EQ(json["reference"]["rays"], 512);
     EXPECT_TRUE(json["reference"].contains("noise"));
     ASSERT_EQ(json["rows"].size(), c.rows.size());
-    for (const char* key : {"engine", "setting", "build_s", "solve_s", "us_per_vertex", "rmse",
-                            "bias", "p95", "max", "embree_ratio"})
+    for (const char* key : {"engine", "setting", "rounds", "build_s", "solve_s", "us_per_vertex",
+                            "rmse", "bias", "p95", "max", "embree_ratio"})
         EXPECT_TRUE(json["rows"][0].contains(key)) << key;
     EXPECT_TRUE(json["rows"][1]["embree_ratio"].is_null());
 
