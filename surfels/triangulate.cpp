@@ -7,7 +7,11 @@
 #include <glm/vec2.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -79,62 +83,260 @@ bool is_convex(const std::vector<glm::dvec2>& flat)
     return x_reversals <= 2;
 }
 
+constexpr std::uint32_t kNone = ~0u;
+
+/// A set of numbers that knows the next one after any place: a bit each, and above every 64 bits
+/// one that says whether any of them is set.
+class NumberSet {
+public:
+    /// All numbers below `count`.
+    explicit NumberSet(std::uint32_t count)
+    {
+        do {
+            const std::uint32_t in_last_word = count % 64;
+            count = (count + 63) / 64;
+            levels_.emplace_back(count, ~std::uint64_t{0});
+            if (in_last_word != 0)
+                levels_.back().back() >>= 64 - in_last_word;
+        } while (count > 1);
+    }
+
+    void insert(std::uint32_t number)
+    {
+        for (std::vector<std::uint64_t>& level : levels_) {
+            level[number / 64] |= std::uint64_t{1} << number % 64;
+            number /= 64;
+        }
+    }
+
+    void erase(std::uint32_t number)
+    {
+        for (std::vector<std::uint64_t>& level : levels_) {
+            level[number / 64] &= ~(std::uint64_t{1} << number % 64);
+            if (level[number / 64] != 0)
+                return;
+            number /= 64;
+        }
+    }
+
+    /// The least member that is not below `from`; kNone if there is none.
+    [[nodiscard]] std::uint32_t next(std::uint32_t from) const
+    {
+        for (std::size_t level = 0; level < levels_.size(); ++level) {
+            if (from / 64 >= levels_[level].size())
+                return kNone;
+            const std::uint64_t rest = levels_[level][from / 64] >> from % 64;
+            if (rest == 0) {
+                from = from / 64 + 1;
+                continue;
+            }
+            from += static_cast<std::uint32_t>(std::countr_zero(rest));
+            while (level > 0)
+                from = 64 * from +
+                       static_cast<std::uint32_t>(std::countr_zero(levels_[--level][from]));
+            return from;
+        }
+        return kNone;
+    }
+
+private:
+    std::vector<std::vector<std::uint64_t>> levels_;
+};
+
+/// Points in a balanced tree of bounding boxes, which shrink as points are taken out.
+class PointTree {
+public:
+    PointTree(const std::vector<glm::dvec2>& points, std::vector<std::uint32_t> members)
+        : points_(points), members_(std::move(members)), place_(points.size(), kNone)
+    {
+        while (leaf_count_ * kLeafSize < members_.size())
+            leaf_count_ *= 2;
+        sort(0, members_.size(), leaf_count_);
+        for (std::uint32_t i = 0; i < members_.size(); ++i)
+            place_[members_[i]] = i;
+        members_.resize(leaf_count_ * kLeafSize, kNone);
+        boxes_.resize(2 * leaf_count_);
+        for (std::size_t node = boxes_.size(); --node > 0;)
+            boxes_[node] = box_of(node);
+    }
+
+    [[nodiscard]] bool contains(std::uint32_t point) const { return place_[point] != kNone; }
+
+    void erase(std::uint32_t point)
+    {
+        members_[place_[point]] = kNone;
+        for (std::size_t node = leaf_count_ + place_[point] / kLeafSize; node > 0; node /= 2)
+            boxes_[node] = box_of(node);
+        place_[point] = kNone;
+    }
+
+    /// Any point inside the counterclockwise triangle, or, if `closed`, on its edges, but none at
+    /// the place of one of its corners; kNone if there is none. Takes what it costs from `budget`.
+    [[nodiscard]] std::uint32_t find_in(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, bool closed,
+                                        std::uint64_t& budget) const
+    {
+        const auto spend = [&] { budget -= budget > 0 ? 1 : 0; };
+        const auto is_in = [closed](double inside) { return closed ? inside >= 0 : inside > 0; };
+        const Box around{glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
+        const auto may_hold = [&](const Box& box) {
+            return box.low.x <= around.high.x && box.low.y <= around.high.y &&
+                   box.high.x >= around.low.x && box.high.y >= around.low.y &&
+                   is_in(most_left(a, b, box)) && is_in(most_left(b, c, box)) &&
+                   is_in(most_left(c, a, box));
+        };
+        std::size_t node = 1;
+        while (true) {
+            spend();
+            if (may_hold(boxes_[node])) {
+                if (node < leaf_count_) {
+                    node *= 2;
+                    continue;
+                }
+                for (std::size_t i = 0; i < kLeafSize; ++i) {
+                    const std::uint32_t point = members_[(node - leaf_count_) * kLeafSize + i];
+                    if (point == kNone)
+                        continue;
+                    spend();
+                    const glm::dvec2 p = points_[point];
+                    if (p != a && p != b && p != c &&
+                        is_in(std::min({turn(a, b, p), turn(b, c, p), turn(c, a, p)})))
+                        return point;
+                }
+            }
+            // to the next subtree on the right
+            while (node % 2 == 1) {
+                if (node == 1)
+                    return kNone;
+                node /= 2;
+            }
+            ++node;
+        }
+    }
+
+private:
+    static constexpr std::size_t kLeafSize = 8;
+
+    struct Box {
+        glm::dvec2 low{std::numeric_limits<double>::infinity()};
+        glm::dvec2 high{-std::numeric_limits<double>::infinity()};
+    };
+
+    /// The greatest turn(a, b, p) of any p in the box, rounding included: turn rises or falls with
+    /// each coordinate of p.
+    static double most_left(glm::dvec2 a, glm::dvec2 b, const Box& box)
+    {
+        return turn(a, b, {b.y > a.y ? box.low.x : box.high.x, b.x > a.x ? box.high.y : box.low.y});
+    }
+
+    /// Halves members_[first, last) until each leaf has its own, the first leaves full.
+    void sort(std::size_t first, std::size_t last, std::size_t leaves)
+    {
+        const std::size_t middle = first + leaves / 2 * kLeafSize;
+        if (leaves > 1 && middle < last) {
+            Box box;
+            for (std::size_t i = first; i < last; ++i)
+                grow(box, {points_[members_[i]], points_[members_[i]]});
+            const int axis = box.high.x - box.low.x > box.high.y - box.low.y ? 0 : 1;
+            const auto at = [this](std::size_t i) {
+                return members_.begin() + static_cast<std::ptrdiff_t>(i);
+            };
+            std::nth_element(at(first), at(middle), at(last),
+                             [&](auto i, auto j) { return points_[i][axis] < points_[j][axis]; });
+            sort(middle, last, leaves / 2);
+        }
+        if (leaves > 1)
+            sort(first, std::min(middle, last), leaves / 2);
+    }
+
+    static void grow(Box& box, const Box& by)
+    {
+        box = {glm::min(box.low, by.low), glm::max(box.high, by.high)};
+    }
+
+    [[nodiscard]] Box box_of(std::size_t node) const
+    {
+        Box box;
+        if (node < leaf_count_) {
+            grow(box, boxes_[2 * node]);
+            grow(box, boxes_[2 * node + 1]);
+            return box;
+        }
+        for (std::size_t i = 0; i < kLeafSize; ++i) {
+            const std::uint32_t point = members_[(node - leaf_count_) * kLeafSize + i];
+            if (point != kNone)
+                grow(box, {points_[point], points_[point]});
+        }
+        return box;
+    }
+
+    const std::vector<glm::dvec2>& points_;
+    std::vector<std::uint32_t> members_;  ///< kLeafSize a leaf; kNone where taken out
+    std::vector<std::uint32_t> place_;    ///< per point: in members_; kNone if it is not there
+    std::size_t leaf_count_ = 1;          ///< a power of two
+    std::vector<Box> boxes_;  ///< node n has the children 2 n and 2 n + 1; 1 is the root
+};
+
 /// Cuts ears off a polygon until three corners are left. All corners are indices into `flat`.
+///
+/// A refused corner is asked again only when its answer may have changed: when one of its
+/// neighbours went, or when the corner that lay in its triangle went or turns left by now.
 class EarClipper {
 public:
     explicit EarClipper(const std::vector<glm::dvec2>& flat)
         : flat_(flat),
+          count_(static_cast<std::uint32_t>(flat.size())),
           next_(flat.size()),
           previous_(flat.size()),
+          open_(count_),
+          refused_next_(2 * flat.size()),
+          refused_previous_(2 * flat.size()),
+          reflex_(flat, reflex_corners()),
           tests_left_(kEarTestsPerCorner * flat.size())
     {
-        const std::uint32_t n = static_cast<std::uint32_t>(flat.size());
-        for (std::uint32_t i = 0; i < n; ++i) {
-            next_[i] = (i + 1) % n;
-            previous_[i] = (i + n - 1) % n;
+        for (std::uint32_t i = 0; i < count_; ++i) {
+            next_[i] = (i + 1) % count_;
+            previous_[i] = (i + count_ - 1) % count_;
         }
-        sort_reflex_into_cells();
+        std::iota(refused_next_.begin(), refused_next_.end(), 0u);
+        std::iota(refused_previous_.begin(), refused_previous_.end(), 0u);
     }
 
     template <class Emit>
     void run(const Emit& emit)
     {
-        std::uint32_t left = static_cast<std::uint32_t>(flat_.size());
+        std::uint32_t left = count_;
         std::uint32_t at = 0;
-        Demand demand = Demand::ear;
-        std::uint32_t refused = 0;  // corners in a row that did not meet the demand
-        std::uint32_t cuts = 0;     // to go until the demand is an ear again
+        std::uint32_t cuts = 0;  // to go until the demand is an ear again
         while (left > 3) {
             if (tests_left_ == 0)
-                demand = Demand::nothing;
-            if (!meets(demand, at)) {
-                at = next_[at];
-                if (++refused < left)
-                    continue;
+                demand_ = Demand::nothing;
+            const std::uint32_t tip = demand_ == Demand::nothing ? at : next_open(at);
+            if (tip == kNone) {
                 // a round in vain: the polygon touches or crosses itself, or is flat. One lesser
                 // cut usually helps; many corners take a share at once, so that rounds stay few
-                demand = demand == Demand::ear ? Demand::touching_ear : Demand::nothing;
-                cuts = left / kRoundsInVain + 1;
-                refused = 0;
+                const bool touching = demand_ == Demand::ear;
+                ask_for(touching ? Demand::touching_ear : Demand::nothing, at);
+                cuts = left / (touching ? kShareOfTouching : kShareOfNothing) + 1;
                 continue;
             }
-            emit(previous_[at], at, next_[at]);
-            next_[previous_[at]] = next_[at];
-            previous_[next_[at]] = previous_[at];
-            const std::uint32_t neighbour = next_[at];
-            next_[at] = at;  // gone
+            if (!meets_demand(tip))
+                continue;
+            emit(previous_[tip], tip, next_[tip]);
+            const std::uint32_t neighbour = next_[tip];
+            cut(tip);
             // leaving the neighbour out gives fewer slivers than going around one corner
             at = tests_left_ == 0 ? neighbour : next_[neighbour];
-            refused = 0;
             --left;
-            if (demand != Demand::ear && --cuts == 0)
-                demand = Demand::ear;
+            if (demand_ != Demand::ear && --cuts == 0)
+                ask_for(Demand::ear, at);
         }
         emit(previous_[at], at, next_[at]);
     }
 
 private:
-    static constexpr std::uint32_t kRoundsInVain = 64;  ///< a bound for n ln n of them
+    // one in so many corners is cut on a lesser demand before the better one is made again
+    static constexpr std::uint32_t kShareOfTouching = 64;
+    static constexpr std::uint32_t kShareOfNothing = 8;
 
     enum class Demand {
         ear,           ///< turns left, and no other corner lies in or on the triangle
@@ -147,106 +349,106 @@ private:
         return turn(flat_[previous_[i]], flat_[i], flat_[next_[i]]);
     }
 
+    [[nodiscard]] std::vector<std::uint32_t> reflex_corners() const
+    {
+        std::vector<std::uint32_t> corners;
+        for (std::uint32_t i = 0; i < count_; ++i) {
+            const std::uint32_t before = (i + count_ - 1) % count_;
+            if (turn(flat_[before], flat_[i], flat_[(i + 1) % count_]) <= 0.0)
+                corners.push_back(i);
+        }
+        return corners;
+    }
+
+    /// The first corner from `at` on, around the polygon, that may meet the demand.
+    [[nodiscard]] std::uint32_t next_open(std::uint32_t at) const
+    {
+        const std::uint32_t tip = open_.next(at);
+        return tip == kNone ? open_.next(0) : tip;
+    }
+
+    /// A new demand opens all corners.
+    void ask_for(Demand demand, std::uint32_t at)
+    {
+        demand_ = demand;
+        std::uint32_t i = at;
+        do {
+            open_.insert(i);
+            i = next_[i];
+        } while (i != at);
+    }
+
     /// Corners that turn left cannot lie in an ear of a simple polygon unless one that turns right
-    /// does, so only reflex corners are asked; those that are gone or turn left by now are dropped.
-    bool meets(Demand demand, std::uint32_t tip)
+    /// does, so only reflex corners are asked. A tip that does not meet the demand is closed.
+    bool meets_demand(std::uint32_t tip)
     {
-        if (demand == Demand::nothing)
+        if (demand_ == Demand::nothing)
             return true;
-        spend_test();
-        const glm::dvec2 a = flat_[previous_[tip]];
-        const glm::dvec2 b = flat_[tip];
-        const glm::dvec2 c = flat_[next_[tip]];
-        const double tip_turn = turn(a, b, c);
-        const bool strict = demand == Demand::ear;
-        if (strict ? tip_turn <= 0.0 : tip_turn < 0.0)
+        tests_left_ -= tests_left_ > 0 ? 1 : 0;
+        const bool strict = demand_ == Demand::ear;
+        const double tip_turn = turn_at(tip);
+        if (strict ? tip_turn <= 0.0 : tip_turn < 0.0) {
+            open_.erase(tip);
             return false;
-        const glm::dvec2 low = glm::min(a, glm::min(b, c));
-        const glm::dvec2 high = glm::max(a, glm::max(b, c));
-        const glm::uvec2 first = cell_of(low);
-        const glm::uvec2 last = cell_of(high);
-        for (std::uint32_t y = first.y; y <= last.y; ++y) {
-            for (std::uint32_t x = first.x; x <= last.x; ++x) {
-                Cell& cell = cells_[y * cells_per_side_ + x];
-                spend_test();
-                for (std::uint32_t r = cell.begin; r < cell.end;) {
-                    spend_test();
-                    const std::uint32_t i = reflex_[r];
-                    const glm::dvec2 p = flat_[i];
-                    if (next_[i] == i || turn_at(i) > 0.0) {
-                        reflex_[r] = reflex_[--cell.end];
-                        continue;
-                    }
-                    ++r;
-                    if (p == a || p == b || p == c)
-                        continue;
-                    const double inside = std::min({turn(a, b, p), turn(b, c, p), turn(c, a, p)});
-                    if (strict ? inside >= 0.0 : inside > 0.0)
-                        return false;
-                }
-            }
         }
-        return true;
+        const std::uint32_t reason = reflex_.find_in(flat_[previous_[tip]], flat_[tip],
+                                                     flat_[next_[tip]], strict, tests_left_);
+        if (reason == kNone)
+            return true;
+        open_.erase(tip);
+        unlink(tip);
+        const std::uint32_t head = count_ + reason;
+        refused_next_[tip] = refused_next_[head];
+        refused_previous_[tip] = head;
+        refused_previous_[refused_next_[head]] = tip;
+        refused_next_[head] = tip;
+        return false;
     }
 
-    /// A square grid over the polygon with about as many cells as corners: small ears then meet few
-    /// of the reflex corners.
-    void sort_reflex_into_cells()
+    void cut(std::uint32_t tip)
     {
-        low_ = high_ = flat_[0];
-        for (const glm::dvec2 p : flat_) {
-            low_ = glm::min(low_, p);
-            high_ = glm::max(high_, p);
+        const std::uint32_t neighbours[] = {previous_[tip], next_[tip]};
+        next_[neighbours[0]] = neighbours[1];
+        previous_[neighbours[1]] = neighbours[0];
+        open_.erase(tip);
+        unlink(tip);
+        if (reflex_.contains(tip))
+            release(tip);
+        for (const std::uint32_t i : neighbours) {
+            open_.insert(i);
+            if (reflex_.contains(i) && turn_at(i) > 0.0)
+                release(i);
         }
-        cells_per_side_ =
-            static_cast<std::uint32_t>(std::sqrt(static_cast<double>(flat_.size()))) / 2 + 1;
-        cells_.resize(std::size_t{cells_per_side_} * cells_per_side_);
-        const auto cell_at = [this](std::uint32_t i) -> Cell& {
-            const glm::uvec2 cell = cell_of(flat_[i]);
-            return cells_[cell.y * cells_per_side_ + cell.x];
-        };
-        std::vector<std::uint32_t> reflex;
-        for (std::uint32_t i = 0; i < flat_.size(); ++i) {
-            if (turn_at(i) > 0.0)
-                continue;
-            reflex.push_back(i);
-            ++cell_at(i).end;
-        }
-        std::uint32_t begin = 0;
-        for (Cell& cell : cells_) {
-            const std::uint32_t count = cell.end;
-            cell = {begin, begin};
-            begin += count;
-        }
-        reflex_.resize(reflex.size());
-        for (const std::uint32_t i : reflex)
-            reflex_[cell_at(i).end++] = i;
     }
 
-    /// Rises with either coordinate, so the corners of a box bound the cells of what lies in it.
-    [[nodiscard]] glm::uvec2 cell_of(glm::dvec2 p) const
+    /// `reason` is no longer in anyone's way.
+    void release(std::uint32_t reason)
     {
-        const auto along = [this](double at, double low, double high) {
-            const double cell = high > low ? (at - low) / (high - low) * cells_per_side_ : 0.0;
-            return std::min(static_cast<std::uint32_t>(cell), cells_per_side_ - 1);
-        };
-        return {along(p.x, low_.x, high_.x), along(p.y, low_.y, high_.y)};
+        reflex_.erase(reason);
+        const std::uint32_t head = count_ + reason;
+        while (refused_next_[head] != head) {
+            open_.insert(refused_next_[head]);
+            unlink(refused_next_[head]);
+        }
     }
 
-    void spend_test() { tests_left_ -= tests_left_ > 0 ? 1 : 0; }
+    void unlink(std::uint32_t tip)
+    {
+        refused_next_[refused_previous_[tip]] = refused_next_[tip];
+        refused_previous_[refused_next_[tip]] = refused_previous_[tip];
+        refused_next_[tip] = refused_previous_[tip] = tip;
+    }
 
     const std::vector<glm::dvec2>& flat_;
-    std::vector<std::uint32_t> next_;  ///< itself where the corner is gone
+    const std::uint32_t count_;
+    std::vector<std::uint32_t> next_;
     std::vector<std::uint32_t> previous_;
-    struct Cell {
-        std::uint32_t begin = 0;  ///< into reflex_
-        std::uint32_t end = 0;
-    };
-    std::vector<Cell> cells_;
-    std::vector<std::uint32_t> reflex_;  ///< cell by cell; those found convex or gone are dropped
-    glm::dvec2 low_{0.0};
-    glm::dvec2 high_{0.0};
-    std::uint32_t cells_per_side_ = 1;
+    Demand demand_ = Demand::ear;
+    NumberSet open_;  ///< corners that may meet the demand
+    /// Rings of the corners that are refused for the same reason; entry count_ + reason heads it.
+    std::vector<std::uint32_t> refused_next_;
+    std::vector<std::uint32_t> refused_previous_;
+    PointTree reflex_;  ///< corners that did not turn left at first, and did not since
     std::uint64_t tests_left_;
 };
 
