@@ -4,6 +4,7 @@
 #include "bake/timing.h"
 #include "gpu/context.h"
 #include "gpu/gpu_disks.h"
+#include "gpu/gpu_masks.h"
 #include "reference/rays.h"
 #include "reference/smoothing.h"
 #include "surfels/errors.h"
@@ -77,6 +78,7 @@ EngineResult run_disks(const Geometry& geometry, std::span<const Receiver> recei
 EngineResult run_masks(const Geometry& geometry, std::span<const Receiver> receivers,
                        const EngineSettings& settings, const Progress& progress)
 {
+    const GlContext* gpu = settings.device == Device::gpu ? &gpu_context() : nullptr;
     EngineResult result;
     MaskOptions options;
     options.definition = settings.definition;
@@ -90,7 +92,8 @@ EngineResult run_masks(const Geometry& geometry, std::span<const Receiver> recei
     Stopwatch watch;
     const std::shared_ptr<const MaskTree> tree = build_mask_tree(geometry);
     result.tree_s = watch.lap();
-    result.occlusion = solve_masks(*tree, receivers, options, progress);
+    result.occlusion = gpu != nullptr ? solve_masks_gpu(*gpu, *tree, receivers, options, progress)
+                                      : solve_masks(*tree, receivers, options, progress);
     result.solve_s = watch.lap();
     return result;
 }
@@ -174,7 +177,7 @@ bool knows_kernel(Engine engine, Kernel kernel)
 
 bool runs_on(Engine engine, Device device)
 {
-    return device == Device::cpu || engine == Engine::disks;
+    return device == Device::cpu || engine != Engine::rays;
 }
 
 std::string setting_of(const EngineSettings& settings)

@@ -39,7 +39,7 @@ enum class Instructions {
 
 struct EngineSettings {
     Engine engine = Engine::masks;
-    Device device = Device::cpu;  ///< gpu: disks only
+    Device device = Device::cpu;  ///< gpu: masks and disks
     Definition definition = {};
     float quality = kGood;     ///< masks, disks: 0 to most_quality
     int passes = 2;            ///< disks: >= 1 (tree/disks.h)

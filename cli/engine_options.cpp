@@ -42,14 +42,14 @@ void add_engine_options(CLI::App& command, EngineOptions& options)
         ->group("Engine");
     command
         .add_option("--device", options.device,
-                    "Where --engine disks runs; gpu: OpenGL, no window needed")
+                    "Where masks and disks run; gpu: OpenGL, no window needed")
         ->check(CLI::IsMember({"cpu", "gpu"}))
         ->type_name("cpu|gpu")
         ->default_str("cpu")
         ->group("Engine");
     command
         .add_option("--quality", options.quality,
-                    "Exactness against time, for --engine disks: draft, good, best, or a number "
+                    "Exactness against time, for masks and disks: draft, good, best, or a number "
                     "(0 = draft, 1 = good, 2 = best)")
         ->type_name("draft|good|best|Q")
         ->default_str("good")
@@ -123,7 +123,7 @@ Device device_of(const std::string& name)
 
 void check_device(Engine engine, Device device)
 {
-    refuse_unless(runs_on(engine, device), "--device gpu", "disks");
+    refuse_unless(runs_on(engine, device), "--device gpu", "masks or disks");
 }
 
 float quality_of(const std::string& text, Engine engine)

@@ -4,6 +4,7 @@
 #include "gpu/receiver_grid.h"
 #include "gpu/rows.h"
 #include "tree/mask_kernel.h"
+#include "tree/mask_limits.h"
 #include "tree/mask_raster.h"
 #include "tree/mask_tree.h"
 #include "tree/receiver_group.h"
@@ -12,21 +13,28 @@
 #include <glm/mat3x3.hpp>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <cstdint>
-#include <stdexcept>
+#include <limits>
+#include <string>
+#include <utility>
 
 namespace surfelao {
 namespace {
 
-/// Groups that are computed together: their masks take 4.5 MB in each of two targets.
-constexpr std::size_t kBatchGroups = 4096;
+/// Groups that are computed together: their masks take 71 MB, the sums 17 MB.
+constexpr std::size_t kBatchGroups = 16384;
 
 /// Nodes that a receiver looks at in one draw; see disks_gather.frag.
 constexpr int kStepLimit = 8192;
 
-/// The tree in preorder, links replaced by the node after the subtree; open_radius -0 tells a
-/// triangle from an exact rectangle.
+/// What one walk draws: rows 0 to 7 or 8 to 15 of a face. A whole face and what of it clusters have
+/// set would be more outputs than a device must have.
+constexpr int kHalves = 2;
+constexpr std::array<const char*, 4> kHalfOutputs = {"words0", "words1", "loose0", "loose1"};
+
+/// The tree in preorder, links replaced by the node after the subtree, kMaskSheet kept; open_radius
+/// -0 tells a triangle from an exact rectangle.
 std::vector<MaskNode> in_preorder(const MaskTree& tree)
 {
     std::vector<MaskNode> nodes;
@@ -43,7 +51,8 @@ std::vector<MaskNode> in_preorder(const MaskTree& tree)
         const Visit visit = stack.back();
         stack.pop_back();
         if (visit.done) {
-            nodes[visit.written].links = static_cast<std::uint32_t>(nodes.size());
+            std::uint32_t& links = nodes[visit.written].links;
+            links = (links & kMaskSheet) | static_cast<std::uint32_t>(nodes.size());
             continue;
         }
         const auto written = static_cast<std::uint32_t>(nodes.size());
@@ -93,56 +102,84 @@ public:
     {
     }
 
-    std::vector<Occlusion> solve(std::span<const Receiver> receivers, const Progress& progress)
+    std::vector<Occlusion> solve(std::span<const Receiver> receivers, std::span<const float> limits,
+                                 const Progress& progress)
     {
         const std::vector<Receiver> turned = in_mask_frame(receivers);
         const std::vector<ReceiverGroup> groups = group_receivers(turned);
-        ProgressMeter meter(progress, groups.size() * kMaskFaces);
-        std::vector<Occlusion> result(receivers.size());
+        ProgressMeter meter(progress, groups.size() * limits.size() * kMaskFaces * kHalves);
+        std::vector<glm::vec4> sums(receivers.size());
         for (std::size_t first = 0; first < groups.size(); first += kBatchGroups) {
             const auto batch =
                 std::span(groups).subspan(first, std::min(kBatchGroups, groups.size() - first));
-            const std::vector<glm::vec4> values = solve_batch(batch, meter);
-            for (std::size_t slot = 0; slot < batch.size() * kGroupSize; ++slot) {
-                const ReceiverGroup& group = batch[slot / kGroupSize];
-                if (slot % kGroupSize >= group.count)
-                    continue;
-                const std::uint32_t receiver = group.receiver[slot % kGroupSize];
-                // a row vector times a rotation: turned back
-                const glm::vec3 bent = glm::vec3(values[slot]) * kMaskFrame;
-                result[receiver] = {values[slot].w,
-                                    bent_normal_of(bent, receivers[receiver].normal)};
+            Batch work(context_, batch);
+            for (const float limit : limits) {
+                const std::vector<glm::vec4> values = solve_batch(work, limit, meter);
+                for (std::size_t slot = 0; slot < batch.size() * kGroupSize; ++slot) {
+                    const ReceiverGroup& group = batch[slot / kGroupSize];
+                    if (slot % kGroupSize < group.count)
+                        sums[group.receiver[slot % kGroupSize]] += values[slot];
+                }
             }
+        }
+        std::vector<Occlusion> result;
+        result.reserve(receivers.size());
+        for (std::size_t i = 0; i < receivers.size(); ++i) {
+            // a row vector times a rotation: turned back
+            const glm::vec3 bent = glm::vec3(sums[i]) * kMaskFrame;
+            result.push_back({sums[i].w / static_cast<float>(limits.size()),
+                              bent_normal_of(bent, receivers[i].normal)});
         }
         return result;
     }
 
 private:
+    /// What all walks of one batch use.
+    struct Batch {
+        Batch(const GlContext& context, std::span<const ReceiverGroup> groups)
+            : group_texels(upload_groups(context, groups)),
+              halves{ReceiverGrid(context, groups, half_values()),
+                     ReceiverGrid(context, groups, half_values())},
+              sums(context, {.width = halves[0].rect().width,
+                             .height = halves[0].rect().height,
+                             .colors = std::vector<TexelFormat>(4, TexelFormat::rgba32f)}),
+              rows(make_rows(context, groups.size() * kGroupSize, {TexelFormat::rgba32f}))
+        {
+        }
+
+        static std::vector<GridValue> half_values()
+        {
+            std::vector<GridValue> values;
+            for (const char* output : kHalfOutputs)
+                values.push_back({std::string("u_") + output, TexelFormat::rgba32ui});
+            return values;
+        }
+
+        TextureBuffer group_texels;
+        std::array<ReceiverGrid, kHalves> halves;
+        Framebuffer sums;  ///< shares; bent normals as drawn, filled, closed
+        Framebuffer rows;  ///< the answers
+    };
+
     /// Per slot: bent normal of any length in the mask frame, occlusion.
-    std::vector<glm::vec4> solve_batch(std::span<const ReceiverGroup> groups, ProgressMeter& meter)
+    std::vector<glm::vec4> solve_batch(Batch& batch, float limit, ProgressMeter& meter)
     {
-        std::vector<GridValue> words;
-        for (const char* sampler : {"u_words0", "u_words1", "u_words2", "u_words3"})
-            words.push_back({sampler, TexelFormat::rgba32ui});
-        ReceiverGrid grid(context_, groups, words);
-        const TextureBuffer group_texels = upload_groups(context_, groups);
-        const Framebuffer sums(context_,
-                               {.width = grid.rect().width,
-                                .height = grid.rect().height,
-                                .colors = std::vector<TexelFormat>(2, TexelFormat::rgba32f)});
-        for (std::size_t i = 0; i < 2; ++i)
-            sums.clear_color(glm::vec4(0.0f), i);
+        const ReceiverGrid& grid = batch.halves[0];
+        for (std::size_t i = 0; i < 4; ++i)
+            batch.sums.clear_color(glm::vec4(0.0f), i);
 
         Program& walk = context_.program("fullscreen.vert", "masks_walk.frag");
         walk.set("u_nodes", nodes_);
         walk.set("u_node_count", static_cast<int>(node_count_));
-        walk.set("u_groups", group_texels);
+        walk.set("u_groups", batch.group_texels);
         walk.set("u_share", settings_.share_leaf);
         walk.set("u_cluster", settings_.cluster);
         walk.set("u_cluster_limit", settings_.cluster_limit);
+        walk.set("u_max_distance", std::min(limit, std::numeric_limits<float>::max()));
         walk.set("u_exact_radius", settings_.exact_radius > 0.0f ? 0.0f : -1.0f);
         walk.set("u_step_limit", kStepLimit);
         Program& worth = context_.program("fullscreen.vert", "masks_face.frag");
+        worth.set("u_fill", settings_.fill ? 1 : 0);
         worth.set("u_first", first_);
         worth.set("u_second", second_);
         worth.set("u_receivers", grid.receivers());
@@ -151,23 +188,29 @@ private:
         for (int face = 0; face < kMaskFaces; ++face) {
             walk.set("u_face", axes_of_face(face));
             worth.set("u_face", axes_of_face(face));
-            grid.compute(
-                walk, static_cast<std::uint32_t>(node_count_), meter, [&](const Rect& piece) {
-                    for (std::size_t i = 0; i < words.size(); ++i)
-                        worth.set(words[i].sampler, grid.value(i));
-                    draw_fullscreen(sums, worth, empty_, {.blend = Blend::add, .scissor = piece});
-                });
+            walk.set("u_half", 0);
+            batch.halves[0].compute(walk, static_cast<std::uint32_t>(node_count_), meter);
+            walk.set("u_half", 1);
+            batch.halves[1].compute(walk, static_cast<std::uint32_t>(node_count_), meter,
+                                    [&](const Rect& piece) {
+                                        for (std::size_t i = 0; i < kHalfOutputs.size(); ++i) {
+                                            const std::string output = kHalfOutputs[i];
+                                            worth.set("u_low_" + output, batch.halves[0].value(i));
+                                            worth.set("u_high_" + output, batch.halves[1].value(i));
+                                        }
+                                        draw_fullscreen(batch.sums, worth, empty_,
+                                                        {.blend = Blend::add, .scissor = piece});
+                                    });
         }
 
         Program& answer = context_.program("fullscreen.vert", "masks_result.frag");
-        answer.set("u_share", sums.color(0));
-        answer.set("u_bent", sums.color(1));
+        const char* const inputs[] = {"u_share", "u_bent", "u_bent_filled", "u_bent_closed"};
+        for (std::size_t i = 0; i < std::size(inputs); ++i)
+            answer.set(inputs[i], batch.sums.color(i));
         answer.set("u_slot_count", grid.slot_count());
         answer.set("u_blocks_per_row", grid.blocks_per_row());
-        const Framebuffer rows =
-            make_rows(context_, groups.size() * kGroupSize, {TexelFormat::rgba32f});
-        draw_fullscreen(rows, answer, empty_);
-        return rows.read_color(rows.rect());
+        draw_fullscreen(batch.rows, answer, empty_);
+        return batch.rows.read_color(batch.rows.rect());
     }
 
     const GlContext& context_;
@@ -184,9 +227,8 @@ std::vector<Occlusion> solve_masks_gpu(const GlContext& context, const MaskTree&
                                        std::span<const Receiver> receivers,
                                        const MaskOptions& options, const Progress& progress)
 {
-    if (std::isfinite(options.definition.max_distance))
-        throw std::invalid_argument("masks on the GPU know no distance limit");
-    return Solver(context, tree, options).solve(receivers, progress);
+    return Solver(context, tree, options)
+        .solve(receivers, distance_limits(options.definition), progress);
 }
 
 }  // namespace surfelao

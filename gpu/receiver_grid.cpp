@@ -117,12 +117,13 @@ void ReceiverGrid::compute(Program& program, std::uint32_t end, ProgressMeter& m
 
     const std::uint64_t row = static_cast<std::uint64_t>(blocks_per_row_);
     const std::uint64_t block_count = divide_up(group_count_, kBlockGroups);
-    double wanted = 1.0;  // blocks in the next piece
     for (std::uint64_t first = 0; first < block_count;) {
         // whole rows where a piece begins with a row and is at least that long, else part of a row
         const std::uint64_t column = first % row;
-        const std::uint64_t blocks = static_cast<std::uint64_t>(wanted);
-        const std::uint64_t rows = column == 0 ? std::max<std::uint64_t>(1, blocks / row) : 1;
+        const std::uint64_t blocks = static_cast<std::uint64_t>(wanted_);
+        const std::uint64_t rows_left = divide_up(block_count - first, row);
+        const std::uint64_t rows =
+            column == 0 ? std::clamp<std::uint64_t>(blocks / row, 1, rows_left) : 1;
         const std::uint64_t columns = rows > 1 ? row : std::min(blocks, row - column);
         const Rect piece = {
             static_cast<int>(column) * kBlockSide, static_cast<int>(first / row) * kBlockSide,
@@ -138,7 +139,7 @@ void ReceiverGrid::compute(Program& program, std::uint32_t end, ProgressMeter& m
         meter.add(std::min(next * kBlockGroups, group_count_) - first * kBlockGroups);
         first = next;
         const double growth = kPieceSeconds / std::max(seconds.count(), 1e-6);
-        wanted = std::clamp(wanted * std::min(growth, kMaxGrowth), 1.0, 1e9);
+        wanted_ = std::clamp(wanted_ * std::min(growth, kMaxGrowth), 1.0, 1e9);
     }
 }
 

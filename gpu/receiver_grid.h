@@ -74,6 +74,7 @@ private:
     std::vector<GridValue> values_;
     VertexArray empty_;
     std::array<Framebuffer, 2> targets_;  ///< values and place in the list; by turns
+    double wanted_ = 1.0;                 ///< blocks in the next piece
 };
 
 }  // namespace surfelao

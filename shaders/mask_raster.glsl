@@ -2,7 +2,7 @@
 //
 // All is said in the face's own axes, in which it is always the +x face: (x, y, z) = (axis, U, V) of
 // tree/mask_raster.h, the axis turned round for the three backward faces. Sixteen words, one a row,
-// as four uvec4: row 4 q + i is component i of element q.
+// as four uvec4, the quarters of a face: row 4 q + i is component i of quarter q.
 //
 // CPU twin   tree/mask_raster.cpp (the same numbers to the last bit), tree/mask_kernel_body.h
 const vec4 kRowV[4] = vec4[4](
@@ -17,10 +17,6 @@ const vec4 kRowShift[4] = vec4[4](
     vec4(0.416407853, 0.0344418548, 0.652475834, 0.270509839));
 const float kTinyComponent = 1e-30;
 
-struct Rows {
-    uvec4 words[4];
-};
-
 // The bits from ceil(t) up.
 uvec4 bits_from(vec4 t)
 {
@@ -28,20 +24,42 @@ uvec4 bits_from(vec4 t)
     return (uvec4(0xFFFFFFFFu) << uvec4(first & 31)) * uvec4(lessThan(first, ivec4(32)));
 }
 
-// Keeps the bits with n.d >= 0.
-void cut(inout Rows rows, vec3 n)
+// The half-space n.d >= 0, as the bits of a row from slope v + start - shift up, or those below.
+struct Side {
+    float slope, start;
+    uint below;  // all ones where the bits below are meant
+};
+
+Side side_of(vec3 n)
 {
     bool  turned = n.y < 0.0;
     float scale  = (turned ? 16.0 : -16.0) / max(abs(n.y), kTinyComponent);
-    float slope  = n.z * scale;
-    float start  = n.x * scale + 16.0;
-    uvec4 below  = uvec4(turned ? 0xFFFFFFFFu : 0u);
-    for (int q = 0; q < 4; ++q)
-        rows.words[q] &= bits_from(slope * kRowV[q] + start - kRowShift[q]) ^ below;
+    return Side(n.z * scale, n.x * scale + 16.0, turned ? 0xFFFFFFFFu : 0u);
 }
 
-Rows all_bits()
+// The bits of quarter q on that side.
+uvec4 bits_of(Side side, int q)
 {
-    return Rows(uvec4[4](uvec4(0xFFFFFFFFu), uvec4(0xFFFFFFFFu), uvec4(0xFFFFFFFFu),
-                         uvec4(0xFFFFFFFFu)));
+    return bits_from(side.slope * kRowV[q] + side.start - kRowShift[q]) ^ uvec4(side.below);
+}
+
+// The bits of quarter q whose rays meet a plane within the limit: n.d >= k |d| for the plane's
+// normal n, k = its distance / limit, 0 <= k < 1 (cone_bits in tree/mask_kernel_body.h says why).
+uvec4 cone_bits(vec3 n, float k, int q)
+{
+    const float kFlat = 1e-7;
+    float a = n.y * n.y - k * k;
+    a       = abs(a) < kFlat ? (a < 0.0 ? -kFlat : kFlat) : a;
+    vec4  v     = kRowV[q];
+    vec4  p     = n.z * v + n.x;
+    vec4  root2 = p * p + (v * v + 1.0) * a;
+    vec4  root  = sqrt(max(root2, 0.0)) * k;
+    vec4  b     = p * n.y;
+    float scale = 16.0 / a;
+    uvec4 first  = bits_from((root - b) * scale - kRowShift[q] + 16.0);
+    uvec4 second = bits_from((-root - b) * scale - kRowShift[q] + 16.0);
+    if (a > 0.0)
+        return n.y > 0.0 ? first : ~second;
+    return first & ~second & (uvec4(greaterThan(root2, vec4(0.0))) * 0xFFFFFFFFu) &
+           (uvec4(greaterThan(p, vec4(0.0))) * 0xFFFFFFFFu);
 }

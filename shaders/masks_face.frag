@@ -1,23 +1,35 @@
 #version 330 core
 #include "mask_raster.glsl"
 #include "receiver_grid.glsl"
-// masks_face.frag: what one face of each mask is worth, added to the other faces by blending.
+// masks_face.frag: what one face of each mask is worth: as drawn, with cracks of one bit filled, and
+// with those of two bits closed too; added to the other faces by blending.
 //
 // Vertices   fullscreen.vert
 // Drawn by   gpu/gpu_masks.cpp, after masks_walk.frag
-// Reads      u_words0, u_words1, u_words2, u_words3  the mask's rows (masks_walk.frag)
+// Reads      u_low_words0, u_low_words1, u_low_loose0, u_low_loose1
+//                              outputs of masks_walk.frag for half 0: rows, and what clusters have set
+//            u_high_words0, u_high_words1, u_high_loose0, u_high_loose1
+//                              the same for half 1
+//            u_fill            0: as drawn is all there is
 //            u_first           RGBA32UI holding ints: MaskRaster::sum1 of tree/mask_raster.h
 //            u_second          the same: MaskRaster::sum2, 2 texels an entry
 //            u_receivers       RGBA32F, 2 texels a slot, mask frame: position.xyz 0 | normal.xyz 0
 //            u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
 //            u_face            from the mask frame to the face's axes
-// Writes     out_share         RGBA32F: integral of n.w over the hemisphere, over the open bits, 0 0
-//            out_bent          integral of w (n.w) over the open bits, mask frame, 0
-// CPU twin   sum_bits, horizon, solve in tree/mask_kernel_body.h
-uniform usampler2D u_words0;
-uniform usampler2D u_words1;
-uniform usampler2D u_words2;
-uniform usampler2D u_words3;
+// Writes     out_share         RGBA32F: integral of n.w over the hemisphere, over the open bits, over
+//                              those left open by filling, over those left open by closing
+//            out_bent, out_bent_filled, out_bent_closed
+//                              RGBA32F: integral of w (n.w) over the same bits, mask frame, 0
+// CPU twin   sum_bits, horizon, fill, close in tree/mask_kernel_body.h
+uniform usampler2D u_low_words0;
+uniform usampler2D u_low_words1;
+uniform usampler2D u_low_loose0;
+uniform usampler2D u_low_loose1;
+uniform usampler2D u_high_words0;
+uniform usampler2D u_high_words1;
+uniform usampler2D u_high_loose0;
+uniform usampler2D u_high_loose1;
+uniform int u_fill;
 uniform usamplerBuffer u_first;
 uniform usamplerBuffer u_second;
 uniform samplerBuffer u_receivers;
@@ -27,39 +39,133 @@ uniform mat3 u_face;
 
 layout(location = 0) out vec4 out_share;
 layout(location = 1) out vec4 out_bent;
+layout(location = 2) out vec4 out_bent_filled;
+layout(location = 3) out vec4 out_bent_closed;
 
-// Times w (n.w), from the products of the coordinates in the face's axes.
-vec3 bent_of(uint entry, vec3 n)
+// Sums over the bits of a face, as integers: they do not depend on the order.
+struct Sums {
+    ivec3 first;
+    ivec4 second;  // xx xy xz yy
+    ivec2 rest;    // yz zz
+};
+
+void add(inout Sums sums, int y, uint bits)
 {
-    vec4 a = vec4(ivec4(texelFetch(u_second, int(entry) * 2)));      // xx xy xz yy
-    vec4 b = vec4(ivec4(texelFetch(u_second, int(entry) * 2 + 1)));  // yz zz
-    return vec3(dot(a.xyz, n), dot(vec3(a.y, a.w, b.x), n), dot(vec3(a.z, b.x, b.y), n));
+    if (bits == 0u)
+        return;
+    for (int k = 0; k < 8; ++k) {
+        int entry = (y * 8 + k) * 16 + int((bits >> (4 * k)) & 15u);
+        sums.first += ivec3(texelFetch(u_first, entry).xyz);
+        sums.second += ivec4(texelFetch(u_second, entry * 2));
+        sums.rest += ivec2(texelFetch(u_second, entry * 2 + 1).xy);
+    }
+}
+
+float along(Sums sums, vec3 n) { return dot(vec3(sums.first), n); }
+
+vec4 bent(Sums sums, vec3 n)
+{
+    vec4 a = vec4(sums.second);
+    vec2 b = vec2(sums.rest);
+    vec3 turned = vec3(dot(a.xyz, n), dot(vec3(a.y, a.w, b.x), n), dot(vec3(a.z, b.x, b.y), n));
+    return vec4(turned * u_face, 0.0);
+}
+
+float shift_of(int y) { return kRowShift[y >> 2][y & 3]; }
+
+// The bits of a neighbouring row that are not right beside those of row y but next to it.
+uint beside(uint row, int neighbour, int y)
+{
+    return shift_of(clamp(neighbour, 0, 15)) > shift_of(y) ? row << 1 : row >> 1;
+}
+
+// Row y of a face, grown by one bit across the rows.
+uint grown_across(uint rows[18], int y)
+{
+    uint low  = rows[y];
+    uint high = rows[y + 2];
+    return rows[y + 1] | low | beside(low, y - 1, y) | high | beside(high, y + 1, y);
 }
 
 void main()
 {
-    out_share = out_bent = vec4(0.0);
+    out_share = out_bent = out_bent_filled = out_bent_closed = vec4(0.0);
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     int   slot  = slot_at_pixel(pixel, u_blocks_per_row);
     if (slot >= u_slot_count)
         return;
-    vec3 n = u_face * texelFetch(u_receivers, slot * 2 + 1).xyz;
-    Rows above = all_bits();
-    cut(above, n);
-    uvec4 words[4] = uvec4[4](texelFetch(u_words0, pixel, 0), texelFetch(u_words1, pixel, 0),
-                              texelFetch(u_words2, pixel, 0), texelFetch(u_words3, pixel, 0));
+    vec3  n = u_face * texelFetch(u_receivers, slot * 2 + 1).xyz;
+    uvec4 drawn[4] = uvec4[4](texelFetch(u_low_words0, pixel, 0), texelFetch(u_low_words1, pixel, 0),
+                              texelFetch(u_high_words0, pixel, 0),
+                              texelFetch(u_high_words1, pixel, 0));
+    uvec4 clusters[4] = uvec4[4](
+        texelFetch(u_low_loose0, pixel, 0), texelFetch(u_low_loose1, pixel, 0),
+        texelFetch(u_high_loose0, pixel, 0), texelFetch(u_high_loose1, pixel, 0));
 
-    for (int y = 0; y < 16; ++y) {
-        uint hemisphere = above.words[y >> 2][y & 3];
-        uint open_row   = hemisphere & ~words[y >> 2][y & 3];
-        for (int k = 0; k < 8; ++k) {
-            uint base  = uint(y * 8 + k) * 16u;
-            uint whole = base + ((hemisphere >> (4 * k)) & 15u);
-            uint open  = base + ((open_row >> (4 * k)) & 15u);
-            out_share.x += dot(vec3(ivec3(texelFetch(u_first, int(whole)).xyz)), n);
-            out_share.y += dot(vec3(ivec3(texelFetch(u_first, int(open)).xyz)), n);
-            out_bent.xyz += bent_of(open, n);
+    // rows with an empty one before the first and behind the last; what lies below the horizon is no
+    // opening
+    uint closed[18], loose[18], above[18];
+    closed[0] = loose[0] = closed[17] = loose[17] = above[0] = above[17] = 0u;
+    Side horizon = side_of(n);
+    for (int q = 0; q < 4; ++q) {
+        uvec4 hemisphere = bits_of(horizon, q);
+        for (int i = 0; i < 4; ++i) {
+            above[1 + 4 * q + i]  = hemisphere[i];
+            closed[1 + 4 * q + i] = drawn[q][i] | ~hemisphere[i];
+            loose[1 + 4 * q + i]  = clusters[q][i];
         }
     }
-    out_bent.xyz = out_bent.xyz * u_face;
+    Sums whole = Sums(ivec3(0), ivec4(0), ivec2(0));
+    Sums open  = whole;  // of the first, only `first` is of use
+    for (int y = 0; y < 16; ++y) {
+        add(whole, y, above[1 + y]);
+        add(open, y, ~closed[1 + y]);
+    }
+    out_share = vec4(along(whole, n), vec3(along(open, n)));
+    out_bent = out_bent_filled = out_bent_closed = bent(open, n);
+    if (u_fill == 0)
+        return;
+
+    // cracks of one bit: neighbours on both sides are set, and a cluster has set one of them
+    uint filled[18];
+    filled[0] = filled[17] = 0u;
+    for (int y = 0; y < 16; ++y) {
+        uint m    = closed[1 + y];
+        uint l    = loose[1 + y];
+        uint low  = closed[y];
+        uint high = closed[2 + y];
+        uint sides   = (m << 1) & (m >> 1) & ((l << 1) | (l >> 1));
+        uint stacked = low & beside(low, y - 1, y) & high & beside(high, y + 1, y);
+        uint near    = loose[y] | beside(loose[y], y - 1, y) | loose[2 + y] |
+                    beside(loose[2 + y], y + 1, y);
+        filled[1 + y] = m | sides | (stacked & near);
+    }
+    // cracks of two bits: grown by one bit along the rows, then across them, and shrunk again, where
+    // a cluster has set a bit nearby
+    uint grown[18], wide_loose[18];
+    grown[0] = grown[17] = wide_loose[0] = wide_loose[17] = 0u;
+    for (int y = 0; y < 16; ++y) {
+        uint l            = loose[1 + y];
+        grown[1 + y]      = grown_across(filled, y);
+        wide_loose[1 + y] = l | (l << 1) | (l >> 1);
+    }
+    Sums filling = Sums(ivec3(0), ivec4(0), ivec2(0));
+    Sums closing = filling;
+    for (int y = 0; y < 16; ++y) {
+        uint m       = filled[1 + y];
+        uint wide    = m | (m << 1) | (m >> 1);
+        uint rows    = wide & (wide << 1) & (wide >> 1);
+        uint low     = grown[y];
+        uint high    = grown[2 + y];
+        uint columns = grown[1 + y] & low & beside(low, y - 1, y) & high & beside(high, y + 1, y);
+        add(filling, y, m & ~closed[1 + y]);
+        add(closing, y, (rows | columns) & grown_across(wide_loose, y) & ~m);
+    }
+    Sums left     = Sums(open.first - filling.first, open.second - filling.second,
+                         open.rest - filling.rest);
+    out_share.z     = along(left, n);
+    out_bent_filled = bent(left, n);
+    left = Sums(left.first - closing.first, left.second - closing.second, left.rest - closing.rest);
+    out_share.w     = along(left, n);
+    out_bent_closed = bent(left, n);
 }

@@ -1,21 +1,30 @@
 #version 330 core
 #include "receiver_grid.glsl"
 #include "rows.glsl"
-// masks_result.frag: occlusion and bent normal of each slot from the sums over all faces.
+// masks_result.frag: occlusion and bent normal of each slot from the sums over all faces. Where much
+// is covered cracks count as filled, by degrees; where nearly all is, those of two bits too.
 //
 // Vertices   fullscreen.vert, over rows of slots (rows.glsl)
 // Drawn by   gpu/gpu_masks.cpp
-// Reads      u_share, u_bent   outputs of masks_face.frag, summed over the faces
+// Reads      u_share, u_bent, u_bent_filled, u_bent_closed
+//                              outputs of masks_face.frag, summed over the faces
 //            u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
 // Writes     out_result      RGBA32F: bent normal, mask frame, any length, zero where all is closed |
 //                            occlusion (surfels/occlusion.h)
 // CPU twin   solve in tree/mask_kernel_body.h
 uniform sampler2D u_share;
 uniform sampler2D u_bent;
+uniform sampler2D u_bent_filled;
+uniform sampler2D u_bent_closed;
 uniform int u_slot_count;
 uniform int u_blocks_per_row;
 
 out vec4 out_result;
+
+const float kFillFrom   = 0.4;
+const float kFillRange  = 0.5;
+const float kCloseFrom  = 0.9;
+const float kCloseRange = 0.06;
 
 void main()
 {
@@ -24,7 +33,20 @@ void main()
     if (slot >= u_slot_count)
         return;
     ivec2 pixel = pixel_of_slot(slot, u_blocks_per_row);
-    vec3  share = texelFetch(u_share, pixel, 0).xyz;
+    vec4  share = texelFetch(u_share, pixel, 0);
+    vec3  shares = share.yzw / share.x;
+    float openness = shares.x;
     out_result.xyz = texelFetch(u_bent, pixel, 0).xyz;
-    out_result.w   = 1.0 - clamp(share.y / share.x, 0.0, 1.0);
+
+    float fill = (1.0 - openness - kFillFrom) / kFillRange;
+    if (fill > 0.0 && openness > 0.0) {
+        openness += min(fill, 1.0) * (shares.y - openness);
+        out_result.xyz = texelFetch(u_bent_filled, pixel, 0).xyz;
+        float close = (1.0 - openness - kCloseFrom) / kCloseRange;
+        if (close > 0.0 && openness > 0.0) {
+            openness += min(close, 1.0) * (shares.z - openness);
+            out_result.xyz = texelFetch(u_bent_closed, pixel, 0).xyz;
+        }
+    }
+    out_result.w = 1.0 - clamp(openness, 0.0, 1.0);
 }

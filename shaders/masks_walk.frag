@@ -1,25 +1,28 @@
 #version 330 core
 #include "mask_raster.glsl"
 #include "receiver_grid.glsl"
-// masks_walk.frag: one fragment is one face of one receiver's mask; it walks the tree and draws what
-// stands before that face. Takes a bounded number of steps, for the next draw to go on.
+// masks_walk.frag: one fragment is half a face of one receiver's mask; it walks the tree and draws what
+// stands before that half. Takes a bounded number of steps, for the next draw to go on.
 //
 // Vertices   fullscreen.vert
-// Drawn by   gpu/gpu_masks.cpp, in pieces, once per face
+// Drawn by   gpu/gpu_masks.cpp, in pieces, once per half face
 // Reads      u_nodes           RGBA32UI, 4 texels a node: MaskNode of tree/mask_tree.h in preorder,
-//                              the last word the node after its subtree; open_radius -0: a triangle
+//                              the last word the node after its subtree and, in the highest bit,
+//                              kMaskSheet; open_radius -0: a triangle
 //            u_node_count
 //            u_receivers       RGBA32F, 2 texels a slot, mask frame: position.xyz 0 | normal.xyz 0
 //            u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
 //            u_face            from the mask frame to the face's axes
+//            u_half            0: rows 0 to 7, where V < 0; 1: rows 8 to 15
 //            u_groups          RGBA32F, 3 texels a group of 16 slots (disks_gather.frag)
-//            u_cluster, u_cluster_limit, u_share  MaskSettings of tree/mask_kernel.h; u_share is
-//                              share_leaf
+//            u_cluster, u_cluster_limit, u_share, u_max_distance  MaskSettings of
+//                              tree/mask_kernel.h; u_share is share_leaf; no limit: the largest float
 //            u_exact_radius    nodes with no larger open_radius are drawn as they are
-//            u_words0, u_words1, u_words2, u_words3, u_at  the outputs of the draw before
+//            u_words0, u_words1, u_loose0, u_loose1, u_at  the outputs of the draw before
 //            u_continued       0: there was none
 //            u_step_limit      nodes looked at in one draw; each may go round two loops
-// Writes     out_words0 .. 3   RGBA32UI: the mask's rows
+// Writes     out_words0, 1     RGBA32UI: the mask's rows
+//            out_loose0, 1     the same: what of it clusters have set
 //            out_at            R32UI: node to go on with; u_node_count or more: done
 // CPU twin   walk<true> and draw in tree/mask_kernel_body.h: the same decisions for groups of 16, but
 //            the CPU's larger groups share what is far: tests/gpu/gpu_masks_test.cpp says how much
@@ -30,45 +33,53 @@ uniform samplerBuffer u_receivers;
 uniform int u_slot_count;
 uniform int u_blocks_per_row;
 uniform mat3 u_face;
+uniform int u_half;
 uniform samplerBuffer u_groups;
 uniform float u_cluster;
 uniform float u_share;
 uniform float u_cluster_limit;
+uniform float u_max_distance;
 uniform float u_exact_radius;
 uniform usampler2D u_words0;
 uniform usampler2D u_words1;
-uniform usampler2D u_words2;
-uniform usampler2D u_words3;
+uniform usampler2D u_loose0;
+uniform usampler2D u_loose1;
 uniform usampler2D u_at;
 uniform int u_continued;
 uniform int u_step_limit;
 
 layout(location = 0) out uvec4 out_words0;
 layout(location = 1) out uvec4 out_words1;
-layout(location = 2) out uvec4 out_words2;
-layout(location = 3) out uvec4 out_words3;
+layout(location = 2) out uvec4 out_loose0;
+layout(location = 3) out uvec4 out_loose1;
 layout(location = 4) out uint out_at;
 
 const uint  kTriangle        = 0x80000000u;  // open_radius -0
+const uint  kSheet           = 0x80000000u;
 const float kImportanceFloor = 0.1;
-const float kFaceReach       = 1.4143;  // a ball's radius to the face's bounding planes, sqrt(2)
+const float kFaceReach       = 1.4143;  // a ball's radius to the planes that bound it, sqrt(2)
+const float kTinyLength2     = 1e-30;
 
-// Negative where the point lies beyond one of the four planes that bound the face.
-vec4 within_face(vec3 p)
+// Negative where the point lies beyond one of the four planes that bound the half face.
+vec4 within_half(vec3 p)
 {
-    return vec4(p.x - p.y, p.x + p.y, p.x - p.z, p.x + p.z);
+    float v = u_half == 0 ? -p.z : p.z;
+    return vec4(p.x - p.y, p.x + p.y, p.x - v, v);
 }
 
 void main()
 {
-    out_words0 = out_words1 = out_words2 = out_words3 = uvec4(0u);
+    out_words0 = out_words1 = out_loose0 = out_loose1 = uvec4(0u);
     out_at     = 0xFFFFFFFFu;
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     int   slot  = slot_at_pixel(pixel, u_blocks_per_row);
     if (slot >= u_slot_count)
         return;
     vec3 position = texelFetch(u_receivers, slot * 2).xyz;
-    vec3 normal   = texelFetch(u_receivers, slot * 2 + 1).xyz;
+    vec3 up       = u_face * texelFetch(u_receivers, slot * 2 + 1).xyz;
+    // no corner of the half face is above the horizon: nothing of it counts
+    if (up.x + abs(up.y) + max(u_half == 0 ? -up.z : up.z, 0.0) <= 0.0)
+        return;
 
     vec4  group    = texelFetch(u_groups, slot / 16 * 3);
     vec4  cone     = texelFetch(u_groups, slot / 16 * 3 + 1);
@@ -76,15 +87,19 @@ void main()
     float cone_sin = rest.x;
     float sag      = min(rest.y, 1e9);
 
-    Rows mask = Rows(uvec4[4](uvec4(0u), uvec4(0u), uvec4(0u), uvec4(0u)));
-    int  at   = 0;
+    uvec4 words0 = uvec4(0u);
+    uvec4 words1 = uvec4(0u);
+    uvec4 loose0 = uvec4(0u);
+    uvec4 loose1 = uvec4(0u);
+    int   at     = 0;
     if (u_continued != 0) {
-        mask.words[0] = texelFetch(u_words0, pixel, 0);
-        mask.words[1] = texelFetch(u_words1, pixel, 0);
-        mask.words[2] = texelFetch(u_words2, pixel, 0);
-        mask.words[3] = texelFetch(u_words3, pixel, 0);
-        at = int(texelFetch(u_at, pixel, 0).x);
+        words0 = texelFetch(u_words0, pixel, 0);
+        words1 = texelFetch(u_words1, pixel, 0);
+        loose0 = texelFetch(u_loose0, pixel, 0);
+        loose1 = texelFetch(u_loose1, pixel, 0);
+        at     = int(texelFetch(u_at, pixel, 0).x);
     }
+    int q     = 2 * u_half;  // the half's first quarter
     int steps = 0;
     while (at < u_node_count && steps < u_step_limit) {
         // the short loop: to the next node that is drawn. What is used behind the loop is fetched
@@ -110,17 +125,17 @@ void main()
             float tilt      = sqrt(max(1.0 - facing * facing, 0.0)) + cone_sin;
             float top       = base + min(ball.w, ball.w * tilt + plane.w) + sag;
             float nearest   = distance - ball.w;
-            vec3  side      = u_face * (ball.xyz - position);
-            float reach     = -kFaceReach * ball.w;
-            bool  before    = side.x - abs(side.y) > reach && side.x - abs(side.z) > reach;
-            bool  alive     = before && top > 0.0;
+            vec4  within    = within_half(u_face * (ball.xyz - position));
+            bool  before    = all(greaterThan(within, vec4(-kFaceReach * ball.w)));
+            bool  alive     = before && top > 0.0 && nearest - group.w < u_max_distance;
             float relax     = inversesqrt(clamp(top * inverse, kImportanceFloor, 1.0));
             float cluster   = min(u_cluster * relax, u_cluster_limit);
             bool  far       = group.w < u_share * relax * nearest;
             float from_all   = far ? distance : distance - group.w;
-            found = alive && (opening == kTriangle || open_radius <= u_exact_radius || open_radius < cluster * from_all);
+            found = alive && (opening == kTriangle || open_radius <= u_exact_radius ||
+                              open_radius < cluster * from_all);
             if (!alive)
-                at = int(texelFetch(u_nodes, at * 4 + 3).w);
+                at = int(texelFetch(u_nodes, at * 4 + 3).w & ~kSheet);
             else if (!found)
                 ++at;
         } while (!found && at < u_node_count && steps < u_step_limit);
@@ -130,10 +145,12 @@ void main()
         uvec4 third    = texelFetch(u_nodes, at * 4 + 2);
         uvec4 last     = texelFetch(u_nodes, at * 4 + 3);
         bool  triangle = third.w == kTriangle;
+        bool  exact    = triangle || uintBitsToFloat(third.w) <= u_exact_radius;
+        bool  loose    = !exact && (last.w & kSheet) != 0u;
         vec3  center   = u_face * (uintBitsToFloat(texelFetch(u_nodes, at * 4).xyz) - position);
         vec3  axis_u   = u_face * uintBitsToFloat(third.xyz);
         vec3  axis_v   = u_face * uintBitsToFloat(last.xyz);
-        at = int(last.w);
+        at = int(last.w & ~kSheet);
 
         // planes through the receiver and each edge, turned inward; a triangle's first counts twice
         vec3 c0 = triangle ? center + axis_u : center + axis_u + axis_v;
@@ -144,25 +161,45 @@ void main()
         vec3 n3 = triangle ? n0 : cross(c3, c0 - c3);
         float volume = dot(n0, c2 - c1);
         float turn   = volume < 0.0 ? -1.0 : 1.0;
-        Rows inside = all_bits();
-        cut(inside, turn * n0);
-        cut(inside, turn * cross(c1, c2 - c1));
-        cut(inside, turn * cross(c2, c3 - c2));
-        cut(inside, turn * n3);
-        // not where it lies wholly below the horizon or beside the face: seen edge-on, its planes are
+        Side  side0  = side_of(turn * n0);
+        Side  side1  = side_of(turn * cross(c1, c2 - c1));
+        Side  side2  = side_of(turn * cross(c2, c3 - c2));
+        Side  side3  = side_of(turn * n3);
+        uvec4 inside0 = bits_of(side0, q) & bits_of(side1, q) & bits_of(side2, q) & bits_of(side3, q);
+        uvec4 inside1 = bits_of(side0, q + 1) & bits_of(side1, q + 1) & bits_of(side2, q + 1) &
+                        bits_of(side3, q + 1);
+
+        // planes beyond the limit are dropped, polygons that cross it cut to a cone
+        vec3  normal = cross(c1 - c0, c2 - c0);
+        normal *= inversesqrt(max(dot(normal, normal), kTinyLength2));
+        float height = dot(normal, c0);
+        if (height < 0.0) {
+            normal = -normal;
+            height = -height;
+        }
+        float farthest2 = max(max(dot(c0, c0), dot(c1, c1)), max(dot(c2, c2), dot(c3, c3)));
+        if (farthest2 > u_max_distance * u_max_distance) {
+            inside0 &= cone_bits(normal, height / u_max_distance, q);
+            inside1 &= cone_bits(normal, height / u_max_distance, q + 1);
+        }
+
+        // not where it lies wholly below the horizon or beside the half: seen edge-on, its planes are
         // rounding noise and may enclose directions anywhere
-        vec4 beside = max(max(within_face(c0), within_face(c1)),
-                          max(within_face(c2), within_face(c3)));
-        vec3 up   = u_face * normal;
+        vec4 beside = max(max(within_half(c0), within_half(c1)),
+                          max(within_half(c2), within_half(c3)));
         float top = max(max(dot(c0, up), dot(c1, up)), max(dot(c2, up), dot(c3, up)));
-        bool seen = volume != 0.0 && top > 0.0 && all(greaterThanEqual(beside, vec4(0.0)));
-        uvec4 drawn = uvec4(seen ? 0xFFFFFFFFu : 0u);
-        for (int q = 0; q < 4; ++q)
-            mask.words[q] |= inside.words[q] & drawn;
+        bool seen = volume != 0.0 && top > 0.0 && all(greaterThanEqual(beside, vec4(0.0))) &&
+                    height < u_max_distance;
+        uvec4 drawn       = uvec4(seen ? 0xFFFFFFFFu : 0u);
+        uvec4 drawn_loose = uvec4(seen && loose ? 0xFFFFFFFFu : 0u);
+        words0 |= inside0 & drawn;
+        words1 |= inside1 & drawn;
+        loose0 |= inside0 & drawn_loose;
+        loose1 |= inside1 & drawn_loose;
     }
-    out_words0 = mask.words[0];
-    out_words1 = mask.words[1];
-    out_words2 = mask.words[2];
-    out_words3 = mask.words[3];
+    out_words0 = words0;
+    out_words1 = words1;
+    out_loose0 = loose0;
+    out_loose1 = loose1;
     out_at     = uint(at);
 }

@@ -2,6 +2,7 @@
 
 #include "tree/mask_groups.h"
 #include "tree/mask_kernel.h"
+#include "tree/mask_limits.h"
 #include "tree/mask_raster.h"
 #include "tree/mask_tree.h"
 

@@ -99,6 +99,27 @@ TEST_F(BakeCommand, OptionsReachTheReport)
         EXPECT_TRUE(json.contains(key)) << key;
 }
 
+TEST_F(BakeCommand, TheGpuKnowsTheSameOptions)
+{
+    for (const char* engine : {"masks", "disks"}) {
+        const Outcome outcome =
+            run({"bake", folder_ / "a.obj", "-o", folder_ / "x.ply", "--engine", engine, "--device",
+                 "gpu", "--max-distance", "50%", "--falloff", "smooth", "--quality", "1.5",
+                 "--json", folder_ / "report.json"});
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        const Json json = Json::parse(read_text(folder_ / "report.json"));
+        EXPECT_EQ(json["engine"], engine);
+        EXPECT_EQ(json["settings"]["device"], "gpu");
+        EXPECT_EQ(read_scene(folder_ / "x.ply").positions.size(), 6u * 16 + 2);
+    }
+    const Outcome refused = run({"bake", folder_ / "a.obj", "-o", folder_ / "y.ply", "--engine",
+                                 "rays", "--device", "gpu"});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find("--device gpu is only for --engine masks or disks."),
+              std::string::npos)
+        << refused.err;
+}
+
 TEST_F(BakeCommand, JsonToStandardOutputIsAllThatStandsThere)
 {
     const Outcome outcome =

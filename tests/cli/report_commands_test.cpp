@@ -64,6 +64,39 @@ TEST_F(ReportCommands, ChosenEnginesQualitiesAndSampleAreUsed)
     EXPECT_LE(json["reference"]["judged"], 20);
 }
 
+TEST_F(ReportCommands, DevicesStandSideBySideAndErrAlike)
+{
+    const Outcome outcome = run({"compare",
+                                 folder_ / "b.obj",
+                                 "-o",
+                                 folder_.path(),
+                                 "--engines",
+                                 "masks,disks",
+                                 "--devices",
+                                 "cpu,gpu",
+                                 "--qualities",
+                                 "good",
+                                 "--reference-rays",
+                                 "256",
+                                 "--rounds",
+                                 "1",
+                                 "--max-distance",
+                                 "30%",
+                                 "--falloff",
+                                 "smooth",
+                                 "--json",
+                                 "-"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const Json rows = Json::parse(outcome.out)["rows"];
+    for (const std::size_t cpu : {0u, 2u}) {
+        EXPECT_EQ(rows[cpu]["setting"], "good");
+        EXPECT_EQ(rows[cpu + 1]["setting"], "good on GPU");
+        EXPECT_EQ(rows[cpu]["engine"], rows[cpu + 1]["engine"]);
+        EXPECT_NEAR(rows[cpu]["rmse"], rows[cpu + 1]["rmse"], 1e-3);
+        EXPECT_NEAR(rows[cpu]["bias"], rows[cpu + 1]["bias"], 1e-3);
+    }
+}
+
 TEST_F(ReportCommands, FrontierSumsUpOverScenesAndNamesTheBadOne)
 {
     const Outcome outcome = run({"compare", "--frontier", folder_ / "a.obj", folder_ / "none.obj",

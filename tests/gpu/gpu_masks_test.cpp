@@ -10,7 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
+#include <limits>
 #include <vector>
 
 namespace surfelao {
@@ -76,12 +76,67 @@ TEST(GpuMasks, GoodMasksAgreeToTheErrorOfTheSetting)
     EXPECT_LT(std::abs(d.mean), 1e-3);
 }
 
-TEST(GpuMasks, ADistanceLimitIsRefused)
+TEST(GpuMasks, DistanceLimitsCutPolygonsLikeTheCpu)
 {
-    const World world(scenes::sphere({0, 0, 0}, 1.0, 2));
-    EXPECT_THROW(static_cast<void>(solve_masks_gpu(test_context(), *world.tree, world.receivers,
-                                                   {.definition = {.max_distance = 0.2f}})),
-                 std::invalid_argument);
+    const World world(scenes::bumpy_sphere(6));
+    for (const float limit : {0.05f, 0.2f}) {
+        const Difference d =
+            difference(world, {.definition = {.max_distance = limit}, .exact = true});
+        EXPECT_LT(d.rms, 3e-4) << "limit " << limit;
+        EXPECT_LT(d.largest, 5e-3) << "limit " << limit;
+        EXPECT_LT(d.bent_normal, 1e-3) << "limit " << limit;
+    }
+}
+
+TEST(GpuMasks, FalloffsAreTheMeanOfTheSameLimits)
+{
+    const World world(scenes::bumpy_sphere(6));
+    const Difference d = difference(
+        world, {.definition = {.max_distance = 0.3f, .falloff = Falloff::smooth}, .exact = true});
+    EXPECT_LT(d.rms, 2e-4);
+    EXPECT_LT(d.largest, 3e-3);
+    EXPECT_LT(d.bent_normal, 1e-3);
+}
+
+/// Each of the receivers by itself: nothing is shared, so both draw the same nodes.
+Difference difference_alone(const World& world, std::size_t step, const MaskOptions& options)
+{
+    Difference sum;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < world.receivers.size(); i += step, ++count) {
+        World alone = world;
+        alone.receivers = {world.receivers[i]};
+        const Difference d = difference(alone, options);
+        sum.rms += d.rms * d.rms;
+        sum.mean += d.mean;
+        sum.largest = std::max(sum.largest, d.largest);
+        sum.bent_normal += d.bent_normal * d.bent_normal;
+    }
+    const double n = static_cast<double>(count);
+    return {std::sqrt(sum.rms / n), sum.mean / n, sum.largest, std::sqrt(sum.bent_normal / n)};
+}
+
+// Clusters leave cracks, and filling closes them: without it the answers in the sphere differ by
+// 0.09, without the closing of wider ones by 0.03. Measured: RMS 0.00013, largest 0.0005.
+TEST(GpuMasks, CracksBetweenClustersAreFilledLikeOnTheCpu)
+{
+    World inside(scenes::sphere({0, 0, 0}, 1.0, 24));
+    for (Receiver& receiver : inside.receivers) {
+        receiver.position *= 0.9f;
+        receiver.normal = -receiver.normal;
+    }
+    const World worlds[] = {inside, World(scenes::room({0, 0, 0}, {1, 2, 1}, 16)),
+                            World(scenes::nested_shells(3, 0.05, 16))};
+    for (const World& world : worlds) {
+        for (const float limit : {std::numeric_limits<float>::infinity(), 0.4f}) {
+            const Difference d = difference_alone(
+                world, 101,
+                {.definition = {.max_distance = limit}, .quality = MaskOptions::kDraft});
+            EXPECT_LT(d.rms, 3e-4) << world.receivers.size() << " receivers, limit " << limit;
+            EXPECT_LT(d.largest, 3e-3) << world.receivers.size() << " receivers, limit " << limit;
+            EXPECT_LT(d.bent_normal, 0.02) << world.receivers.size() << " receivers";
+        }
+    }
 }
 
 TEST(GpuMasks, InsideAClosedBoxAllIsClosedAndAloneAllIsOpen)
