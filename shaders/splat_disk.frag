@@ -14,6 +14,7 @@
 //   Botsch, Hornung, Zwicker, Kobbelt. High-Quality Surface Splatting on Today's GPUs. 2005
 
 in vec2 v_disk;
+in vec3 v_inside;
 flat in vec4 v_normal_level;
 flat in vec4 v_own;
 flat in vec4 v_reference;
@@ -22,7 +23,7 @@ out vec4 out_color;
 void main()
 {
     float r2 = dot(v_disk, v_disk);
-    if (r2 > 1.0)
+    if (r2 > 1.0 || any(lessThan(v_inside, vec3(0.0))))
         discard;
     float weight = exp(-3.0 * r2);  // 0.05 at the rim: no visible step, and no pixel without weight
     out_color = weight * vec4(shade(v_normal_level, v_own, v_reference), 1.0);

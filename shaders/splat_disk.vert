@@ -3,25 +3,28 @@
 #include "model_values.glsl"
 #include "splats.glsl"
 
-// splat_disk.vert: a surfel as a square in its own plane.
+// splat_disk.vert: a splat as a square in its own plane.
 //
 // Drawn by   viewer/renderer.cpp, 6 vertices per splat
 // Reads      model_shape.glsl, model_values.glsl, splats.glsl
-// Writes     v_disk  place on the square, -1..1 in both directions
-//            v_normal_level v_own v_reference: the texels of the surfel's vertex
+// Writes     v_disk    place on the square, -1..1 in both directions
+//            v_inside  inside_edges of splats.glsl
+//            v_normal_level v_own v_reference: the model's values there
 
 out vec2 v_disk;
+out vec3 v_inside;
 flat out vec4 v_normal_level;
 flat out vec4 v_own;
 flat out vec4 v_reference;
 
 void main()
 {
-    int vertex = splat_vertex();
+    Splat splat = this_splat();
     v_disk = splat_corner();
-    v_normal_level = texelFetch(u_normals, vertex);
-    v_own = texelFetch(u_occlusion, vertex);
-    v_reference = texelFetch(u_reference, vertex);
-    vec3 view = disk_corner(texelFetch(u_positions, vertex).xyz, v_normal_level.xyz);
-    gl_Position = u_projection * vec4(view, 1.0);
+    v_normal_level = value_at(splat, u_normals);
+    v_own = value_at(splat, u_occlusion);
+    v_reference = value_at(splat, u_reference);
+    vec3 corner = disk_corner(splat);
+    v_inside = inside_edges(splat, corner);
+    gl_Position = u_projection * u_view * vec4(corner, 1.0);
 }

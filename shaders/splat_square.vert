@@ -3,7 +3,7 @@
 #include "model_values.glsl"
 #include "splats.glsl"
 
-// splat_square.vert: a surfel as a square that faces the camera, at the surfel's depth.
+// splat_square.vert: a splat as a square that faces the camera, at the splat's depth.
 //
 // Its side on the screen is R * h * cot(fovy / 2) / depth pixels, R being the radius and h the
 // picture's height: the projection of a square of side 2R at that depth, for any field of view.
@@ -11,10 +11,10 @@
 // Drawn by   viewer/renderer.cpp, 6 vertices per splat
 // Reads      model_shape.glsl, model_values.glsl, splats.glsl
 // Writes     v_disk          place on the square, -1..1 in both directions
-//            v_view_normal   the surfel's normal in view space
+//            v_view_normal   the disk's normal in view space
 //            v_center_depth  its z in view space
 //            v_radius        its radius
-//            v_normal_level v_own v_reference: the texels of its vertex
+//            v_normal_level v_own v_reference: the model's values there
 
 out vec2 v_disk;
 flat out vec3 v_view_normal;
@@ -26,14 +26,14 @@ flat out vec4 v_reference;
 
 void main()
 {
-    int vertex = splat_vertex();
+    Splat splat = this_splat();
     v_disk = splat_corner();
-    v_normal_level = texelFetch(u_normals, vertex);
-    v_own = texelFetch(u_occlusion, vertex);
-    v_reference = texelFetch(u_reference, vertex);
+    v_normal_level = value_at(splat, u_normals);
+    v_own = value_at(splat, u_occlusion);
+    v_reference = value_at(splat, u_reference);
     v_radius = splat_radius();
-    v_view_normal = mat3(u_view) * v_normal_level.xyz;
-    vec3 view = (u_view * vec4(texelFetch(u_positions, vertex).xyz, 1.0)).xyz;
+    v_view_normal = mat3(u_view) * splat_normal(splat);
+    vec3 view = (u_view * vec4(value_at(splat, u_positions).xyz, 1.0)).xyz;
     v_center_depth = view.z;
     view.xy += v_radius * v_disk;
     gl_Position = u_projection * vec4(view, 1.0);

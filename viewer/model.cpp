@@ -20,6 +20,8 @@ constexpr float kGroundGap =
 /// Disks lie in the planes of vertex normals, not of triangles: where the surface bends they need
 /// to be larger than covering_radii to meet.
 constexpr float kSplatMargin = 1.2f;
+constexpr float kInsideMargin = 1.05f;  ///< inside of a triangle nothing bends
+constexpr std::size_t kMostSplatsInside = 400'000;
 
 /// See covering_radii. Squared sides: a2 is opposite to corner A.
 float cover_radius(float a2, float b2, float c2)
@@ -81,6 +83,84 @@ std::vector<float> leaf_levels(const Octree& octree)
     return levels;
 }
 
+float cover_radius(glm::vec3 a, glm::vec3 b, glm::vec3 c)
+{
+    return cover_radius(glm::dot(c - b, c - b), glm::dot(a - c, a - c), glm::dot(b - a, b - a));
+}
+
+/// Disks inside of the triangles that need more than `most`: cut in two across their longest edge
+/// until a disk about the middle of a piece is no larger. False when that makes too many.
+bool cover_from_inside(const Geometry& geometry, float most, std::vector<Splat>& splats,
+                       std::vector<float>& radii)
+{
+    struct Piece {
+        glm::vec3 corner[3];
+        glm::vec2 place[3];  ///< shares of the triangle's second and third vertex
+    };
+    std::vector<Piece> pieces;
+    for (const glm::uvec3 triangle : geometry.triangles) {
+        const glm::vec3 a = geometry.positions[triangle.x];
+        const glm::vec3 b = geometry.positions[triangle.y];
+        const glm::vec3 c = geometry.positions[triangle.z];
+        if (!(cover_radius(a, b, c) > most) || glm::cross(b - a, c - a) == glm::vec3(0.0f))
+            continue;
+        pieces.push_back({{a, b, c}, {{0, 0}, {1, 0}, {0, 1}}});
+        while (!pieces.empty()) {
+            const Piece piece = pieces.back();
+            pieces.pop_back();
+            const glm::vec3 middle = (piece.corner[0] + piece.corner[1] + piece.corner[2]) / 3.0f;
+            float radius = 0.0f;
+            for (const glm::vec3& corner : piece.corner)
+                radius = std::max(radius, glm::distance(corner, middle));
+            if (radius <= most) {
+                if (splats.size() == kMostSplatsInside)
+                    return false;
+                const glm::uvec2 place(glm::round(
+                    65535.0f / 3.0f * (piece.place[0] + piece.place[1] + piece.place[2])));
+                splats.push_back({triangle, place.x | place.y << 16});
+                radii.push_back(kInsideMargin * radius);
+                continue;
+            }
+            // across the longest edge, from corner i to i + 1
+            int longest = 0;
+            float length = 0.0f;
+            for (int i = 0; i < 3; ++i) {
+                const float edge = glm::distance(piece.corner[i], piece.corner[(i + 1) % 3]);
+                if (edge > length) {
+                    longest = i;
+                    length = edge;
+                }
+            }
+            const int next = (longest + 1) % 3;
+            const glm::vec3 corner = 0.5f * (piece.corner[longest] + piece.corner[next]);
+            const glm::vec2 place = 0.5f * (piece.place[longest] + piece.place[next]);
+            for (const int replaced : {longest, next}) {
+                Piece& half = pieces.emplace_back(piece);
+                half.corner[replaced] = corner;
+                half.place[replaced] = place;
+            }
+        }
+    }
+    return true;
+}
+
+void make_splats(Model& model, float largest)
+{
+    const Geometry& geometry = model.geometry;
+    while (!cover_from_inside(geometry, largest, model.splats, model.splat_radii)) {
+        model.splats.clear();
+        model.splat_radii.clear();
+        largest *= 1.5f;
+    }
+    const std::vector<float> radii = covering_radii(geometry, largest);
+    for (const std::uint32_t vertex : model.surfels) {
+        if (radii[vertex] > 0.0f) {
+            model.splats.push_back({glm::uvec3(vertex), 0});
+            model.splat_radii.push_back(kSplatMargin * radii[vertex]);
+        }
+    }
+}
+
 }  // namespace
 
 glm::vec2 level_range(const Model& model)
@@ -91,15 +171,15 @@ glm::vec2 level_range(const Model& model)
     return {*low, std::max(*high, *low + 1.0f)};
 }
 
-std::vector<float> covering_radii(const Geometry& geometry)
+std::vector<float> covering_radii(const Geometry& geometry, float most)
 {
     std::vector<float> radii(geometry.positions.size(), 0.0f);
     for (const glm::uvec3 triangle : geometry.triangles) {
-        const glm::vec3 a = geometry.positions[triangle[0]];
-        const glm::vec3 b = geometry.positions[triangle[1]];
-        const glm::vec3 c = geometry.positions[triangle[2]];
         const float radius =
-            cover_radius(glm::dot(c - b, c - b), glm::dot(a - c, a - c), glm::dot(b - a, b - a));
+            cover_radius(geometry.positions[triangle[0]], geometry.positions[triangle[1]],
+                         geometry.positions[triangle[2]]);
+        if (!(radius <= most))
+            continue;
         for (int corner = 0; corner < 3; ++corner) {
             float& at_position = radii[geometry.welded[triangle[corner]]];
             at_position = std::max(at_position, radius);
@@ -110,7 +190,7 @@ std::vector<float> covering_radii(const Geometry& geometry)
     return radii;
 }
 
-Model make_model(Geometry geometry, UpAxis up, float offset)
+Model make_model(Geometry geometry, UpAxis up, float offset, float largest_splat)
 {
     Model model;
     model.geometry = std::move(geometry);
@@ -128,13 +208,11 @@ Model make_model(Geometry geometry, UpAxis up, float offset)
     if (model.seen.empty())
         model.seen = g.positions;
 
-    const std::vector<float> radii = covering_radii(g);
     for (std::uint32_t v = 0; v < g.positions.size(); ++v) {
-        if (g.areas[v] > 0.0f) {
-            model.splats.push_back(v);
-            model.splat_radii.push_back(kSplatMargin * radii[v]);
-        }
+        if (g.areas[v] > 0.0f)
+            model.surfels.push_back(v);
     }
+    make_splats(model, largest_splat);
     model.levels = leaf_levels(build_octree(surfels_at_vertices(g)));
 
     model.ground = make_ground(model.seen, up_direction(up));

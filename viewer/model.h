@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -27,19 +28,35 @@ struct Ground {
     glm::vec3 up{0.0f};      ///< unit length
 };
 
+/// A disk that is drawn for a piece of the surface, with the values that lie there. Either a
+/// surfel: three times the same vertex, in the plane of its normal. Or a place inside a large
+/// triangle, in the triangle's plane and cut off at its edges.
+struct Splat {
+    glm::uvec3 vertices{0};
+    std::uint32_t place = 0;  ///< shares of vertices y and z, each times 65535 in 16 bits, y low
+};
+
+/// Coarse triangles are covered by disks inside of them, none of them larger than this, so that
+/// splats of a floor of two triangles are no larger than those of a scan. Unit frame.
+inline constexpr float kLargestSplat = 0.01f;
+
 struct Model {
     Geometry geometry;
-    std::vector<glm::vec3> seen;        ///< positions that triangles use: what a camera frames
-    std::vector<std::uint32_t> splats;  ///< vertices that are surfels: surfels_at_vertices' order
-    std::vector<float> splat_radii;     ///< one per splat: covering_radii and a margin
-    std::vector<float> levels;          ///< one per splat: its leaf's depth in the octree, 0 = root
+    std::vector<glm::vec3> seen;         ///< positions that triangles use: what a camera frames
+    std::vector<std::uint32_t> surfels;  ///< vertices that are: surfels_at_vertices' order
+    std::vector<float> levels;       ///< one per surfel: its leaf's depth in the octree, 0 = root
+    std::vector<Splat> splats;       ///< they cover every triangle that has an area
+    std::vector<float> splat_radii;  ///< one per splat
     Ground ground;
     std::vector<Receiver> receivers;  ///< one per vertex, then the ground's
     UpAxis up = UpAxis::y;
 };
 
-/// O(n log n). offset: of the receivers, see occlusion.h.
-[[nodiscard]] Model make_model(Geometry geometry, UpAxis up, float offset);
+/// O(n log n). offset: of the receivers, see occlusion.h. largest_splat: triangles that need larger
+/// disks at their corners are covered from inside; where that takes more than a few hundred
+/// thousand disks, larger ones are allowed. Infinite: one splat per surfel, however large.
+[[nodiscard]] Model make_model(Geometry geometry, UpAxis up, float offset,
+                               float largest_splat = kLargestSplat);
 
 /// The lowest and the highest level, at least 1 apart: what the ends of a colour scale stand for.
 [[nodiscard]] glm::vec2 level_range(const Model& model);
@@ -48,16 +65,16 @@ struct Model {
 /// in them: for every adjacent triangle, the distance from its corners to the point of it that is
 /// farthest from all three.
 ///
-///         C              No angle above 90 degrees: the circumradius  abc / (4 area).
-///        / \             Obtuse at C: the bisectors of the short sides a and b meet the long side
-///        c
-///      b/   \a           at distance  b / (2 cos A)  from A  and  a / (2 cos B)  from B; the
-///      larger
-///      /_____\           one counts, and no point of the triangle is farther from its corners.
+///         C            No angle above 90 degrees: the circumradius  abc / (4 area).
+///        / \           Obtuse at C: the bisectors of the short sides meet the long side c at
+///      b/   \a         distance  b / (2 cos A)  from A  and  a / (2 cos B)  from B; the larger
+///      /_____\         one counts, and no point of the triangle is farther from its corners.
 ///     A   c   B
 ///
 /// On a square grid of spacing h this is h / sqrt(2), 1.25 times the radius of a disk of a surfel's
-/// area. 0 for vertices without triangles; shared by all vertices at one position. O(n).
-[[nodiscard]] std::vector<float> covering_radii(const Geometry& geometry);
+/// area. Triangles that need more than `most` do not count; 0 for vertices without triangles that
+/// count. Shared by all vertices at one position. O(n).
+[[nodiscard]] std::vector<float> covering_radii(
+    const Geometry& geometry, float most = std::numeric_limits<float>::infinity());
 
 }  // namespace surfelao

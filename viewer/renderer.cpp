@@ -52,7 +52,7 @@ struct Upload {
         : positions(texels(context, model.geometry.positions)),
           normals(texels(context, normals_and_levels(model))),
           occlusion(texels(context, open(model))),
-          splats(context, TexelFormat::r32ui, view(at_least_one(model.splats))),
+          splats(context, TexelFormat::rgba32ui, view(at_least_one(model.splats))),
           radii(context, TexelFormat::r32f, view(at_least_one(model.splat_radii))),
           index_buffer(context, view(at_least_one(model.geometry.triangles))),
           triangles(context),
@@ -94,8 +94,8 @@ struct Upload {
         const Geometry& geometry = model.geometry;
         std::vector<float> level_at(geometry.positions.size(), 0.0f);
         const glm::vec2 range = level_range(model);
-        for (std::size_t i = 0; i < model.splats.size(); ++i)
-            level_at[model.splats[i]] = (model.levels[i] - range.x) / (range.y - range.x);
+        for (std::size_t i = 0; i < model.surfels.size(); ++i)
+            level_at[model.surfels[i]] = (model.levels[i] - range.x) / (range.y - range.x);
         std::vector<glm::vec4> values;
         values.reserve(level_at.size());
         for (std::size_t v = 0; v < level_at.size(); ++v)

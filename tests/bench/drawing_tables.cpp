@@ -19,6 +19,7 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <limits>
 #include <string_view>
 #include <vector>
 
@@ -79,7 +80,7 @@ void run(GlBackend backend)
     for (const ReportRow& row : kRows) {
         const Model model = make_model(
             make_geometry(scenes::height_field(row.cells, [](double, double) { return 0.0; })),
-            UpAxis::z, 1e-4f);
+            UpAxis::z, 1e-4f, std::numeric_limits<float>::infinity());
         renderer.set_model(model);
         const float aspect = static_cast<float>(kWidth) / static_cast<float>(kHeight);
         const Camera camera = frame_points(model.seen, UpAxis::z, aspect, {.elevation_deg = 50});

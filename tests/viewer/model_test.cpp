@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace surfelao {
@@ -72,13 +73,74 @@ TEST(CoveringRadii, CoverEveryPointAndNoMore)
     }
 }
 
-TEST(Model, HasASplatPerSurfelWithItsLeafsLevel)
+TEST(Model, HasASplatPerSurfelWhereTrianglesAreSmall)
+{
+    for (const float largest : {0.2f, std::numeric_limits<float>::infinity()}) {
+        const Model model =
+            make_model(make_geometry(scenes::sphere({0, 0, 0}, 1.0, 8)), UpAxis::y, 1e-4f, largest);
+        ASSERT_EQ(model.splats.size(), surfels_at_vertices(model.geometry).size());
+        ASSERT_EQ(model.splat_radii.size(), model.splats.size());
+        for (std::size_t i = 0; i < model.splats.size(); ++i)
+            EXPECT_EQ(model.splats[i].vertices, glm::uvec3(model.surfels[i]));
+    }
+}
+
+// Every point of a large triangle, a sliver and a right angle, is in a disk; none is larger than it
+// may be, and there are not many more than the area asks for.
+TEST(Model, LargeTrianglesAreCoveredFromInside)
+{
+    const glm::dvec3 a(0, 0, 0), b(1, 0, 0);
+    for (const glm::dvec3 c : {glm::dvec3(0, 1, 0), glm::dvec3(0.3, 0.01, 0)}) {
+        const Model model = make_model(make_geometry(triangle(a, b, c)), UpAxis::y, 1e-4f);
+        ASSERT_EQ(model.splat_radii.size(), model.splats.size());
+        EXPECT_LT(model.splats.size(), 20'000u);
+        const std::vector<glm::vec3>& p = model.geometry.positions;
+        const auto point = [&](glm::vec2 at) {
+            return p[0] + at.x * (p[1] - p[0]) + at.y * (p[2] - p[0]);
+        };
+        std::mt19937 random(3);
+        for (int trial = 0; trial < 300; ++trial) {
+            glm::vec2 place(static_cast<float>(random() % 1000) / 999.0f,
+                            static_cast<float>(random() % 1000) / 999.0f);
+            if (place.x + place.y > 1.0f)
+                place = 1.0f - place;
+            float beyond = 1.0f;
+            for (std::size_t i = 0; i < model.splats.size(); ++i) {
+                const std::uint32_t packed = model.splats[i].place;
+                const glm::vec3 middle =
+                    point(glm::vec2(packed & 0xFFFFu, packed >> 16) / 65535.0f);
+                beyond =
+                    std::min(beyond, glm::distance(middle, point(place)) - model.splat_radii[i]);
+            }
+            EXPECT_LE(beyond, 0.0f);
+        }
+        for (std::size_t i = 0; i < model.splats.size(); ++i) {
+            EXPECT_EQ(model.splats[i].vertices, glm::uvec3(0, 1, 2));
+            EXPECT_LE(model.splat_radii[i], 1.06f * kLargestSplat);
+        }
+    }
+}
+
+// 20,000 triangles across the whole box would need two hundred million disks of that size.
+TEST(Model, SplatsInsideOfTrianglesEndAtANumber)
+{
+    Scene scene;
+    std::mt19937 random(5);
+    for (std::uint32_t i = 0; i < 20'000; ++i) {
+        for (int corner = 0; corner < 3; ++corner)
+            scene.positions.emplace_back(random() % 1000, random() % 1000, random() % 1000);
+        scene.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    const Model model = make_model(make_geometry(scene), UpAxis::y, 1e-4f);
+    EXPECT_LE(model.splats.size(), 400'000u + 60'000u);
+    EXPECT_GE(model.splats.size(), 20'000u);
+}
+
+TEST(Model, KnowsTheLevelOfEachSurfelsLeaf)
 {
     const Model model =
         make_model(make_geometry(scenes::sphere({0, 0, 0}, 1.0, 8)), UpAxis::y, 1e-4f);
-    EXPECT_EQ(model.splats.size(), surfels_at_vertices(model.geometry).size());
-    EXPECT_EQ(model.splat_radii.size(), model.splats.size());
-    ASSERT_EQ(model.levels.size(), model.splats.size());
+    ASSERT_EQ(model.levels.size(), model.surfels.size());
     const glm::vec2 range = level_range(model);
     EXPECT_GE(range.x, 1.0f);   // more surfels than fit into a root that is a leaf
     EXPECT_LE(range.y, 21.0f);  // octree.h
@@ -111,8 +173,8 @@ TEST(Model, GroundLiesUnderTheScene)
 
 TEST(Model, AlsoOfOneTriangleAndOfNoneWithArea)
 {
-    const Model one =
-        make_model(make_geometry(triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})), UpAxis::y, 1e-4f);
+    const Model one = make_model(make_geometry(triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})),
+                                 UpAxis::y, 1e-4f, 1.0f);
     EXPECT_EQ(one.splats.size(), 3u);
     const Model none =
         make_model(make_geometry(triangle({0, 0, 0}, {1, 0, 0}, {2, 0, 0})), UpAxis::y, 1e-4f);

@@ -20,6 +20,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,13 @@ constexpr float kOffset = 1e-4f;
 Model model_of(const Scene& scene, UpAxis up = UpAxis::z)
 {
     return make_model(make_geometry(scene), up, kOffset);
+}
+
+/// One splat per vertex, however large.
+Model surfels_of(const Scene& scene)
+{
+    return make_model(make_geometry(scene), UpAxis::z, kOffset,
+                      std::numeric_limits<float>::infinity());
 }
 
 std::vector<Occlusion> all(const Model& model, float occlusion)
@@ -107,7 +115,7 @@ Roundness roundness(const Image& image)
 // r^2 / (2 R), here 0.5 pixels.
 TEST(Splats, ASpheresOutlineIsRound)
 {
-    const Model model = model_of(scenes::sphere({0, 0, 0}, 1.0, 16));
+    const Model model = surfels_of(scenes::sphere({0, 0, 0}, 1.0, 16));
     const Camera camera = frame_points(model.seen, UpAxis::z, 1.0f);
     const Roundness disks = roundness(draw_open(model, camera, plain(Surface::splats, 240, 240)));
     EXPECT_LT(disks.outside, 1.0);
@@ -134,7 +142,7 @@ std::size_t holes(const Model& model, const Camera& camera, Surface surface)
 // From 2 degrees above a floor that reaches to the eye. The report's affine form loses the floor.
 TEST(Splats, AFloorAtAGrazingAngleKeepsItsCoverage)
 {
-    const Model model = model_of(scenes::sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 24));
+    const Model model = surfels_of(scenes::sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 24));
     Camera camera;
     camera.up = {0, 0, 1};
     camera.eye = {0.0f, -0.6f, 0.02f};
@@ -145,16 +153,32 @@ TEST(Splats, AFloorAtAGrazingAngleKeepsItsCoverage)
 
 TEST(Splats, ABumpySurfaceHasNoHoles)
 {
-    const Model model = model_of(scenes::bumpy_sphere(24));
+    const Model model = surfels_of(scenes::bumpy_sphere(24));
     const Camera camera = frame_points(model.seen, UpAxis::z, 1.6f);
     EXPECT_EQ(holes(model, camera, Surface::splats), 0u);
+}
+
+// A room of two triangles a wall: no splat is missing inside, none sticks out at the corners.
+TEST(Splats, CoarseTrianglesAreCoveredAndNotExceeded)
+{
+    const Model model = model_of(scenes::box({0, 0, 0}, {1, 2, 1}, 1));
+    for (const float elevation_deg : {2.0f, 30.0f}) {
+        const Camera camera =
+            frame_points(model.seen, UpAxis::z, 1.6f, {.elevation_deg = elevation_deg});
+        EXPECT_EQ(holes(model, camera, Surface::splats), 0u);
+        const auto pixels = [&](Surface surface) {
+            return static_cast<double>(
+                model_pixels(draw_open(model, camera, plain(surface, 320, 200))));
+        };
+        EXPECT_NEAR(pixels(Surface::splats) / pixels(Surface::triangles), 1.0, 0.01);
+    }
 }
 
 // A flat sheet seen from straight above: the disks of its rim stick out by exactly one radius,
 // which is R * h * cot(fovy / 2) / (2 * depth) pixels.
 TEST(Splats, HaveTheRightSizeForAnyFieldOfView)
 {
-    const Model model = model_of(scenes::sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 8));
+    const Model model = surfels_of(scenes::sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 8));
     for (const float fovy_deg : {10.0f, 45.0f, 120.0f}) {
         Camera camera = frame_points(model.seen, UpAxis::z, 1.0f,
                                      {.azimuth_deg = 0, .elevation_deg = 90}, fovy_deg);
@@ -187,7 +211,7 @@ TEST(Splats, MayBeLargerThanTheDevicesPoints)
     Scene scene;
     scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     scene.triangles = {{0, 1, 2}};
-    const Model model = model_of(scene);
+    const Model model = surfels_of(scene);
     Camera camera =
         frame_points(model.seen, UpAxis::z, 1.0f, {.azimuth_deg = 0, .elevation_deg = 90});
     zoom(camera, 0.4f);
@@ -378,7 +402,7 @@ struct Golden {
 
 TEST(Render, LooksAsItDidWhenItWasLookedAt)
 {
-    const Model model = model_of(corner_with_ball());
+    const Model model = surfels_of(corner_with_ball());
     const RayScene scene(model.geometry, RayScene::Build::robust);
     const std::vector<Occlusion> reference =
         trace_occlusion(scene, model.receivers, {.rays = 256, .seed = 1});
