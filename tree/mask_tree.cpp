@@ -1,17 +1,19 @@
 #include "tree/mask_tree.h"
 
-#include "tree/mask_kernel.h"
+#include "tree/lanes.h"
+#include "tree/mask_patch.h"
 #include "tree/masks.h"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -23,395 +25,340 @@ namespace {
 /// look elsewhere are parted before they become one rectangle.
 constexpr float kNormalExtent = 0.5f;
 
-/// A node that is not flat is opened as if its radius were larger by this factor times 1 -
-/// flatness.
-constexpr float kFlatnessPenalty = 10.0f;
+/// Subtrees of up to this many triangles are built as one, in the cache, their radius and thickness
+/// measured at the corners; above, these follow from the children's.
+constexpr std::size_t kBundle = 32;
 
-/// Rectangles of flat nodes are drawn a little larger: their neighbours most likely continue the
-/// same plane, and the rim closes the cracks. None from a flatness of 1 - 1/kDilationSlope down.
-constexpr float kDilation = 0.08f;
-constexpr float kDilationSlope = 40.0f;
+constexpr std::size_t kParallelNode = 2048;    ///< smaller subtrees are built by one thread
+constexpr std::size_t kParallelSplit = 32768;  ///< smaller nodes are split by one thread
+constexpr std::size_t kBlock = 4096;           ///< keys of one task
 
-/// A rectangle's area follows from its second moments; a disk's is 1.05 times as large as that, and
-/// no convex shape's is larger. What is above this factor overlaps itself.
-constexpr float kSpreadMargin = 1.1f;
-
-/// Triangles that tile a rectangle to within this share of its area and size are one rectangle.
-constexpr float kWhole = 1e-4f;
-
-/// A patch counts as a sheet without gaps where it is at least this flat and fills this share of
-/// the rectangle that its second moments describe. Cracks are filled, and rims drawn, at sheets
-/// only: between leaves there are none.
-constexpr float kSheetFlatness = 0.8f;
-constexpr float kSheetCover = 0.75f;
-
-/// A patch with gaps would be drawn as one rectangle in their midst: it is opened as if its radius
-/// were larger by this factor times what its cover lacks of a sheet's.
-constexpr float kGapPenalty = 10.0f;
-
-/// Radius and thickness are measured at the corners up to this many triangles, and bounded by the
-/// children's above.
-constexpr std::size_t kExactBounds = 32;
-
-constexpr std::size_t kParallelSplit = 2048;  ///< smaller subtrees are built by one thread
-
-/// Where the splits look: centroid and unit normal of one triangle.
-struct Key {
+/// Where the splits look: centroid and unit normal of one triangle, in the scene's own axes: what
+/// is built along them is cut along them.
+struct alignas(16) Key {
     std::array<float, 6> at;
     std::uint32_t triangle;
     std::uint32_t padding = 0;
 };
 
 struct Extent {
-    std::array<float, 6> low, high;
+    /// Of `at`; what follows it in a key is carried along and of no meaning.
+    std::array<Lanes, 2> low, high;
 
     Extent()
     {
-        low.fill(std::numeric_limits<float>::max());
-        high.fill(-std::numeric_limits<float>::max());
+        low.fill(all_lanes(std::numeric_limits<float>::max()));
+        high.fill(all_lanes(-std::numeric_limits<float>::max()));
     }
-    void add(const std::array<float, 6>& at)
+    explicit Extent(std::span<const Key> keys) : Extent()
     {
-        for (int i = 0; i < 6; ++i) {
-            low[i] = std::min(low[i], at[i]);
-            high[i] = std::max(high[i], at[i]);
+        for (const Key& key : keys) {
+            const auto at = std::bit_cast<std::array<Lanes, 2>>(key);
+            add({at, at});
+        }
+    }
+    Extent(const std::array<Lanes, 2>& lowest, const std::array<Lanes, 2>& highest)
+        : low(lowest), high(highest)
+    {
+    }
+    void add(const Extent& other)
+    {
+        for (std::size_t i = 0; i < 2; ++i) {
+            low[i] = least(low[i], other.low[i]);
+            high[i] = most(high[i], other.high[i]);
         }
     }
 };
 
-struct Corners {
-    glm::vec3 a, b, c;
+/// Keys below and above `at` on one of the six axes are parted.
+struct Plane {
+    std::size_t axis;
+    float at;
+
+    bool below(const Key& key) const { return key.at[axis] < at; }
 };
 
-/// Symmetric 3x3 matrix.
-struct Spread {
-    float xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
-
-    void add_square(glm::vec3 v, float weight)
-    {
-        const glm::vec3 w = weight * v;
-        xx += w.x * v.x;
-        xy += w.x * v.y;
-        xz += w.x * v.z;
-        yy += w.y * v.y;
-        yz += w.y * v.z;
-        zz += w.z * v.z;
-    }
-    void add(const Spread& other)
-    {
-        xx += other.xx;
-        xy += other.xy;
-        xz += other.xz;
-        yy += other.yy;
-        yz += other.yz;
-        zz += other.zz;
-    }
-    glm::vec3 times(glm::vec3 v) const
-    {
-        return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z,
-                xz * v.x + yz * v.y + zz * v.z};
-    }
-};
-
-/// What a node hands to its parent.
-struct Patch {
-    glm::vec3 center{0.0f};
-    glm::vec3 vector_area{0.0f};
-    glm::vec3 normal{0.0f};
-    float area = 0.0f;
-    float radius = 0.0f;
-    float thickness = 0.0f;
-    Spread spread;  ///< integral of (x - center)(x - center)^T over the area
-};
-
-glm::vec3 perpendicular(glm::vec3 n)
+/// The middle of the longest of the six extents.
+Plane plane_of(const Extent& extent)
 {
-    // the branchless basis of Duff et al., Building an Orthonormal Basis, Revisited, JCGT 2017
-    const float sign = std::copysign(1.0f, n.z);
-    const float a = -1.0f / (sign + n.z);
-    return {1.0f + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x};
+    const auto low = std::bit_cast<std::array<float, 8>>(extent.low);
+    const auto high = std::bit_cast<std::array<float, 8>>(extent.high);
+    std::array<float, 6> length;
+    for (std::size_t i = 0; i < 6; ++i)
+        length[i] = high[i] - low[i];
+    const float unit = kNormalExtent * std::sqrt(length[0] * length[0] + length[1] * length[1] +
+                                                 length[2] * length[2]);
+    std::size_t axis = 0;
+    float longest = length[0];
+    for (std::size_t i = 1; i < 6; ++i) {
+        const float here = i < 3 ? length[i] : unit * length[i];
+        axis = here > longest ? i : axis;
+        longest = here > longest ? here : longest;
+    }
+    return {axis, 0.5f * (low[axis] + high[axis])};
 }
+
+/// Writes the keys that are below to out[left...], the others to out[..., right - 1] from the end
+/// on. Returns how many are below.
+std::size_t part(std::span<const Key> keys, Plane plane, Key* out, std::size_t left,
+                 std::size_t right)
+{
+    const std::size_t first = left;
+    for (const Key& key : keys) {
+        // no branch depends on a key: half of them would be guessed wrong
+        const std::size_t below = plane.below(key) ? 1 : 0;
+        out[(right - 1) + (left - (right - 1)) * below] = key;
+        left += below;
+        right -= 1 - below;
+    }
+    return left - first;
+}
+
+/// Nodes over up to kBundle triangles while they are built. Node 0 is the root; children stand
+/// side by side, after their parent.
+struct Bundle {
+    struct Node {
+        std::uint8_t begin, end;
+        std::uint8_t first_child;  ///< 0 = triangle
+        std::uint8_t side;         ///< of `keys`: they go to and fro from level to level
+    };
+    static constexpr std::size_t kNodes = 2 * kBundle - 1;
+    static constexpr std::size_t kStride = kBundle + MaskCorners::kSlack;
+
+    std::array<std::array<Key, kBundle>, 2> keys;
+    std::array<Node, kNodes> nodes;
+    std::array<std::uint8_t, kBundle> leaf;   ///< the node of each triangle
+    std::array<std::uint8_t, kBundle> inner;  ///< parents first
+    std::array<float, 9 * kStride> corners;   ///< columns, as in MaskCorners
+    std::array<MaskPatch, kNodes> patches;
+    std::array<MaskPatchNode, kBundle> shown;
+};
 
 class Builder {
 public:
-    explicit Builder(const Geometry& geometry)
-        : geometry_(geometry), keys_(geometry.triangles.size())
-    {
-    }
+    explicit Builder(const Geometry& geometry) : geometry_(geometry) {}
 
     std::vector<MaskNode> build()
     {
-        if (keys_.empty())
+        const std::size_t count = geometry_.triangles.size();
+        if (count == 0)
             return {};
-        nodes_.resize(2 * keys_.size() - 1);
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, keys_.size(), 4096),
-                          [&](const tbb::blocked_range<std::size_t>& range) {
-                              for (std::size_t t = range.begin(); t < range.end(); ++t)
-                                  keys_[t] = key_of(static_cast<std::uint32_t>(t));
-                          });
-        Extent extent;
-        for (const Key& key : keys_)
-            extent.add(key.at);
-        build_node(0, 1, 0, keys_.size(), extent);
+        positions_.resize(geometry_.positions.size());
+        for_blocks(positions_.size(),
+                   [&](std::size_t v) { positions_[v] = kMaskFrame * geometry_.positions[v]; });
+        for (std::vector<Key>& side : keys_)
+            side.resize(count);
+        for_blocks(count, [&](std::size_t t) { keys_[0][t] = key_of(t); });
+        order_.resize(count);
+        nodes_.resize(2 * count - 1);
+        build_node(0, 1, 0, count, 0);
         return std::move(nodes_);
     }
 
 private:
-    Corners corners(std::uint32_t triangle) const
+    template <class Work>
+    static void for_blocks(std::size_t count, const Work& work)
     {
-        const glm::uvec3 t = geometry_.triangles[triangle];
-        return {kMaskFrame * geometry_.positions[t.x], kMaskFrame * geometry_.positions[t.y],
-                kMaskFrame * geometry_.positions[t.z]};
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kBlock),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                              for (std::size_t i = range.begin(); i < range.end(); ++i)
+                                  work(i);
+                          });
     }
 
-    Key key_of(std::uint32_t triangle) const
+    Key key_of(std::size_t triangle) const
     {
-        // in the scene's own axes: what is built along them is cut along them
         const glm::uvec3 t = geometry_.triangles[triangle];
-        const Corners p{geometry_.positions[t.x], geometry_.positions[t.y],
-                        geometry_.positions[t.z]};
-        const glm::vec3 center = (p.a + p.b + p.c) * (1.0f / 3.0f);
-        const glm::vec3 cross = glm::cross(p.b - p.a, p.c - p.a);
+        const glm::vec3 a = geometry_.positions[t.x], b = geometry_.positions[t.y],
+                        c = geometry_.positions[t.z];
+        const glm::vec3 center = (a + b + c) * (1.0f / 3.0f);
+        const glm::vec3 cross = glm::cross(b - a, c - a);
         const float length = glm::length(cross);
         const glm::vec3 normal = length > 0.0f ? cross / length : glm::vec3(0.0f);
-        return {{center.x, center.y, center.z, normal.x, normal.y, normal.z}, triangle};
+        return {{center.x, center.y, center.z, normal.x, normal.y, normal.z},
+                static_cast<std::uint32_t>(triangle)};
     }
 
-    /// Node `index` over keys [begin, end); its descendants stand in nodes [first, first + 2
-    /// (n-1)).
-    Patch build_node(std::size_t index, std::size_t first, std::size_t begin, std::size_t end,
-                     const Extent& extent)
+    /// Node `index` over keys [begin, end) of one side; its descendants stand in nodes [first,
+    /// first + 2 (n-1)).
+    MaskPatch build_node(std::size_t index, std::size_t first, std::size_t begin, std::size_t end,
+                         int side)
     {
-        if (end - begin == 1)
-            return finish_triangle(index, keys_[begin].triangle);
+        const std::size_t count = end - begin;
+        if (count <= kBundle)
+            return build_bundle(index, first, begin, end, side);
 
-        Extent below, above;
-        const std::size_t middle = split(begin, end, extent, below, above);
+        const std::size_t middle = split(begin, end, side);
         const std::size_t left_first = first + 2;
         const std::size_t right_first = left_first + 2 * (middle - begin - 1);
-        Patch left, right;
-        if (end - begin > kParallelSplit) {
-            tbb::parallel_invoke(
-                [&] { left = build_node(first, left_first, begin, middle, below); },
-                [&] { right = build_node(first + 1, right_first, middle, end, above); });
-        } else {
-            left = build_node(first, left_first, begin, middle, below);
-            right = build_node(first + 1, right_first, middle, end, above);
-        }
-        nodes_[index].links = static_cast<std::uint32_t>(first);
-        return finish_inner(index, begin, end, left, right);
-    }
-
-    /// At the middle of the longest of the six extents; where that parts nothing, in two halves.
-    std::size_t split(std::size_t begin, std::size_t end, const Extent& extent, Extent& below,
-                      Extent& above)
-    {
-        std::array<float, 6> length;
-        float diagonal2 = 0.0f;
-        for (int i = 0; i < 6; ++i) {
-            length[i] = extent.high[i] - extent.low[i];
-            diagonal2 += i < 3 ? length[i] * length[i] : 0.0f;
-        }
-        for (int i = 3; i < 6; ++i)
-            length[i] *= kNormalExtent * std::sqrt(diagonal2);
-        const auto axis = static_cast<std::size_t>(std::max_element(length.begin(), length.end()) -
-                                                   length.begin());
-        const float plane = 0.5f * (extent.low[axis] + extent.high[axis]);
-        std::size_t left = begin;
-        std::size_t right = end;
-        while (left < right) {
-            if (keys_[left].at[axis] < plane) {
-                below.add(keys_[left].at);
-                ++left;
-            } else {
-                above.add(keys_[left].at);
-                std::swap(keys_[left], keys_[--right]);
-            }
-        }
-        if (left != begin && left != end)
-            return left;
-        left = begin + (end - begin) / 2;
-        below = above = Extent();
-        for (std::size_t i = begin; i < end; ++i)
-            (i < left ? below : above).add(keys_[i].at);
-        return left;
-    }
-
-    Patch finish_triangle(std::size_t index, std::uint32_t triangle)
-    {
-        const Corners p = corners(triangle);
-        Patch patch;
-        patch.center = (p.a + p.b + p.c) * (1.0f / 3.0f);
-        const glm::vec3 a = p.a - patch.center;
-        const glm::vec3 b = p.b - patch.center;
-        const glm::vec3 c = p.c - patch.center;
-        patch.vector_area = 0.5f * glm::cross(p.b - p.a, p.c - p.a);
-        patch.area = glm::length(patch.vector_area);
-        patch.normal = patch.area > 0.0f ? patch.vector_area / patch.area : glm::vec3(0, 0, 1);
-        patch.radius = std::sqrt(std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(c, c)}));
-        for (const glm::vec3 corner : {a, b, c})
-            patch.spread.add_square(corner, patch.area / 12.0f);
-        nodes_[index] = {patch.center, patch.radius, patch.normal, 0.0f, a, 0.0f, b, 0};
-        return patch;
-    }
-
-    Patch finish_inner(std::size_t index, std::size_t begin, std::size_t end, const Patch& left,
-                       const Patch& right)
-    {
-        Patch patch;
-        patch.area = left.area + right.area;
-        const float share = patch.area > 0.0f ? right.area / patch.area : 0.5f;
-        const glm::vec3 apart = right.center - left.center;
-        patch.center = left.center + share * apart;
-        patch.vector_area = left.vector_area + right.vector_area;
-        patch.spread = left.spread;
-        patch.spread.add(right.spread);
-        patch.spread.add_square(apart, left.area * share);
-        const float seen_area = glm::length(patch.vector_area);
-        const float flatness = patch.area > 0.0f ? std::min(1.0f, seen_area / patch.area) : 0.0f;
-        patch.normal = seen_area > 0.0f ? patch.vector_area / seen_area : left.normal;
-        bound(patch, begin, end, left, right);
-
-        MaskNode& node = nodes_[index];
-        node.center = patch.center;
-        node.radius = patch.radius;
-        node.normal = patch.normal;
-        node.thickness = patch.thickness;
-        node.open_radius = patch.radius * (1.0f + kFlatnessPenalty * (1.0f - flatness));
-        set_rectangle(node, patch, seen_area, flatness, begin, end);
-        return patch;
-    }
-
-    void bound(Patch& patch, std::size_t begin, std::size_t end, const Patch& left,
-               const Patch& right) const
-    {
-        if (end - begin <= kExactBounds) {
-            float farthest = 0.0f;
-            for (std::size_t i = begin; i < end; ++i) {
-                const Corners p = corners(keys_[i].triangle);
-                for (const glm::vec3 corner : {p.a, p.b, p.c}) {
-                    const glm::vec3 d = corner - patch.center;
-                    farthest = std::max(farthest, glm::dot(d, d));
-                    patch.thickness =
-                        std::max(patch.thickness, std::abs(glm::dot(d, patch.normal)));
-                }
-            }
-            patch.radius = std::sqrt(farthest);
-            return;
-        }
-        for (const Patch* child : {&left, &right}) {
-            const glm::vec3 d = child->center - patch.center;
-            patch.radius = std::max(patch.radius, glm::length(d) + child->radius);
-            const float rise = glm::length(glm::cross(child->normal, patch.normal)) * child->radius;
-            patch.thickness =
-                std::max(patch.thickness, std::abs(glm::dot(d, patch.normal)) +
-                                              std::min(child->radius, child->thickness + rise));
-        }
-    }
-
-    /// Axes of the second moments in the plane; sides in the ratio of the spreads, scaled to the
-    /// area, never longer than the node.
-    void set_rectangle(MaskNode& node, const Patch& patch, float seen_area, float flatness,
-                       std::size_t begin, std::size_t end) const
-    {
-        const glm::vec3 t = perpendicular(patch.normal);
-        const glm::vec3 b = glm::cross(patch.normal, t);
-        // mean squares, not integrals: the products below must not underflow at small triangles
-        const float per_area = patch.area > 0.0f ? 1.0f / patch.area : 0.0f;
-        const glm::vec3 st = per_area * patch.spread.times(t);
-        const float tt = glm::dot(st, t);
-        const float tb = glm::dot(st, b);
-        const float bb = per_area * glm::dot(patch.spread.times(b), b);
-        // eigenvalues of ((tt, tb), (tb, bb)): mean +- deviation; the axis by half angles
-        const float mean = 0.5f * (tt + bb);
-        const float half = 0.5f * (tt - bb);
-        const float deviation = std::sqrt(half * half + tb * tb);
-        float cosine = 1.0f;
-        float sine = 0.0f;
-        if (deviation > 0.0f) {
-            const float c2 = half / deviation;
-            cosine = std::sqrt(std::max(0.0f, 0.5f * (1.0f + c2)));
-            sine = std::copysign(std::sqrt(std::max(0.0f, 0.5f * (1.0f - c2))), tb);
-        }
-        const glm::vec3 axis = cosine * t + sine * b;
-        const float wide = mean + deviation;
-        const float narrow = std::max(mean - deviation, 1e-12f * mean);
-        const float spread_area = 12.0f * std::sqrt(wide * narrow);
-
-        const float cover = spread_area > 0.0f ? patch.area / spread_area : 1.0f;
-        node.open_radius += patch.radius * kGapPenalty * std::max(0.0f, kSheetCover - cover);
-        const bool may_be_whole = flatness > 1.0f - kWhole &&
-                                  std::abs(spread_area - patch.area) < 10.0f * kWhole * patch.area;
-        if (may_be_whole) {
-            // a square has no axes of its own: its triangles' edges lie along them
-            const Corners p = corners(keys_[begin].triangle);
-            for (const glm::vec3 direction : {axis, p.b - p.a, p.c - p.b, p.a - p.c}) {
-                if (set_whole_rectangle(node, patch, glm::normalize(direction), begin, end))
-                    return;
-            }
-        }
-
-        // sheets that lie on each other count once: their spread tells how wide they are together
-        const float quarter = 0.25f * std::min(seen_area, kSpreadMargin * spread_area);
-        float length_u = 0.0f;
-        float length_v = 0.0f;
-        if (quarter > 0.0f && narrow > 0.0f) {
-            length_u = std::sqrt(quarter * std::sqrt(wide / narrow));
-            length_u = std::min(length_u, patch.radius);
-            length_v = quarter / length_u;
-            const float diagonal = std::sqrt(length_u * length_u + length_v * length_v);
-            const float shrink = std::min(1.0f, patch.radius / diagonal);
-            const bool sheet = flatness > kSheetFlatness && patch.area > kSheetCover * spread_area;
-            const float rim = std::max(0.0f, 1.0f - kDilationSlope * (1.0f - flatness));
-            const float grow = sheet ? 1.0f + kDilation * rim : 1.0f;
-            if (sheet)
-                node.links |= kMaskSheet;
-            length_u *= shrink * grow;
-            length_v *= shrink * grow;
-        }
-        node.axis_u = length_u * axis;
-        node.axis_v = length_v * glm::cross(patch.normal, axis);
-    }
-
-    /// Where the triangles tile a rectangle with sides along and across `axis`, the node is that
-    /// rectangle, no approximation, and need not ever be opened.
-    bool set_whole_rectangle(MaskNode& node, const Patch& patch, glm::vec3 axis, std::size_t begin,
-                             std::size_t end) const
-    {
-        const glm::vec3 across = glm::cross(patch.normal, axis);
-        glm::vec3 low(std::numeric_limits<float>::max());
-        glm::vec3 high(-std::numeric_limits<float>::max());
-        for (std::size_t i = begin; i < end; ++i) {
-            const Corners p = corners(keys_[i].triangle);
-            for (const glm::vec3 corner : {p.a, p.b, p.c}) {
-                const glm::vec3 d = corner - patch.center;
-                const glm::vec3 at(glm::dot(d, axis), glm::dot(d, across),
-                                   glm::dot(d, patch.normal));
-                low = glm::min(low, at);
-                high = glm::max(high, at);
-            }
-        }
-        const glm::vec3 half = 0.5f * (high - low);
-        const float along2 = glm::dot(patch.spread.times(axis), axis) / patch.area;
-        const float across2 = glm::dot(patch.spread.times(across), across) / patch.area;
-        const auto differ = [](float a, float b, float limit) {
-            return !(std::abs(a - b) <= limit * b);
+        MaskPatch left, right;
+        const auto build_left = [&] {
+            left = build_node(first, left_first, begin, middle, 1 - side);
         };
-        if (half.z > kWhole * patch.radius || differ(patch.area, 4.0f * half.x * half.y, kWhole) ||
-            differ(along2, half.x * half.x / 3.0f, 10.0f * kWhole) ||
-            differ(across2, half.y * half.y / 3.0f, 10.0f * kWhole))
-            return false;
-        const glm::vec3 middle = 0.5f * (low + high);
-        node.center = patch.center + middle.x * axis + middle.y * across;
-        node.radius = std::sqrt(half.x * half.x + half.y * half.y);
-        node.open_radius = 0.0f;
-        node.axis_u = half.x * axis;
-        node.axis_v = half.y * across;
-        return true;
+        const auto build_right = [&] {
+            right = build_node(first + 1, right_first, middle, end, 1 - side);
+        };
+        if (count > kParallelNode) {
+            tbb::parallel_invoke(build_left, build_right);
+        } else {
+            build_left();
+            build_right();
+        }
+
+        MaskPatch patch;
+        join(patch, left, right);
+        MaskPatchNode shown{&patch, &nodes_[index], false};
+        show_patches({&shown, 1});
+        if (shown.may_be_whole) {
+            const std::size_t stride = count + MaskCorners::kSlack;
+            std::vector<float> columns(9 * stride);
+            for (std::size_t i = 0; i < count; ++i)
+                gather_corners(order_[begin + i], columns.data(), stride, i);
+            make_whole(patch, {columns.data(), stride, count}, nodes_[index]);
+        }
+        nodes_[index].links |= static_cast<std::uint32_t>(first);
+        return patch;
+    }
+
+    /// Parts keys [begin, end) of one side into the other side. Returns where the second part
+    /// begins. What the plane does not part is cut in two halves.
+    std::size_t split(std::size_t begin, std::size_t end, int side)
+    {
+        const std::span<const Key> keys(keys_[side].data() + begin, end - begin);
+        Key* const out = keys_[1 - side].data() + begin;
+        std::size_t below = 0;
+        if (keys.size() <= kParallelSplit) {
+            below = part(keys, plane_of(Extent(keys)), out, 0, keys.size());
+        } else {
+            // the same in blocks: the keys of each go where they would go in one pass
+            const auto block = [&](std::size_t i) {
+                return keys.subspan(i * kBlock, std::min(kBlock, keys.size() - i * kBlock));
+            };
+            const std::size_t blocks = (keys.size() + kBlock - 1) / kBlock;
+            std::vector<Extent> extents(blocks);
+            tbb::parallel_for(std::size_t{0}, blocks,
+                              [&](std::size_t i) { extents[i] = Extent(block(i)); });
+            Extent extent;
+            for (const Extent& one : extents)
+                extent.add(one);
+            const Plane plane = plane_of(extent);
+            std::vector<std::size_t> below_before(blocks + 1, 0);
+            tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t i) {
+                for (const Key& key : block(i))
+                    below_before[i + 1] += plane.below(key) ? 1 : 0;
+            });
+            for (std::size_t i = 0; i < blocks; ++i)
+                below_before[i + 1] += below_before[i];
+            below = below_before[blocks];
+            tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t i) {
+                const std::size_t above_before = i * kBlock - below_before[i];
+                part(block(i), plane, out, below_before[i], keys.size() - above_before);
+            });
+        }
+        const bool parted = below != 0 && below != keys.size();
+        return begin + (parted ? below : keys.size() / 2);
+    }
+
+    /// The corners of a triangle into row `i` of nine columns.
+    void gather_corners(std::uint32_t triangle, float* columns, std::size_t stride,
+                        std::size_t i) const
+    {
+        const glm::uvec3 t = geometry_.triangles[triangle];
+        for (int corner = 0; corner < 3; ++corner) {
+            const glm::vec3 p = positions_[t[corner]];
+            for (int axis = 0; axis < 3; ++axis, columns += stride)
+                columns[i] = p[axis];
+        }
+    }
+
+    /// build_node for few triangles.
+    MaskPatch build_bundle(std::size_t index, std::size_t first, std::size_t begin, std::size_t end,
+                           int side)
+    {
+        Bundle bundle;
+        const std::size_t count = end - begin;
+        // triangles stand anywhere in memory: they are asked for long before they are needed
+        for (std::size_t i = 0; i < count; ++i) {
+            bundle.keys[0][i] = keys_[side][begin + i];
+            __builtin_prefetch(&geometry_.triangles[bundle.keys[0][i].triangle]);
+        }
+        std::uint32_t* const order = order_.data() + begin;
+        const std::size_t inner_count = split_bundle(bundle, count, order);
+        for (std::size_t i = 0; i < count; ++i) {
+            const glm::uvec3 t = geometry_.triangles[order[i]];
+            for (int corner = 0; corner < 3; ++corner)
+                __builtin_prefetch(&positions_[t[corner]]);
+        }
+
+        for (std::size_t i = 0; i < count; ++i)
+            gather_corners(order[i], bundle.corners.data(), Bundle::kStride, i);
+        for (std::size_t column = 0; column < 9; ++column)
+            std::fill_n(bundle.corners.data() + column * Bundle::kStride + count,
+                        MaskCorners::kSlack, 0.0f);
+        const MaskCorners corners{bundle.corners.data(), Bundle::kStride, count};
+        const auto place = [&](std::size_t k) { return k == 0 ? index : first + k - 1; };
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t k = bundle.leaf[i];
+            bundle.shown[i] = {&bundle.patches[k], &nodes_[place(k)], false};
+        }
+        set_triangles({bundle.shown.data(), count}, corners);
+
+        // children before their parents
+        for (std::size_t i = inner_count; i-- > 0;) {
+            const std::size_t k = bundle.inner[i];
+            const Bundle::Node node = bundle.nodes[k];
+            join(bundle.patches[k], bundle.patches[node.first_child],
+                 bundle.patches[node.first_child + 1], corners.part(node.begin, node.end));
+            bundle.shown[i] = {&bundle.patches[k], &nodes_[place(k)], false};
+        }
+        show_patches({bundle.shown.data(), inner_count});
+        for (std::size_t i = 0; i < inner_count; ++i) {
+            const Bundle::Node node = bundle.nodes[bundle.inner[i]];
+            const MaskPatchNode& shown = bundle.shown[i];
+            if (shown.may_be_whole)
+                make_whole(*shown.patch, corners.part(node.begin, node.end), *shown.node);
+            shown.node->links |= static_cast<std::uint32_t>(first + node.first_child - 1);
+        }
+        return bundle.patches[0];
+    }
+
+    /// The nodes over the bundle's keys, and the triangles in the order of the leaves. Returns how
+    /// many nodes are not triangles.
+    static std::size_t split_bundle(Bundle& bundle, std::size_t count, std::uint32_t* order)
+    {
+        std::size_t node_count = 1;
+        std::size_t inner_count = 0;
+        bundle.nodes[0] = {0, static_cast<std::uint8_t>(count), 0, 0};
+        for (std::size_t k = 0; k < node_count; ++k) {
+            Bundle::Node& node = bundle.nodes[k];
+            const std::size_t size = node.end - node.begin;
+            const Key* const keys = bundle.keys[node.side].data() + node.begin;
+            if (size == 1) {
+                bundle.leaf[node.begin] = static_cast<std::uint8_t>(k);
+                order[node.begin] = keys->triangle;
+                continue;
+            }
+            std::uint8_t side = node.side;
+            std::size_t below = 1;
+            if (size > 2) {
+                side = 1 - side;
+                Key* const out = bundle.keys[side].data() + node.begin;
+                below = part({keys, size}, plane_of(Extent({keys, size})), out, 0, size);
+                below = below != 0 && below != size ? below : size / 2;
+            }
+            const auto middle = static_cast<std::uint8_t>(node.begin + below);
+            node.first_child = static_cast<std::uint8_t>(node_count);
+            bundle.inner[inner_count++] = static_cast<std::uint8_t>(k);
+            bundle.nodes[node_count++] = {node.begin, middle, 0, side};
+            bundle.nodes[node_count++] = {middle, node.end, 0, side};
+        }
+        return inner_count;
     }
 
     const Geometry& geometry_;
-    std::vector<Key> keys_;
+    std::vector<glm::vec3> positions_;      ///< in the mask frame
+    std::array<std::vector<Key>, 2> keys_;  ///< to and fro from level to level
+    std::vector<std::uint32_t> order_;      ///< the triangles below each finished node in one range
     std::vector<MaskNode> nodes_;
 };
 

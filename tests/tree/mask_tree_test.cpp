@@ -1,0 +1,148 @@
+#include "tree/mask_tree.h"
+
+#include "scenes.h"
+#include "surfels/geometry.h"
+#include "tree/mask_kernel.h"
+#include "tree/masks.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+namespace surfelao {
+namespace {
+
+using Triangle = std::array<glm::vec3, 3>;
+
+std::uint32_t first_child(const MaskNode& node)
+{
+    return node.links & ~kMaskSheet;
+}
+
+/// The triangles below a node, as its leaves show them. Counts visits.
+std::vector<Triangle> triangles_below(const MaskTree& tree, std::size_t index,
+                                      std::vector<int>& visits)
+{
+    const MaskNode& node = tree.nodes.at(index);
+    ++visits.at(index);
+    if (first_child(node) == 0) {
+        return {{node.center + node.axis_u, node.center + node.axis_v,
+                 node.center - node.axis_u - node.axis_v}};
+    }
+    std::vector<Triangle> all = triangles_below(tree, first_child(node), visits);
+    const std::vector<Triangle> more = triangles_below(tree, first_child(node) + 1, visits);
+    all.insert(all.end(), more.begin(), more.end());
+
+    // no corner is outside of radius and slab; both are rounded, hence the millionths of the scene
+    const bool exact = node.open_radius == 0.0f;
+    float farthest = 0.0f, highest = 0.0f;
+    for (const Triangle& triangle : all) {
+        for (const glm::vec3 corner : triangle) {
+            farthest = std::max(farthest, glm::length(corner - node.center));
+            highest = std::max(highest, std::abs(glm::dot(corner - node.center, node.normal)));
+        }
+    }
+    EXPECT_LE(farthest, node.radius * (exact ? 1.0002f : 1.0f) + 2e-6f);
+    EXPECT_LE(highest, node.thickness + 2e-6f);
+    return all;
+}
+
+void expect_whole(const Geometry& geometry)
+{
+    const auto tree = build_mask_tree(geometry);
+    const std::size_t count = geometry.triangles.size();
+    ASSERT_EQ(tree->nodes.size(), 2 * count - 1);
+    std::vector<int> visits(tree->nodes.size(), 0);
+    std::vector<Triangle> found = triangles_below(*tree, 0, visits);
+    EXPECT_EQ(std::count(visits.begin(), visits.end(), 1),
+              static_cast<std::ptrdiff_t>(visits.size()));
+    ASSERT_EQ(found.size(), count);
+
+    // the leaves are the triangles
+    const auto center = [](const Triangle& t) { return (t[0] + t[1] + t[2]) / 3.0f; };
+    std::vector<Triangle> expected;
+    for (const glm::uvec3 t : geometry.triangles) {
+        expected.push_back({kMaskFrame * geometry.positions[t.x],
+                            kMaskFrame * geometry.positions[t.y],
+                            kMaskFrame * geometry.positions[t.z]});
+    }
+    glm::dvec3 sum(0.0), expected_sum(0.0);
+    double squares = 0.0, expected_squares = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::dvec3 a(center(found[i])), b(center(expected[i]));
+        sum += a;
+        expected_sum += b;
+        squares += glm::dot(a, a);
+        expected_squares += glm::dot(b, b);
+    }
+    EXPECT_LT(glm::length(sum - expected_sum), 1e-6 * static_cast<double>(count));
+    EXPECT_NEAR(squares, expected_squares, 1e-6 * static_cast<double>(count));
+}
+
+TEST(MaskTree, HoldsEveryTriangleOnceAndBoundsIt)
+{
+    expect_whole(make_geometry(scenes::bumpy_sphere(12)));
+    using scenes::operator+;
+    expect_whole(make_geometry(scenes::room({-3, -3, -3}, {3, 3, 3}, 7) +
+                               scenes::sphere({0, 0, 0}, 1.0, 5)));
+}
+
+// Nothing parts them but halving.
+TEST(MaskTree, TrianglesAtOnePlaceAreHalved)
+{
+    Scene scene;
+    scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    scene.triangles.assign(100, glm::uvec3(0, 1, 2));
+    expect_whole(make_geometry(scene));
+    scene.triangles.assign(1, glm::uvec3(0, 1, 2));
+    expect_whole(make_geometry(scene));
+}
+
+TEST(MaskTree, IsEmptyWithoutTriangles)
+{
+    EXPECT_TRUE(build_mask_tree(make_geometry(Scene{}))->nodes.empty());
+}
+
+TEST(MaskTree, TessellatedRectangleIsOneRectangle)
+{
+    for (const int cells : {1, 3, 40}) {
+        // ever smaller towards one side, so that the halves hold unlike numbers
+        const Scene scene =
+            scenes::moved(scenes::sheet({0, 0, 0}, {3, 0, 0}, {0, 1, 0}, cells), [](glm::dvec3 p) {
+                p.x = p.x * p.x * p.x / 9.0;
+                return p;
+            });
+        const auto tree = build_mask_tree(make_geometry(scene));
+        const MaskNode& root = tree->nodes.front();
+        EXPECT_EQ(root.open_radius, 0.0f) << cells;
+        EXPECT_NEAR(root.radius, 0.5f, 1e-4f) << cells;
+        const float u = glm::length(root.axis_u), v = glm::length(root.axis_v);
+        EXPECT_NEAR(std::max(u, v) / std::min(u, v), 3.0f, 1e-3f) << cells;
+    }
+}
+
+TEST(MaskTree, SameBytesForAnyNumberOfThreads)
+{
+    const Geometry geometry = make_geometry(scenes::bumpy_sphere(80));
+    ASSERT_GT(geometry.triangles.size(), 65536u);  // the largest nodes are split by all threads
+    const auto build = [&](std::size_t threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        return build_mask_tree(geometry);
+    };
+    const auto one = build(1);
+    for (const std::size_t threads : {2, 5}) {
+        const auto more = build(threads);
+        ASSERT_EQ(one->nodes.size(), more->nodes.size());
+        EXPECT_EQ(std::memcmp(one->nodes.data(), more->nodes.data(),
+                              one->nodes.size() * sizeof(MaskNode)),
+                  0);
+    }
+}
+
+}  // namespace
+}  // namespace surfelao

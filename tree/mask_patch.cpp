@@ -1,0 +1,341 @@
+#include "tree/mask_patch.h"
+
+#include "tree/lanes.h"
+#include "tree/mask_kernel.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace surfelao {
+namespace {
+
+/// A node that is not flat is opened as if its radius were larger by this factor times 1 -
+/// flatness.
+constexpr float kFlatnessPenalty = 10.0f;
+
+/// Rectangles of flat nodes are drawn a little larger: their neighbours most likely continue the
+/// same plane, and the rim closes the cracks. None from a flatness of 1 - 1/kDilationSlope down.
+constexpr float kDilation = 0.08f;
+constexpr float kDilationSlope = 40.0f;
+
+/// A rectangle's area follows from its second moments; a disk's is 1.05 times as large as that, and
+/// no convex shape's is larger. What is above this factor overlaps itself.
+constexpr float kSpreadMargin = 1.1f;
+
+/// Triangles that tile a rectangle to within this share of its area and size are one rectangle.
+constexpr float kWhole = 1e-4f;
+
+/// A patch counts as a sheet without gaps where it is at least this flat and fills this share of
+/// the rectangle that its second moments describe. Cracks are filled, and rims drawn, at sheets
+/// only: between leaves there are none.
+constexpr float kSheetFlatness = 0.8f;
+constexpr float kSheetCover = 0.75f;
+
+/// A patch with gaps would be drawn as one rectangle in their midst: it is opened as if its radius
+/// were larger by this factor times what its cover lacks of a sheet's.
+constexpr float kGapPenalty = 10.0f;
+
+/// The same bytes, four floats at a time.
+using PatchRows = std::array<Lanes, sizeof(MaskPatch) / sizeof(Lanes)>;
+using NodeRows = std::array<Lanes, sizeof(MaskNode) / sizeof(Lanes)>;
+
+glm::vec3 spread_along(const MaskPatch& p, glm::vec3 v)
+{
+    return {p.xx * v.x + p.xy * v.y + p.xz * v.z, p.xy * v.x + p.yy * v.y + p.yz * v.z,
+            p.xz * v.x + p.yz * v.y + p.zz * v.z};
+}
+
+/// All but radius and thickness.
+void set_sums(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right)
+{
+    patch.area = left.area + right.area;
+    const float share = patch.area > 0.0f ? right.area / patch.area : 0.5f;
+    const glm::vec3 apart = right.center - left.center;
+    patch.center = left.center + share * apart;
+    patch.vector_area = left.vector_area + right.vector_area;
+    patch.seen_area = glm::length(patch.vector_area);
+    patch.normal = patch.seen_area > 0.0f ? patch.vector_area / patch.seen_area : left.normal;
+    const glm::vec3 weighted = left.area * share * apart;
+    patch.xx = left.xx + right.xx + weighted.x * apart.x;
+    patch.xy = left.xy + right.xy + weighted.x * apart.y;
+    patch.xz = left.xz + right.xz + weighted.x * apart.z;
+    patch.yy = left.yy + right.yy + weighted.y * apart.y;
+    patch.yz = left.yz + right.yz + weighted.y * apart.z;
+    patch.zz = left.zz + right.zz + weighted.z * apart.z;
+    patch.padding = 0.0f;
+}
+
+/// What set_rectangles reads and what it finds, for as many patches as there are lanes.
+struct Columns {
+    Lanes normal_x, normal_y, normal_z, xx, xy, xz, yy, yz, zz, area, seen_area, radius;
+    Lanes axis_x, axis_y, axis_z, length_u, length_v, open_radius;
+    LaneMask sheet, may_be_whole;
+};
+
+/// Axes of the second moments in the plane; sides in the ratio of the spreads, scaled to the area,
+/// never longer than the node.
+void set_rectangles(Columns& of)
+{
+    const Lanes zero = all_lanes(0.0f), one = all_lanes(1.0f);
+    const Lanes nx = of.normal_x, ny = of.normal_y, nz = of.normal_z;
+
+    // t and b across the normal: the branchless basis of Duff et al., Building an Orthonormal
+    // Basis, Revisited, JCGT 2017
+    const Lanes sign = with_sign(one, nz);
+    const Lanes a = -1.0f / (sign + nz);
+    const Lanes tx = 1.0f + sign * nx * nx * a, ty = sign * nx * ny * a, tz = -sign * nx;
+    const Lanes bx = ny * tz - ty * nz, by = nz * tx - tz * nx, bz = nx * ty - tx * ny;
+
+    // mean squares, not integrals: the products below must not underflow at small triangles
+    const Lanes per_area = of.area > 0.0f ? 1.0f / of.area : zero;
+    const Lanes tt = per_area * ((of.xx * tx + of.xy * ty + of.xz * tz) * tx +
+                                 (of.xy * tx + of.yy * ty + of.yz * tz) * ty +
+                                 (of.xz * tx + of.yz * ty + of.zz * tz) * tz);
+    const Lanes sbx = per_area * (of.xx * bx + of.xy * by + of.xz * bz);
+    const Lanes sby = per_area * (of.xy * bx + of.yy * by + of.yz * bz);
+    const Lanes sbz = per_area * (of.xz * bx + of.yz * by + of.zz * bz);
+    const Lanes tb = sbx * tx + sby * ty + sbz * tz;
+    const Lanes bb = sbx * bx + sby * by + sbz * bz;
+
+    // eigenvalues of ((tt, tb), (tb, bb)): mean +- deviation; the axis by half angles
+    const Lanes mean = 0.5f * (tt + bb);
+    const Lanes half = 0.5f * (tt - bb);
+    const Lanes deviation = root(half * half + tb * tb);
+    const Lanes c2 = deviation > 0.0f ? half / deviation : one;
+    const Lanes cosine = root(most(zero, 0.5f * (1.0f + c2)));
+    const Lanes sine = with_sign(root(most(zero, 0.5f * (1.0f - c2))), tb);
+    of.axis_x = cosine * tx + sine * bx;
+    of.axis_y = cosine * ty + sine * by;
+    of.axis_z = cosine * tz + sine * bz;
+    const Lanes wide = mean + deviation;
+    const Lanes narrow = most(mean - deviation, 1e-12f * mean);
+    const Lanes spread_area = 12.0f * root(wide * narrow);
+
+    const Lanes flatness = of.area > 0.0f ? least(one, of.seen_area / of.area) : zero;
+    const Lanes cover = spread_area > 0.0f ? of.area / spread_area : one;
+    of.open_radius = of.radius * (1.0f + kFlatnessPenalty * (1.0f - flatness)) +
+                     of.radius * kGapPenalty * most(zero, kSheetCover - cover);
+    of.may_be_whole =
+        (flatness > 1.0f - kWhole) & (absolute(spread_area - of.area) < 10.0f * kWhole * of.area);
+
+    // sheets that lie on each other count once: their spread tells how wide they are together
+    const Lanes quarter = 0.25f * least(of.seen_area, kSpreadMargin * spread_area);
+    const LaneMask any = (quarter > 0.0f) & (narrow > 0.0f);
+    const Lanes length_u = least(root(quarter * root(wide / narrow)), of.radius);
+    const Lanes length_v = quarter / length_u;
+    const Lanes diagonal = root(length_u * length_u + length_v * length_v);
+    const Lanes shrink = least(one, of.radius / diagonal);
+    of.sheet = (flatness > kSheetFlatness) & (of.area > kSheetCover * spread_area) & any;
+    const Lanes rim = most(zero, 1.0f - kDilationSlope * (1.0f - flatness));
+    const Lanes size = shrink * (of.sheet ? 1.0f + kDilation * rim : one);
+    of.length_u = any ? length_u * size : zero;
+    of.length_v = any ? length_v * size : zero;
+}
+
+/// Whether the triangles tile a rectangle with sides along and across `axis`; if so, shows it.
+bool make_whole_along(glm::vec3 axis, const MaskPatch& patch, const MaskCorners& corners,
+                      MaskNode& node)
+{
+    const glm::vec3 across = glm::cross(patch.normal, axis);
+    glm::vec3 low(std::numeric_limits<float>::max());
+    glm::vec3 high(-std::numeric_limits<float>::max());
+    for (std::size_t i = 0; i < corners.count; ++i) {
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const glm::vec3 d = corners.at(corner, i) - patch.center;
+            const glm::vec3 at(glm::dot(d, axis), glm::dot(d, across), glm::dot(d, patch.normal));
+            low = glm::min(low, at);
+            high = glm::max(high, at);
+        }
+    }
+    const glm::vec3 half = 0.5f * (high - low);
+    const float along2 = glm::dot(spread_along(patch, axis), axis) / patch.area;
+    const float across2 = glm::dot(spread_along(patch, across), across) / patch.area;
+    const auto differ = [](float a, float b, float limit) {
+        return !(std::abs(a - b) <= limit * b);
+    };
+    if (half.z > kWhole * patch.radius || differ(patch.area, 4.0f * half.x * half.y, kWhole) ||
+        differ(along2, half.x * half.x / 3.0f, 10.0f * kWhole) ||
+        differ(across2, half.y * half.y / 3.0f, 10.0f * kWhole))
+        return false;
+    const glm::vec3 middle = 0.5f * (low + high);
+    node.center = patch.center + middle.x * axis + middle.y * across;
+    node.radius = std::sqrt(half.x * half.x + half.y * half.y);
+    node.open_radius = 0.0f;
+    node.axis_u = half.x * axis;
+    node.axis_v = half.y * across;
+    node.links &= ~kMaskSheet;
+    return true;
+}
+
+}  // namespace
+
+void set_triangles(std::span<const MaskPatchNode> nodes, const MaskCorners& corners)
+{
+    const Lanes zero = all_lanes(0.0f);
+    for (std::size_t begin = 0; begin < nodes.size(); begin += kLaneCount) {
+        // as many triangles as lanes: [corner][axis]
+        std::array<std::array<Lanes, 3>, 3> p;
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                p[corner][axis] = load_lanes(corners.column(corner, axis) + begin);
+        }
+        const auto& [a, b, c] = p;
+        std::array<Lanes, 3> center, ab, ac, from_a, from_b, from_c;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            center[axis] = (a[axis] + b[axis] + c[axis]) * (1.0f / 3.0f);
+            ab[axis] = b[axis] - a[axis];
+            ac[axis] = c[axis] - a[axis];
+            from_a[axis] = a[axis] - center[axis];
+            from_b[axis] = b[axis] - center[axis];
+            from_c[axis] = c[axis] - center[axis];
+        }
+        const auto dot = [](const std::array<Lanes, 3>& u, const std::array<Lanes, 3>& v) {
+            return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+        };
+        const std::array<Lanes, 3> vector_area = {0.5f * (ab[1] * ac[2] - ac[1] * ab[2]),
+                                                  0.5f * (ab[2] * ac[0] - ac[2] * ab[0]),
+                                                  0.5f * (ab[0] * ac[1] - ac[0] * ab[1])};
+        const Lanes area = root(dot(vector_area, vector_area));
+        const std::array<Lanes, 3> normal = {area > 0.0f ? vector_area[0] / area : zero,
+                                             area > 0.0f ? vector_area[1] / area : zero,
+                                             area > 0.0f ? vector_area[2] / area : zero + 1.0f};
+        const Lanes radius =
+            root(most(most(dot(from_a, from_a), dot(from_b, from_b)), dot(from_c, from_c)));
+        const Lanes weight = area * (1.0f / 12.0f);
+        const auto spread = [&](std::size_t i, std::size_t k) {
+            return weight * (from_a[i] * from_a[k] + from_b[i] * from_b[k] + from_c[i] * from_c[k]);
+        };
+
+        // from a column for each number to a row for each triangle
+        std::array<std::array<Lanes, kLaneCount>, 5> patch = {
+            {{center[0], center[1], center[2], area},
+             {vector_area[0], vector_area[1], vector_area[2], area},
+             {normal[0], normal[1], normal[2], radius},
+             {spread(0, 0), spread(0, 1), spread(0, 2), zero},
+             {spread(1, 1), spread(1, 2), spread(2, 2), zero}}};
+        std::array<std::array<Lanes, kLaneCount>, 4> node = {
+            {{center[0], center[1], center[2], radius},
+             {normal[0], normal[1], normal[2], zero},
+             {from_a[0], from_a[1], from_a[2], zero},
+             {from_b[0], from_b[1], from_b[2], zero}}};
+        for (auto& [x, y, z, w] : patch)
+            transpose(x, y, z, w);
+        for (auto& [x, y, z, w] : node)
+            transpose(x, y, z, w);
+        for (std::size_t i = 0; i < std::min(kLaneCount, nodes.size() - begin); ++i) {
+            *nodes[begin + i].patch = std::bit_cast<MaskPatch>(
+                PatchRows{patch[0][i], patch[1][i], patch[2][i], patch[3][i], patch[4][i]});
+            *nodes[begin + i].node =
+                std::bit_cast<MaskNode>(NodeRows{node[0][i], node[1][i], node[2][i], node[3][i]});
+        }
+    }
+}
+
+void join(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right)
+{
+    set_sums(patch, left, right);
+    patch.radius = 0.0f;
+    patch.thickness = 0.0f;
+    for (const MaskPatch* child : {&left, &right}) {
+        const glm::vec3 d = child->center - patch.center;
+        patch.radius = std::max(patch.radius, glm::length(d) + child->radius);
+        const float rise = glm::length(glm::cross(child->normal, patch.normal)) * child->radius;
+        patch.thickness =
+            std::max(patch.thickness, std::abs(glm::dot(d, patch.normal)) +
+                                          std::min(child->radius, child->thickness + rise));
+    }
+}
+
+void join(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right,
+          const MaskCorners& corners)
+{
+    set_sums(patch, left, right);
+    const glm::vec3 c = patch.center, n = patch.normal;
+    Lanes farthest = all_lanes(0.0f), highest = all_lanes(0.0f);
+    for (std::size_t i = 0; i < corners.count; i += kLaneCount) {
+        const auto rest = static_cast<std::int32_t>(corners.count - i);
+        const LaneMask inside = LaneMask{0, 1, 2, 3} < rest;
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const Lanes x = load_lanes(corners.column(corner, 0) + i) - c.x;
+            const Lanes y = load_lanes(corners.column(corner, 1) + i) - c.y;
+            const Lanes z = load_lanes(corners.column(corner, 2) + i) - c.z;
+            const Lanes distance2 = x * x + y * y + z * z;
+            const Lanes height = absolute(x * n.x + y * n.y + z * n.z);
+            farthest = most(farthest, inside ? distance2 : all_lanes(0.0f));
+            highest = most(highest, inside ? height : all_lanes(0.0f));
+        }
+    }
+    patch.radius = std::sqrt(std::max({farthest[0], farthest[1], farthest[2], farthest[3]}));
+    patch.thickness = std::max({highest[0], highest[1], highest[2], highest[3]});
+}
+
+void show_patches(std::span<MaskPatchNode> nodes)
+{
+    for (std::size_t begin = 0; begin < nodes.size(); begin += kLaneCount) {
+        const std::size_t count = std::min(kLaneCount, nodes.size() - begin);
+        // from a row for each patch to a column for each number
+        std::array<std::array<Lanes, kLaneCount>, 5> patch;
+        for (std::size_t i = 0; i < kLaneCount; ++i) {
+            const auto rows =
+                std::bit_cast<PatchRows>(*nodes[begin + std::min(i, count - 1)].patch);
+            for (std::size_t row = 0; row < rows.size(); ++row)
+                patch[row][i] = rows[row];
+        }
+        for (auto& [x, y, z, w] : patch)
+            transpose(x, y, z, w);
+        Columns columns;
+        columns.area = patch[0][3];
+        columns.seen_area = patch[1][3];
+        columns.normal_x = patch[2][0];
+        columns.normal_y = patch[2][1];
+        columns.normal_z = patch[2][2];
+        columns.radius = patch[2][3];
+        columns.xx = patch[3][0];
+        columns.xy = patch[3][1];
+        columns.xz = patch[3][2];
+        columns.yy = patch[4][0];
+        columns.yz = patch[4][1];
+        columns.zz = patch[4][2];
+        set_rectangles(columns);
+
+        // and back
+        const Columns& of = columns;
+        const Lanes across_x = of.normal_y * of.axis_z - of.axis_y * of.normal_z;
+        const Lanes across_y = of.normal_z * of.axis_x - of.axis_z * of.normal_x;
+        const Lanes across_z = of.normal_x * of.axis_y - of.axis_x * of.normal_y;
+        std::array<std::array<Lanes, kLaneCount>, 4> node = {
+            {{patch[0][0], patch[0][1], patch[0][2], of.radius},
+             {of.normal_x, of.normal_y, of.normal_z, patch[3][3]},
+             {of.length_u * of.axis_x, of.length_u * of.axis_y, of.length_u * of.axis_z,
+              of.open_radius},
+             {of.length_v * across_x, of.length_v * across_y, of.length_v * across_z,
+              all_lanes(0.0f)}}};
+        for (auto& [x, y, z, w] : node)
+            transpose(x, y, z, w);
+        for (std::size_t i = 0; i < count; ++i) {
+            MaskPatchNode& out = nodes[begin + i];
+            *out.node =
+                std::bit_cast<MaskNode>(NodeRows{node[0][i], node[1][i], node[2][i], node[3][i]});
+            out.node->links = columns.sheet[i] != 0 ? kMaskSheet : 0;
+            out.may_be_whole = columns.may_be_whole[i] != 0;
+        }
+    }
+}
+
+void make_whole(const MaskPatch& patch, const MaskCorners& corners, MaskNode& node)
+{
+    const glm::vec3 a = corners.at(0, 0), b = corners.at(1, 0), c = corners.at(2, 0);
+    // a square has no axes of its own: its triangles' edges lie along them
+    for (const glm::vec3 direction : {node.axis_u, b - a, c - b, a - c}) {
+        if (make_whole_along(glm::normalize(direction), patch, corners, node))
+            return;
+    }
+}
+
+}  // namespace surfelao
