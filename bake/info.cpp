@@ -62,7 +62,7 @@ std::vector<std::string> oddities(const Info& info)
 
 }  // namespace
 
-Info inspect(const std::filesystem::path& input)
+Info inspect(const std::filesystem::path& input, const Progress& progress)
 {
     const Scene scene = read_scene(input);
     const Geometry geometry = make_geometry(scene);
@@ -101,8 +101,8 @@ Info inspect(const std::filesystem::path& input)
             examined.push_back(receivers[v]);
     }
     info.examined = examined.size();
-    for (const float change :
-         placement_change(RayScene(geometry, RayScene::Build::robust), examined, definition))
+    for (const float change : placement_change(RayScene(geometry, RayScene::Build::robust),
+                                               examined, definition, progress))
         info.ill_defined += change > kIllDefined;
     return info;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "surfels/half_edges.h"
+#include "surfels/progress.h"
 #include "surfels/scene.h"
 #include "surfels/topology.h"
 
@@ -32,8 +33,9 @@ struct Info {
     double area = 0.0;  ///< the file's units squared
 };
 
-/// Reads and looks, with rays at up to kExaminedVertices vertices. Throws InputError.
-[[nodiscard]] Info inspect(const std::filesystem::path& input);
+/// Reads and looks, with rays at up to kExaminedVertices vertices. Throws InputError; Cancelled
+/// when progress, told of the rays, returns false.
+[[nodiscard]] Info inspect(const std::filesystem::path& input, const Progress& progress = {});
 
 inline constexpr std::uint64_t kExaminedVertices = 20'000;
 

@@ -1,6 +1,7 @@
 #include "bake/info.h"
 #include "cli/commands.h"
 #include "cli/output.h"
+#include "cli/progress_bar.h"
 
 #include <CLI/CLI.hpp>
 
@@ -18,7 +19,10 @@ struct InfoOptions {
 int run(const InfoOptions& options)
 {
     check_report(options.json);
-    const Info info = inspect(options.input);
+    const Info info = [&options] {
+        ProgressBar bar;
+        return inspect(options.input, [&bar](double done) { return bar.update("looking", done); });
+    }();
     if (options.json != "-")
         std::cout << text_of(info);
     if (options.json)

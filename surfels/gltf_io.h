@@ -31,8 +31,9 @@
 namespace surfelao {
 
 /// A scene may have kInstancingBase + kInstancingPerByte * (bytes of the file and its buffers)
-/// vertices, and as many triangles. Nodes that use a mesh again and again can multiply a small file
-/// without end; beyond this it is refused.
+/// vertices, as many triangles, and as many bytes of JSON in the copies of meshes that a writer
+/// makes. Nodes that use a mesh again and again can multiply a small file without end; beyond this
+/// it is refused.
 inline constexpr std::uint64_t kInstancingBase = 1u << 22;
 inline constexpr std::uint64_t kInstancingPerByte = 16;
 

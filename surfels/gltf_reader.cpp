@@ -391,8 +391,10 @@ public:
             for (const Group& group : *meshes_[use.mesh])
                 add_part(use, group);
         }
+        if (uses.empty())
+            fail("", "has no node with a mesh in its scene");
         if (scene_.triangles.empty())
-            fail("", "holds no triangles");
+            fail("", "has meshes of points and lines only, no triangles");
     }
 
 private:
@@ -409,7 +411,18 @@ private:
                                     std::numeric_limits<std::uint32_t>::max());
         std::uint64_t vertices = 0;
         std::uint64_t triangles = 0;
+        std::uint64_t copied_bytes = 0;  // the writer gives each use a copy of the mesh's JSON
+        std::vector<std::uint64_t> mesh_bytes(meshes_.size(), 0);
         for (const Use& use : uses) {
+            copied_bytes += mesh_bytes[use.mesh];
+            if (copied_bytes > limit)
+                fail(numbered("node", use.node),
+                     "repeats " + numbered("mesh", use.mesh) + " of " +
+                         std::to_string(mesh_bytes[use.mesh]) +
+                         " bytes of JSON: there are more repetitions than a file of this size may "
+                         "stand for");
+            if (mesh_bytes[use.mesh] == 0)
+                mesh_bytes[use.mesh] = asset_.document["meshes"][use.mesh].dump().size();
             for (const Group& group : *meshes_[use.mesh]) {
                 vertices += group.positions.count;
                 for (const Primitive& primitive : group.primitives)
@@ -429,7 +442,7 @@ private:
     {
         const std::string& node_name = model_.nodes[use.node].name;
         Part part;
-        part.name = node_name.empty() ? model_.meshes[use.mesh].name : node_name;
+        part.name = shortened(node_name.empty() ? model_.meshes[use.mesh].name : node_name);
         part.node = static_cast<std::int32_t>(use.node);
         part.mesh = static_cast<std::int32_t>(use.mesh);
         part.primitive = static_cast<std::int32_t>(group.primitives.front().index);

@@ -1,5 +1,7 @@
 #include "surfels/ply_file.h"
 
+#include <set>
+
 namespace surfelao::ply {
 namespace {
 
@@ -25,7 +27,10 @@ Type read_type(TextCursor& cursor)
     cursor.fail(quoted(word) + " is not a type");
 }
 
-Property read_property(TextCursor& cursor, const Element& element)
+/// Names of what was declared so far; views into the file.
+using Names = std::set<std::string_view>;
+
+Property read_property(TextCursor& cursor, const Element& element, Names& names)
 {
     Property property;
     TextCursor ahead = cursor;
@@ -36,28 +41,24 @@ Property read_property(TextCursor& cursor, const Element& element)
             cursor.fail("the length of a list must have an integer type");
     }
     property.type = read_type(cursor);
-    property.name = cursor.word();
-    if (property.name.empty())
+    const std::string_view name = cursor.word();
+    if (name.empty())
         cursor.fail("the property has no name");
-    for (const Property& other : element.properties) {
-        if (other.name == property.name) {
-            cursor.fail("element " + quoted(element.name) + " has two properties " +
-                        quoted(property.name));
-        }
-    }
+    if (!names.insert(name).second)
+        cursor.fail("element " + quoted(element.name) + " has two properties " + quoted(name));
+    property.name = name;
     return property;
 }
 
-Element read_element(TextCursor& cursor, const Header& header)
+Element read_element(TextCursor& cursor, Names& names)
 {
-    Element element;
-    element.name = cursor.word();
-    if (element.name.empty())
+    const std::string_view name = cursor.word();
+    if (name.empty())
         cursor.fail("the element has no name");
-    for (const Element& other : header.elements) {
-        if (other.name == element.name)
-            cursor.fail("a second element " + quoted(element.name));
-    }
+    if (!names.insert(name).second)
+        cursor.fail("a second element " + quoted(name));
+    Element element;
+    element.name = name;
     const std::int64_t count = cursor.integer("the count of the element");
     if (count < 0)
         cursor.fail("element " + quoted(element.name) + " has the negative count " +
@@ -117,24 +118,28 @@ Header read_header(const std::string& file_name, std::string_view contents)
         throw InputError(file_name + ": does not begin with the line \"ply\"");
     header.newline = newline_at(contents, cursor.offset());
     bool has_format = false;
+    Names elements;
+    Names properties;  // of the last element
     while (true) {
         if (!cursor.next_line())
             throw InputError(file_name + ": ends within the header (no line \"end_header\")");
         const std::string_view keyword = cursor.word();
         if (keyword == "end_header")
             break;
-        if (keyword == "comment" || keyword == "obj_info")
+        // Blender 2.47 forgot the word "comment" before its "Created by"
+        if (keyword == "comment" || keyword == "obj_info" || keyword == "Created")
             continue;
         if (keyword == "format") {
             header.format = read_format(cursor);
             has_format = true;
         } else if (keyword == "element") {
-            header.elements.push_back(read_element(cursor, header));
+            header.elements.push_back(read_element(cursor, elements));
+            properties.clear();
         } else if (keyword == "property") {
             if (header.elements.empty())
                 cursor.fail("a property before the first element");
             Element& element = header.elements.back();
-            element.properties.push_back(read_property(cursor, element));
+            element.properties.push_back(read_property(cursor, element, properties));
         } else {
             cursor.fail(quoted(keyword) + " is not a word of a PLY header");
         }

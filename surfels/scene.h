@@ -19,7 +19,7 @@ namespace surfelao {
 
 /// One use of one mesh: a consecutive range of vertices and triangles.
 struct Part {
-    std::string name;  ///< for messages and tables; may be empty
+    std::string name;  ///< for messages and tables: may be empty, long ones are cut
     std::uint32_t first_vertex = 0;
     std::uint32_t vertex_count = 0;
     std::uint32_t first_triangle = 0;

@@ -146,15 +146,19 @@ private:
 /// Points in a balanced tree of bounding boxes, which shrink as points are taken out.
 class PointTree {
 public:
-    PointTree(const std::vector<glm::dvec2>& points, std::vector<std::uint32_t> members)
-        : points_(points), members_(std::move(members)), place_(points.size(), kNone)
+    /// Holds those of the points that are listed.
+    PointTree(const std::vector<glm::dvec2>& points, const std::vector<std::uint32_t>& listed)
+        : place_(points.size(), kNone)
     {
+        members_.reserve(listed.size());
+        for (const std::uint32_t point : listed)
+            members_.push_back({points[point], point});
         while (leaf_count_ * kLeafSize < members_.size())
             leaf_count_ *= 2;
         sort(0, members_.size(), leaf_count_);
         for (std::uint32_t i = 0; i < members_.size(); ++i)
-            place_[members_[i]] = i;
-        members_.resize(leaf_count_ * kLeafSize, kNone);
+            place_[members_[i].point] = i;
+        members_.resize(leaf_count_ * kLeafSize);
         boxes_.resize(2 * leaf_count_);
         for (std::size_t node = boxes_.size(); --node > 0;)
             boxes_[node] = box_of(node);
@@ -164,7 +168,7 @@ public:
 
     void erase(std::uint32_t point)
     {
-        members_[place_[point]] = kNone;
+        members_[place_[point]].point = kNone;
         for (std::size_t node = leaf_count_ + place_[point] / kLeafSize; node > 0; node /= 2)
             boxes_[node] = box_of(node);
         place_[point] = kNone;
@@ -193,11 +197,10 @@ public:
                     continue;
                 }
                 for (std::size_t i = 0; i < kLeafSize; ++i) {
-                    const std::uint32_t point = members_[(node - leaf_count_) * kLeafSize + i];
+                    const auto [p, point] = members_[(node - leaf_count_) * kLeafSize + i];
                     if (point == kNone)
                         continue;
                     spend();
-                    const glm::dvec2 p = points_[point];
                     if (p != a && p != b && p != c &&
                         is_in(std::min({turn(a, b, p), turn(b, c, p), turn(c, a, p)})))
                         return point;
@@ -215,6 +218,11 @@ public:
 
 private:
     static constexpr std::size_t kLeafSize = 8;
+
+    struct Member {
+        glm::dvec2 at{0.0};
+        std::uint32_t point = kNone;  ///< kNone: no one, or taken out
+    };
 
     struct Box {
         glm::dvec2 low{std::numeric_limits<double>::infinity()};
@@ -235,13 +243,14 @@ private:
         if (leaves > 1 && middle < last) {
             Box box;
             for (std::size_t i = first; i < last; ++i)
-                grow(box, {points_[members_[i]], points_[members_[i]]});
+                grow(box, {members_[i].at, members_[i].at});
             const int axis = box.high.x - box.low.x > box.high.y - box.low.y ? 0 : 1;
             const auto at = [this](std::size_t i) {
                 return members_.begin() + static_cast<std::ptrdiff_t>(i);
             };
-            std::nth_element(at(first), at(middle), at(last),
-                             [&](auto i, auto j) { return points_[i][axis] < points_[j][axis]; });
+            std::nth_element(
+                at(first), at(middle), at(last),
+                [axis](const Member& a, const Member& b) { return a.at[axis] < b.at[axis]; });
             sort(middle, last, leaves / 2);
         }
         if (leaves > 1)
@@ -262,18 +271,17 @@ private:
             return box;
         }
         for (std::size_t i = 0; i < kLeafSize; ++i) {
-            const std::uint32_t point = members_[(node - leaf_count_) * kLeafSize + i];
-            if (point != kNone)
-                grow(box, {points_[point], points_[point]});
+            const Member& member = members_[(node - leaf_count_) * kLeafSize + i];
+            if (member.point != kNone)
+                grow(box, {member.at, member.at});
         }
         return box;
     }
 
-    const std::vector<glm::dvec2>& points_;
-    std::vector<std::uint32_t> members_;  ///< kLeafSize a leaf; kNone where taken out
-    std::vector<std::uint32_t> place_;    ///< per point: in members_; kNone if it is not there
-    std::size_t leaf_count_ = 1;          ///< a power of two
-    std::vector<Box> boxes_;  ///< node n has the children 2 n and 2 n + 1; 1 is the root
+    std::vector<Member> members_;       ///< kLeafSize a leaf
+    std::vector<std::uint32_t> place_;  ///< per point: in members_; kNone if it is not there
+    std::size_t leaf_count_ = 1;        ///< a power of two
+    std::vector<Box> boxes_;            ///< node n has the children 2 n and 2 n + 1; 1 is the root
 };
 
 /// Cuts ears off a polygon until three corners are left. All corners are indices into `flat`.
@@ -291,7 +299,8 @@ public:
           refused_next_(2 * flat.size()),
           refused_previous_(2 * flat.size()),
           reflex_(flat, reflex_corners()),
-          tests_left_(kEarTestsPerCorner * flat.size())
+          tests_left_(
+              std::min(kMostEarTests * flat.size(), kManyEarTests + kFewEarTests * flat.size()))
     {
         for (std::uint32_t i = 0; i < count_; ++i) {
             next_[i] = (i + 1) % count_;
@@ -316,6 +325,9 @@ public:
                 // cut usually helps; many corners take a share at once, so that rounds stay few
                 const bool touching = demand_ == Demand::ear;
                 ask_for(touching ? Demand::touching_ear : Demand::nothing, at);
+                if (!touching)
+                    tests_left_ =
+                        std::min(tests_left_, kTestsOfCrossing + kTestsOfCrossingPerCorner * left);
                 cuts = left / (touching ? kShareOfTouching : kShareOfNothing) + 1;
                 continue;
             }
@@ -337,6 +349,9 @@ private:
     // one in so many corners is cut on a lesser demand before the better one is made again
     static constexpr std::uint32_t kShareOfTouching = 64;
     static constexpr std::uint32_t kShareOfNothing = 8;
+    // what is left of a polygon that crosses itself gets no more tests than this
+    static constexpr std::uint64_t kTestsOfCrossing = 16384;
+    static constexpr std::uint64_t kTestsOfCrossingPerCorner = 16;
 
     enum class Demand {
         ear,           ///< turns left, and no other corner lies in or on the triangle

@@ -24,13 +24,16 @@ namespace surfelao {
 /// promised.
 ///
 /// O(n) for convex polygons. Others take n log n as a rule and n^1.5 where walls are folded many
-/// times (200,000 corners of a square spiral: some 600 tests each). After kEarTestsPerCorner * n
-/// tests the rest becomes a fan, so that no file costs more than a bounded time per corner; only
-/// polygons that cross themselves all over, or spirals of millions of corners, get there.
+/// times (200,000 corners of a square spiral: some 1,100 tests each). No polygon gets more tests than
+/// kMostEarTests a corner, nor, where it has very many corners, than kManyEarTests and kFewEarTests
+/// a corner; what is left then, as most of a polygon that crosses itself all over, becomes a fan.
+/// So no file costs more than a bounded time per corner.
 void triangulate(std::span<const glm::dvec3> positions, std::span<const std::uint32_t> corners,
                  std::vector<glm::uvec3>& triangles);
 
-/// A test is a reflex corner, or a box around some, against an ear: a few nanoseconds.
-inline constexpr std::uint64_t kEarTestsPerCorner = 2048;
+// A test is a reflex corner, or a box around some, against an ear: a few nanoseconds.
+inline constexpr std::uint64_t kMostEarTests = 2048;
+inline constexpr std::uint64_t kManyEarTests = 1u << 28;
+inline constexpr std::uint64_t kFewEarTests = 64;
 
 }  // namespace surfelao

@@ -82,11 +82,12 @@ const Malformed kMalformed[] = {
      [](GltfMaker& m) { m.document["extensionsRequired"] = json::object(); }},
     {"RequiredHoldsNumber", "extensionsRequired holds something that is not a string",
      [](GltfMaker& m) { m.document["extensionsRequired"] = {1}; }},
-    {"NothingInIt", "holds no triangles",
+    {"NothingInIt", "has no node with a mesh in its scene",
      [](GltfMaker& m) {
          m.document = {{"asset", {{"version", "2.0"}}}};
      }},
-    {"NoTriangles", "holds no triangles", [](GltfMaker& m) { primitive(m)["mode"] = 0; }},
+    {"NoTriangles", "has meshes of points and lines only, no triangles",
+     [](GltfMaker& m) { primitive(m)["mode"] = 0; }},
     {"SectionIsObject", "accessors is not an array",
      [](GltfMaker& m) { m.document["accessors"] = json::object(); }},
     {"SectionIsNull", "nodes is not an array", [](GltfMaker& m) { m.document["nodes"] = nullptr; }},
@@ -497,6 +498,16 @@ const Malformed kMalformed[] = {
          primitive(m)["attributes"]["POSITION"] =
              m.add_accessor(m.add_view(points), 5126, "VEC3", 40000);
          for (int i = 0; i < 400; ++i)
+             m.document["scenes"][0]["nodes"].push_back(m.add("nodes", {{"mesh", 0}}));
+     }},
+    {"JsonWithoutEnd",
+     "node 20 repeats mesh 0 of 2000070 bytes of JSON: there are more repetitions than a file of "
+     "this size may stand for",
+     [](GltfMaker& m) {
+         m.document["meshes"][0]["extras"] = std::string(2000000, 'x');
+         m.document["scenes"][0]["nodes"] = json::array();
+         m.document["nodes"] = json::array();
+         for (int i = 0; i < 10000; ++i)
              m.document["scenes"][0]["nodes"].push_back(m.add("nodes", {{"mesh", 0}}));
      }},
     {"TrianglesWithoutEnd",

@@ -217,7 +217,7 @@ TEST(ReadPly, PassesOverOtherElementsAndPropertiesInAnyOrder)
 {
     const Scene scene =
         read_ply("test.ply",
-                 "ply\nformat ascii 1.0\ncomment made\nobj_info by hand\n"
+                 "ply\nformat ascii 1.0\nCreated by Blender3D 247\ncomment made\nobj_info by hand\n"
                  "element camera 1\nproperty float fov\nproperty list uchar int ids\n"
                  "element face 1\nproperty uchar flags\n"
                  "property list uint uint vertex_index\nproperty list uchar float uv\n"
