@@ -52,16 +52,24 @@ struct MaskBuffer {
 };
 /// Makes room for `count` elements, keeps the contents. 64-byte aligned. Throws std::bad_alloc.
 void reserve(MaskBuffer<std::uint32_t>& buffer, std::size_t count);
-void reserve(MaskBuffer<float>& buffer, std::size_t count);
 void release(MaskBuffer<std::uint32_t>& buffer);
-void release(MaskBuffer<float>& buffer);
+
+/// Records as columns: member r of number i stands at data[r * stride + i].
+struct MaskColumns {
+    float* data = nullptr;
+    std::size_t count = 0;
+    std::size_t stride = 0;
+};
+/// Makes room for `count` records of `members` floats, keeps the contents. Throws std::bad_alloc.
+void reserve(MaskColumns& columns, std::size_t members, std::size_t count);
+void release(MaskColumns& columns);
 
 /// Working memory of one thread.
 struct MaskScratch {
     MaskBuffer<std::uint32_t> frontier;
-    MaskBuffer<float> clusters;    ///< chunks of 16: four corners x 3 coordinates x 16 lanes
-    MaskBuffer<float> rectangles;  ///< the same, of nodes that are exact
-    MaskBuffer<float> triangles;   ///< chunks of 16: three corners x 3 coordinates x 16 lanes
+    MaskColumns clusters;    ///< members: four corners x 3 coordinates
+    MaskColumns rectangles;  ///< the same, of nodes whose rims are where the surface ends
+    MaskColumns triangles;   ///< three corners x 3 coordinates
 };
 
 /// What all calls share.

@@ -317,33 +317,23 @@ SURFELAO_MASK_INLINE void append(MaskBuffer<std::uint32_t>& list, Int16 index, L
     list.count += static_cast<unsigned>(__builtin_popcount(bits(chosen)));
 }
 
-/// Chunks of 16 polygons, 3 kCorners rows of 16 floats each.
 template <int kCorners>
-SURFELAO_MASK_INLINE void append(MaskBuffer<float>& list, const Vector16* corner, Lanes chosen)
+SURFELAO_MASK_INLINE void append(MaskColumns& list, const Vector16* corner, Lanes chosen)
 {
-    constexpr std::size_t kChunk = 3 * kCorners * kLanes;
-    const auto added = static_cast<unsigned>(__builtin_popcount(bits(chosen)));
-    if (added == 0)
+    if (bits(chosen) == 0)
         return;
-    reserve(list, (list.count / kLanes + 2) * kChunk);
-    const unsigned at = static_cast<unsigned>(list.count % kLanes);
-    float* chunk = list.data + list.count / kLanes * kChunk;
-    alignas(64) float spill[2 * kLanes];
-    for (int i = 0; i < 3 * kCorners; ++i) {
-        const Vector16& p = corner[i / 3];
-        const Float16 packed = pack(i % 3 == 0 ? p.x : i % 3 == 1 ? p.y : p.z, chosen);
-        float* row = chunk + i * kLanes;
-        store(spill, load(row));
-        store(spill + at, packed);
-        store(row, load(spill));
-        if (at + added > kLanes)
-            store(row + kChunk, load(spill + kLanes));
+    reserve(list, 3 * kCorners, list.count + kLanes);
+    float* at = list.data + list.count;
+    for (int i = 0; i < kCorners; ++i) {
+        store(at + (3 * i) * list.stride, pack(corner[i].x, chosen));
+        store(at + (3 * i + 1) * list.stride, pack(corner[i].y, chosen));
+        store(at + (3 * i + 2) * list.stride, pack(corner[i].z, chosen));
     }
-    list.count += added;
+    list.count += static_cast<unsigned>(__builtin_popcount(bits(chosen)));
 }
 
-/// From the top of scratch.frontier until it is empty: far nodes are drawn into the group's mask;
-/// a leaf group lists the rest as polygons, an inner group hands it down.
+/// Through scratch.frontier, which grows meanwhile, to its end: far nodes are drawn into the group's
+/// mask; a leaf group lists the rest as polygons, an inner group hands it down.
 template <bool kLeaf>
 void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32_t>* out,
           std::uint32_t* mask, MaskScratch& scratch)
@@ -362,13 +352,14 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
     const Float16 exact_radius = all(settings.exact_radius);
     MaskBuffer<std::uint32_t>& frontier = scratch.frontier;
 
-    while (frontier.count > 0) {
-        // the last 16; where fewer are left the first stands in for the missing
-        const unsigned count =
-            frontier.count < kLanes ? static_cast<unsigned>(frontier.count) : kLanes;
-        frontier.count -= count;
+    // level by level: what is opened now is looked at later, when it has come from memory
+    for (std::size_t done = 0; done < frontier.count;) {
+        // where fewer than 16 are left the first stands in for the missing
+        const std::size_t left = frontier.count - done;
+        const unsigned count = left < kLanes ? static_cast<unsigned>(left) : kLanes;
         alignas(64) std::uint32_t index[kLanes];
-        store(index, load(frontier.data + frontier.count));
+        store(index, load(frontier.data + done));
+        done += count;
         for (unsigned i = count; i < kLanes; ++i)
             index[i] = index[0];
         const Lanes active = first_lanes(count);
@@ -436,8 +427,12 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
             reserve(frontier, frontier.count + 2 * kLanes + kLanes);
             append(frontier, node.first_child(), opened);
             const auto added = static_cast<unsigned>(__builtin_popcount(bits(opened)));
-            for (unsigned i = 0; i < added; ++i)
-                frontier.data[frontier.count + i] = frontier.data[frontier.count - added + i] + 1;
+            std::uint32_t* child = frontier.data + frontier.count - added;
+            for (unsigned i = 0; i < added; ++i) {
+                child[added + i] = child[i] + 1;
+                __builtin_prefetch(world.nodes + kLanes * static_cast<std::size_t>(child[i]));
+                __builtin_prefetch(world.nodes + kLanes * static_cast<std::size_t>(child[i] + 1));
+            }
             frontier.count += added;
         }
     }
@@ -619,17 +614,17 @@ void horizon(const MaskRaster& raster, const float* n, std::uint32_t* above)
 
 /// Draws the listed polygons that reach above the receiver's horizon.
 template <int kCorners, bool kLoose>
-SURFELAO_MASK_INLINE void draw_near(const MaskBuffer<float>& list, Vector16 position,
+SURFELAO_MASK_INLINE void draw_near(const MaskColumns& list, Vector16 position,
                                     Vector16 normal, std::uint32_t target,
                                     Stream<kCorners, kLoose>& stream)
 {
     const Float16 ground = dot(position, normal);
     for (std::size_t first = 0; first < list.count; first += kLanes) {
-        const float* row = list.data + first * (3 * kCorners);
+        const float* at = list.data + first;
         Vector16 c[kCorners];
         for (int i = 0; i < kCorners; ++i) {
-            c[i] = {load(row + (3 * i) * kLanes), load(row + (3 * i + 1) * kLanes),
-                    load(row + (3 * i + 2) * kLanes)};
+            c[i] = {load(at + (3 * i) * list.stride), load(at + (3 * i + 1) * list.stride),
+                    load(at + (3 * i + 2) * list.stride)};
         }
         Float16 top = dot(c[0], normal);
         for (int i = 1; i < kCorners; ++i)

@@ -24,49 +24,53 @@ namespace surfelao {
 
 namespace {
 
+/// 64-byte aligned zeros: lanes beyond the end are loaded, though never used.
 template <typename T>
-void reserve_buffer(MaskBuffer<T>& buffer, std::size_t count)
+T* allocate_zeros(std::size_t count)
 {
-    if (count <= buffer.capacity)
-        return;
-    const std::size_t capacity = std::max<std::size_t>(2 * buffer.capacity, count + 1024);
-    const std::size_t bytes = (capacity * sizeof(T) + 63) / 64 * 64;
-    auto* data = static_cast<T*>(std::aligned_alloc(64, bytes));
+    const std::size_t bytes = (count * sizeof(T) + 63) / 64 * 64;
+    void* data = std::aligned_alloc(64, bytes);
     if (data == nullptr)
         throw std::bad_alloc();
-    // zeros: lanes beyond the end are loaded, though never used
-    std::memset(data, 0, bytes);
-    if (buffer.data != nullptr)
-        std::memcpy(data, buffer.data, buffer.capacity * sizeof(T));
-    std::free(buffer.data);
-    buffer.data = data;
-    buffer.capacity = capacity;
-}
-
-template <typename T>
-void release_buffer(MaskBuffer<T>& buffer)
-{
-    std::free(buffer.data);
-    buffer = {};
+    return static_cast<T*>(std::memset(data, 0, bytes));
 }
 
 }  // namespace
 
 void reserve(MaskBuffer<std::uint32_t>& buffer, std::size_t count)
 {
-    reserve_buffer(buffer, count);
-}
-void reserve(MaskBuffer<float>& buffer, std::size_t count)
-{
-    reserve_buffer(buffer, count);
+    if (count <= buffer.capacity)
+        return;
+    const std::size_t capacity = std::max<std::size_t>(2 * buffer.capacity, count + 1024);
+    auto* data = allocate_zeros<std::uint32_t>(capacity);
+    std::copy_n(buffer.data, buffer.count, data);
+    const std::size_t kept = buffer.count;
+    release(buffer);
+    buffer = {data, kept, capacity};
 }
 void release(MaskBuffer<std::uint32_t>& buffer)
 {
-    release_buffer(buffer);
+    std::free(buffer.data);
+    buffer = {};
 }
-void release(MaskBuffer<float>& buffer)
+
+void reserve(MaskColumns& columns, std::size_t members, std::size_t count)
 {
-    release_buffer(buffer);
+    if (count <= columns.stride)
+        return;
+    // an odd number of cache lines: powers of two would put all members into the same set
+    const std::size_t lines = std::max(2 * columns.stride, count + 512) / 16 | 1;
+    auto* data = allocate_zeros<float>(members * 16 * lines);
+    for (std::size_t r = 0; r < members; ++r)
+        std::copy_n(columns.data + r * columns.stride, columns.count, data + r * 16 * lines);
+    const std::size_t kept = columns.count;
+    release(columns);
+    columns = {data, kept, 16 * lines};
+}
+void release(MaskColumns& columns)
+{
+    std::free(columns.data);
+    columns = {};
 }
 
 namespace {
