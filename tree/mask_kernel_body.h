@@ -452,100 +452,154 @@ void start_frontier(MaskScratch& scratch, const std::uint32_t* in, std::size_t i
 
 // --- what a mask is worth ---
 
-struct Sums {
-    std::int32_t first[3] = {};   ///< sum of w over bits, cosine weights
-    std::int32_t second[6] = {};  ///< sum of w w^T: xx yy zz xy yz zx
+/// Sum of w over bits, cosine weights.
+struct First {
+    std::int32_t at[3] = {};
+
+    /// Integral of (n.w) over the bits.
+    SURFELAO_MASK_INLINE float along(const float* n) const
+    {
+        return static_cast<float>(at[0]) * n[0] + static_cast<float>(at[1]) * n[1] +
+               static_cast<float>(at[2]) * n[2];
+    }
+};
+
+/// Sum of w w^T over bits, cosine weights: xx yy zz xy yz zx.
+struct Second {
+    std::int32_t at[6] = {};
 };
 
 #if defined(__AVX512VNNI__)
 
-template <bool kSecond>
-SURFELAO_MASK_INLINE Sums sum_bits(const MaskRaster& raster, const std::uint32_t* mask)
+/// For each of 64 bits at a time, where any of `within` is set: (face, first bit / 64).
+template <class Work>
+SURFELAO_MASK_INLINE void each_word(const std::uint32_t* within, const Work& work)
 {
-    __m512i first[3] = {};
-    __m512i second[6] = {};
-    const auto word = [](const void* p) { return _mm512_load_si512(p); };
     for (int face = 0; face < kMaskFaces; ++face) {
-        const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3, back = face % 2;
-        for (int j = 0; j < 8; ++j) {
-            std::uint64_t bits64;
-            std::memcpy(&bits64, mask + kMaskFaceWords * face + 2 * j, sizeof bits64);
-            if (bits64 == 0)
-                continue;
-            const __m512i w1 = _mm512_maskz_mov_epi8(bits64, word(raster.weight1 + 64 * j));
-            first[a] = _mm512_dpbusd_epi32(first[a], w1, word(raster.one[back] + 64 * j));
-            first[u] = _mm512_dpbusd_epi32(first[u], w1, word(raster.u[0] + 64 * j));
-            first[v] = _mm512_dpbusd_epi32(first[v], w1, word(raster.v[0] + 64 * j));
-            if constexpr (kSecond) {
-                const __m512i w2 = _mm512_maskz_mov_epi8(bits64, word(raster.weight2 + 64 * j));
-                second[a] = _mm512_dpbusd_epi32(second[a], w2, word(raster.one[0] + 64 * j));
-                second[u] = _mm512_dpbusd_epi32(second[u], w2, word(raster.uu + 64 * j));
-                second[v] = _mm512_dpbusd_epi32(second[v], w2, word(raster.vv + 64 * j));
-                // products of axes i and i + 1 stand at 3 + i
-                second[3 + a] =
-                    _mm512_dpbusd_epi32(second[3 + a], w2, word(raster.u[back] + 64 * j));
-                second[3 + u] = _mm512_dpbusd_epi32(second[3 + u], w2, word(raster.uv + 64 * j));
-                second[3 + v] =
-                    _mm512_dpbusd_epi32(second[3 + v], w2, word(raster.v[back] + 64 * j));
-            }
+        const __m512i rows = _mm512_load_si512(within + kMaskFaceWords * face);
+        for (unsigned words = _mm512_test_epi64_mask(rows, rows); words != 0; words &= words - 1)
+            work(face, __builtin_ctz(words));
+    }
+}
+
+SURFELAO_MASK_INLINE __m512i weights(const std::uint32_t* mask, int face, int j, __m512i weight)
+{
+    std::uint64_t chosen;
+    std::memcpy(&chosen, mask + kMaskFaceWords * face + 2 * j, sizeof chosen);
+    return _mm512_maskz_mov_epi8(chosen, weight);
+}
+
+/// `count` masks at once, none of which has bits outside of the last.
+template <int kCount>
+SURFELAO_MASK_INLINE void first_moments(const MaskRaster& raster,
+                                        const std::uint32_t* const (&mask)[kCount],
+                                        First (&sums)[kCount])
+{
+    const auto table = [](const std::int8_t* p) { return _mm512_load_si512(p); };
+    __m512i sum[kCount][3] = {};
+    each_word(mask[kCount - 1], [&](int face, int j) {
+        const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
+        const __m512i weight = _mm512_load_si512(raster.weight1 + 64 * j);
+        for (int i = 0; i < kCount; ++i) {
+            const __m512i w = weights(mask[i], face, j, weight);
+            sum[i][a] = _mm512_dpbusd_epi32(sum[i][a], w, table(raster.one[face % 2] + 64 * j));
+            sum[i][u] = _mm512_dpbusd_epi32(sum[i][u], w, table(raster.u[0] + 64 * j));
+            sum[i][v] = _mm512_dpbusd_epi32(sum[i][v], w, table(raster.v[0] + 64 * j));
         }
+    });
+    for (int i = 0; i < kCount; ++i) {
+        for (int k = 0; k < 3; ++k)
+            sums[i].at[k] = _mm512_reduce_add_epi32(sum[i][k]);
     }
-    Sums sums;
-    for (int i = 0; i < 3; ++i)
-        sums.first[i] = _mm512_reduce_add_epi32(first[i]);
-    if constexpr (kSecond) {
-        for (int i = 0; i < 6; ++i)
-            sums.second[i] = _mm512_reduce_add_epi32(second[i]);
-    }
+}
+
+SURFELAO_MASK_INLINE Second second_moments(const MaskRaster& raster, const std::uint32_t* mask)
+{
+    const auto table = [](const std::int8_t* p) { return _mm512_load_si512(p); };
+    __m512i sum[6] = {};
+    each_word(mask, [&](int face, int j) {
+        const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3, back = face % 2;
+        const __m512i w =
+            weights(mask, face, j, _mm512_load_si512(raster.weight2 + 64 * j));
+        sum[a] = _mm512_dpbusd_epi32(sum[a], w, table(raster.one[0] + 64 * j));
+        sum[u] = _mm512_dpbusd_epi32(sum[u], w, table(raster.uu + 64 * j));
+        sum[v] = _mm512_dpbusd_epi32(sum[v], w, table(raster.vv + 64 * j));
+        // products of axes i and i + 1 stand at 3 + i
+        sum[3 + a] = _mm512_dpbusd_epi32(sum[3 + a], w, table(raster.u[back] + 64 * j));
+        sum[3 + u] = _mm512_dpbusd_epi32(sum[3 + u], w, table(raster.uv + 64 * j));
+        sum[3 + v] = _mm512_dpbusd_epi32(sum[3 + v], w, table(raster.v[back] + 64 * j));
+    });
+    Second sums;
+    for (int k = 0; k < 6; ++k)
+        sums.at[k] = _mm512_reduce_add_epi32(sum[k]);
     return sums;
 }
 
 #else
 
-template <bool kSecond>
-SURFELAO_MASK_INLINE Sums sum_bits(const MaskRaster& raster, const std::uint32_t* mask)
+/// For every nibble that is not zero: (face, row, nibble, its four bits).
+template <class Work>
+SURFELAO_MASK_INLINE void each_nibble(const std::uint32_t* mask, const Work& work)
 {
-    Sums sums;
+    for (int face = 0; face < kMaskFaces; ++face) {
+        for (int y = 0; y < kMaskRows; ++y) {
+            std::uint32_t word = mask[kMaskFaceWords * face + y];
+            for (int k = 0; word != 0; ++k, word >>= 4)
+                work(face, y, k, word & 15u);
+        }
+    }
+}
+
+template <int kCount>
+SURFELAO_MASK_INLINE void first_moments(const MaskRaster& raster,
+                                        const std::uint32_t* const (&mask)[kCount],
+                                        First (&sums)[kCount])
+{
+    for (int i = 0; i < kCount; ++i) {
+        std::int32_t sum[kMaskFaces][4] = {};
+        each_nibble(mask[i], [&](int face, int y, int k, unsigned value) {
+            for (int m = 0; m < 4; ++m)
+                sum[face][m] += raster.sum1[y][k][value][m];
+        });
+        for (int face = 0; face < kMaskFaces; ++face) {
+            const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
+            sums[i].at[a] += face % 2 == 0 ? sum[face][0] : -sum[face][0];
+            sums[i].at[u] += sum[face][1];
+            sums[i].at[v] += sum[face][2];
+        }
+    }
+}
+
+SURFELAO_MASK_INLINE Second second_moments(const MaskRaster& raster, const std::uint32_t* mask)
+{
+    std::int32_t sum[kMaskFaces][8] = {};
+    each_nibble(mask, [&](int face, int y, int k, unsigned value) {
+        for (int m = 0; m < 8; ++m)
+            sum[face][m] += raster.sum2[y][k][value][m];
+    });
+    Second sums;
     for (int face = 0; face < kMaskFaces; ++face) {
         const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
         const std::int32_t sign = face % 2 == 0 ? 1 : -1;
-        std::int32_t sum1[4] = {};
-        std::int32_t sum2[8] = {};
-        for (int y = 0; y < kMaskRows; ++y) {
-            std::uint32_t word = mask[kMaskFaceWords * face + y];
-            for (int k = 0; word != 0; ++k, word >>= 4) {
-                const std::int32_t* add1 = raster.sum1[y][k][word & 15u];
-                for (int i = 0; i < 4; ++i)
-                    sum1[i] += add1[i];
-                if constexpr (kSecond) {
-                    const std::int32_t* add2 = raster.sum2[y][k][word & 15u];
-                    for (int i = 0; i < 8; ++i)
-                        sum2[i] += add2[i];
-                }
-            }
-        }
-        sums.first[a] += sign * sum1[0];
-        sums.first[u] += sum1[1];
-        sums.first[v] += sum1[2];
-        if constexpr (kSecond) {
-            sums.second[a] += sum2[0];
-            sums.second[u] += sum2[3];
-            sums.second[v] += sum2[5];
-            sums.second[3 + a] += sign * sum2[1];
-            sums.second[3 + u] += sum2[4];
-            sums.second[3 + v] += sign * sum2[2];
-        }
+        sums.at[a] += sum[face][0];
+        sums.at[u] += sum[face][3];
+        sums.at[v] += sum[face][5];
+        sums.at[3 + a] += sign * sum[face][1];
+        sums.at[3 + u] += sum[face][4];
+        sums.at[3 + v] += sign * sum[face][2];
     }
     return sums;
 }
 
 #endif
 
-/// Integral of (n.w) over the bits.
-SURFELAO_MASK_INLINE float along(const Sums& sums, const float* n)
+/// Share of the weight above the horizon that the bits of `open` have; `whole`: that of all.
+SURFELAO_MASK_INLINE float openness_of(const MaskRaster& raster, const std::uint32_t* open,
+                                       const float* n, float whole)
 {
-    return static_cast<float>(sums.first[0]) * n[0] + static_cast<float>(sums.first[1]) * n[1] +
-           static_cast<float>(sums.first[2]) * n[2];
+    First sums[1];
+    first_moments<1>(raster, {open}, sums);
+    return sums[0].along(n) / whole;
 }
 
 /// A clear bit is a crack between two patches where its neighbours left and right are set, or those
@@ -689,12 +743,12 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
         alignas(64) std::uint32_t above[kMaskWords];
         alignas(64) std::uint32_t open[kMaskWords];
         horizon(raster, n, above);
-        const float whole = along(sum_bits<false>(raster, above), n);
-
         for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
             store(open + w, load(above + w) & ~load(mask + w));
-        Sums sums = sum_bits<true>(raster, open);
-        float openness = along(sums, n) / whole;
+        First sums[2];
+        first_moments<2>(raster, {open, above}, sums);
+        const float whole = sums[1].along(n);
+        float openness = sums[0].along(n) / whole;
         const float fill_weight = (1.0f - openness - kFillFrom) / kFillRange;
         if (world.settings.fill && fill_weight > 0.0f && openness > 0.0f) {
             for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
@@ -702,24 +756,23 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
                 const Int16 closed = load(mask + w) | ~load(above + w);
                 store(open + w, ~fill(raster, closed, load(mask + kMaskWords + w)));
             }
-            sums = sum_bits<true>(raster, open);
-            const float filled = along(sums, n) / whole;
+            const float filled = openness_of(raster, open, n, whole);
             openness += (fill_weight < 1.0f ? fill_weight : 1.0f) * (filled - openness);
 
             const float close_weight = (1.0f - openness - kCloseFrom) / kCloseRange;
             if (close_weight > 0.0f && openness > 0.0f) {
                 for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
                     store(open + w, ~close(raster, ~load(open + w), load(mask + kMaskWords + w)));
-                sums = sum_bits<true>(raster, open);
-                const float sealed = along(sums, n) / whole;
+                const float sealed = openness_of(raster, open, n, whole);
                 openness += (close_weight < 1.0f ? close_weight : 1.0f) * (sealed - openness);
             }
         }
         openness = openness < 0.0f ? 0.0f : openness > 1.0f ? 1.0f : openness;
         answers.occlusion[i] = 1.0f - openness;
+        const Second second = second_moments(raster, open);
         float m[6];
         for (int k = 0; k < 6; ++k)
-            m[k] = static_cast<float>(sums.second[k]);
+            m[k] = static_cast<float>(second.at[k]);
         answers.bent[0][i] = m[0] * n[0] + m[3] * n[1] + m[5] * n[2];
         answers.bent[1][i] = m[3] * n[0] + m[1] * n[1] + m[4] * n[2];
         answers.bent[2][i] = m[5] * n[0] + m[4] * n[1] + m[2] * n[2];
