@@ -318,12 +318,14 @@ SURFELAO_MASK_INLINE void append(MaskBuffer<std::uint32_t>& list, Int16 index, L
 }
 
 template <int kCorners>
-SURFELAO_MASK_INLINE void append(MaskColumns& list, const Vector16* corner, Lanes chosen)
+SURFELAO_MASK_INLINE void append(MaskColumns& list, const Vector16* corner, Float16 radius,
+                                 Lanes chosen)
 {
     if (bits(chosen) == 0)
         return;
-    reserve(list, 3 * kCorners, list.count + kLanes);
+    reserve(list, 3 * kCorners + 1, list.count + kLanes);
     float* at = list.data + list.count;
+    store(at + 3 * kCorners * list.stride, pack(radius * radius, chosen));
     for (int i = 0; i < kCorners; ++i) {
         store(at + (3 * i) * list.stride, pack(corner[i].x, chosen));
         store(at + (3 * i + 1) * list.stride, pack(corner[i].y, chosen));
@@ -382,7 +384,8 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         const Float16 top = base + slab + all(group.rise);
         const Float16 nearest = distance - node.radius();
         const Lanes alive =
-            active & (top > zero) & (nearest - group_radius < all(settings.max_distance));
+            active & (top > max(all(settings.graze) * (nearest - group_radius), zero)) &
+            (nearest - group_radius < all(settings.max_distance));
         const Float16 weight = min(max(top * inverse, all(kImportanceFloor)), all(1.0f));
         const Float16 relax = inverse_sqrt(weight);
 
@@ -412,10 +415,10 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
                 const Vector16 world_origin = {zero, zero, zero};
                 Vector16 corner[4];
                 node.triangle(world_origin, corner);
-                append<3>(scratch.triangles, corner, listed & is_triangle);
+                append<3>(scratch.triangles, corner, node.radius(), listed & is_triangle);
                 node.quad(world_origin, corner);
-                append<4>(scratch.rectangles, corner, without(listed, sheet | is_triangle));
-                append<4>(scratch.clusters, corner, listed & sheet);
+                append<4>(scratch.rectangles, corner, node.radius(), without(listed, sheet | is_triangle));
+                append<4>(scratch.clusters, corner, node.radius(), listed & sheet);
             }
         } else {
             opened = without(rest, small) & (group_radius < node.radius());
@@ -669,27 +672,31 @@ void horizon(const MaskRaster& raster, const float* n, std::uint32_t* above)
 /// Draws the listed polygons that reach above the receiver's horizon.
 template <int kCorners, bool kLoose>
 SURFELAO_MASK_INLINE void draw_near(const MaskColumns& list, Vector16 position,
-                                    Vector16 normal, std::uint32_t target,
+                                    Vector16 normal, Float16 graze2, std::uint32_t target,
                                     Stream<kCorners, kLoose>& stream)
 {
-    const Float16 ground = dot(position, normal);
+    const Float16 zero = all(0.0f);
     for (std::size_t first = 0; first < list.count; first += kLanes) {
         const float* at = list.data + first;
+        const Float16 radius2 = load(at + 3 * kCorners * list.stride);
         Vector16 c[kCorners];
+        Lanes above = {};
         for (int i = 0; i < kCorners; ++i) {
-            c[i] = {load(at + (3 * i) * list.stride), load(at + (3 * i + 1) * list.stride),
-                    load(at + (3 * i + 2) * list.stride)};
+            c[i] = Vector16{load(at + (3 * i) * list.stride), load(at + (3 * i + 1) * list.stride),
+                            load(at + (3 * i + 2) * list.stride)} -
+                   position;
         }
-        Float16 top = dot(c[0], normal);
-        for (int i = 1; i < kCorners; ++i)
-            top = max(top, dot(c[i], normal));
+        const Vector16 sum = kCorners == 3 ? c[0] + c[1] + c[2] : c[0] + c[2];
+        const Float16 parts = all(kCorners == 3 ? 1.0f / 9.0f : 1.0f / 4.0f);
+        const Float16 sine2 = select(dot(sum, sum) * parts < radius2, zero, graze2);
+        for (int i = 0; i < kCorners; ++i) {
+            const Float16 height = max(dot(c[i], normal), zero);
+            above = above | (height * height > sine2 * dot(c[i], c[i]));
+        }
         const std::size_t left = list.count - first;
-        const Lanes above =
-            (top > ground) & first_lanes(left < kLanes ? static_cast<unsigned>(left) : kLanes);
+        above = above & first_lanes(left < kLanes ? static_cast<unsigned>(left) : kLanes);
         if (bits(above) == 0)
             continue;
-        for (int i = 0; i < kCorners; ++i)
-            c[i] = c[i] - position;
         stream.add(c, target, above);
     }
 }
@@ -721,6 +728,7 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
         Stream<4, true> clusters(world, masks);
         Stream<4, false> rectangles(world, masks);
         Stream<3, false> triangles(world, masks);
+        const Float16 graze2 = all(world.settings.graze * world.settings.graze);
         for (unsigned i = 0; i < receivers.count; ++i) {
             const std::uint32_t target = i * kMaskPairWords;
             std::memcpy(masks + target, far_mask, sizeof far_mask);
@@ -728,9 +736,9 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
                                        all(receivers.position[2][i])};
             const Vector16 normal = {all(receivers.normal[0][i]), all(receivers.normal[1][i]),
                                      all(receivers.normal[2][i])};
-            draw_near(scratch.clusters, position, normal, target, clusters);
-            draw_near(scratch.rectangles, position, normal, target, rectangles);
-            draw_near(scratch.triangles, position, normal, target, triangles);
+            draw_near(scratch.clusters, position, normal, graze2, target, clusters);
+            draw_near(scratch.rectangles, position, normal, graze2, target, rectangles);
+            draw_near(scratch.triangles, position, normal, graze2, target, triangles);
         }
         clusters.finish();
         rectangles.finish();

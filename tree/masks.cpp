@@ -93,13 +93,13 @@ const MaskKernel* kernel_of(MaskKernelSet set)
 
 /// The family at draft, good and best, and one step beyond each way of the scale.
 struct FamilyPoint {
-    float cluster, share_leaf, share_inner;
+    float cluster, share_leaf, share_inner, graze;
 };
-constexpr FamilyPoint kFamily[] = {{0.9f, 0.3f, 0.2f},
-                                   {0.7f, 0.1f, 0.07f},
-                                   {0.4f, 0.03f, 0.03f},
-                                   {0.2f, 0.015f, 0.015f},
-                                   {0.1f, 0.007f, 0.007f}};
+constexpr FamilyPoint kFamily[] = {{0.9f, 0.3f, 0.2f, 0.2f},
+                                   {0.7f, 0.1f, 0.07f, 0.13f},
+                                   {0.4f, 0.03f, 0.03f, 0.06f},
+                                   {0.2f, 0.015f, 0.015f, 0.03f},
+                                   {0.1f, 0.007f, 0.007f, 0.015f}};
 constexpr float kRelaxedCluster = 0.9f;  ///< a larger rectangle could swallow its receiver
 
 float between(float a, float b, float t)
@@ -128,6 +128,8 @@ MaskSettings mask_settings(const MaskOptions& options)
     settings.cluster_limit = std::max(settings.cluster, kRelaxedCluster);
     settings.share_leaf = between(a.share_leaf, b.share_leaf, t);
     settings.share_inner = between(a.share_inner, b.share_inner, t);
+    settings.graze = between(a.graze, b.graze, t);
+    if (const char* g = getenv("GRAZE")) settings.graze = atof(g);
     return settings;
 }
 
