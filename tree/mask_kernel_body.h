@@ -474,42 +474,56 @@ struct Second {
 
 #if defined(__AVX512VNNI__)
 
-/// For each of 64 bits at a time, where any of `within` is set: (face, first bit / 64).
+/// For each 64 bits of a face of which any is set in `within`: their number / 64.
 template <class Work>
-SURFELAO_MASK_INLINE void each_word(const std::uint32_t* within, const Work& work)
+SURFELAO_MASK_INLINE void each_word(const std::uint32_t* within, int face, const Work& work)
 {
-    for (int face = 0; face < kMaskFaces; ++face) {
-        const __m512i rows = _mm512_load_si512(within + kMaskFaceWords * face);
-        for (unsigned words = _mm512_test_epi64_mask(rows, rows); words != 0; words &= words - 1)
-            work(face, __builtin_ctz(words));
-    }
+    const __m512i rows = _mm512_load_si512(within + kMaskFaceWords * face);
+    for (unsigned words = _mm512_test_epi64_mask(rows, rows); words != 0; words &= words - 1)
+        work(__builtin_ctz(words));
 }
 
-SURFELAO_MASK_INLINE __m512i weights(const std::uint32_t* mask, int face, int j, __m512i weight)
+SURFELAO_MASK_INLINE __m512i chosen_weights(const std::uint32_t* mask, int face, int j,
+                                            __m512i weight)
 {
     std::uint64_t chosen;
     std::memcpy(&chosen, mask + kMaskFaceWords * face + 2 * j, sizeof chosen);
     return _mm512_maskz_mov_epi8(chosen, weight);
 }
 
-/// `count` masks at once, none of which has bits outside of the last.
+SURFELAO_MASK_INLINE __m512i dot_bytes(__m512i sum, __m512i weight, const std::int8_t* table)
+{
+    return _mm512_dpbusd_epi32(sum, weight, _mm512_load_si512(table));
+}
+
+/// `kCount` masks at once, none of which has bits outside of the last.
 template <int kCount>
 SURFELAO_MASK_INLINE void first_moments(const MaskRaster& raster,
                                         const std::uint32_t* const (&mask)[kCount],
                                         First (&sums)[kCount])
 {
-    const auto table = [](const std::int8_t* p) { return _mm512_load_si512(p); };
     __m512i sum[kCount][3] = {};
-    each_word(mask[kCount - 1], [&](int face, int j) {
-        const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
-        const __m512i weight = _mm512_load_si512(raster.weight1 + 64 * j);
-        for (int i = 0; i < kCount; ++i) {
-            const __m512i w = weights(mask[i], face, j, weight);
-            sum[i][a] = _mm512_dpbusd_epi32(sum[i][a], w, table(raster.one[face % 2] + 64 * j));
-            sum[i][u] = _mm512_dpbusd_epi32(sum[i][u], w, table(raster.u[0] + 64 * j));
-            sum[i][v] = _mm512_dpbusd_epi32(sum[i][v], w, table(raster.v[0] + 64 * j));
+    for (int a = 0; a < 3; ++a) {
+        const int u = (a + 1) % 3, v = (a + 2) % 3;
+        __m512i on_axis[kCount][3] = {};  // stays in registers: no index of its depends on a
+        for (int back = 0; back < 2; ++back) {
+            const int face = 2 * a + back;
+            each_word(mask[kCount - 1], face, [&](int j) {
+                const __m512i weight = _mm512_load_si512(raster.weight1 + 64 * j);
+                for (int i = 0; i < kCount; ++i) {
+                    const __m512i w = chosen_weights(mask[i], face, j, weight);
+                    on_axis[i][0] = dot_bytes(on_axis[i][0], w, raster.one[back] + 64 * j);
+                    on_axis[i][1] = dot_bytes(on_axis[i][1], w, raster.u[0] + 64 * j);
+                    on_axis[i][2] = dot_bytes(on_axis[i][2], w, raster.v[0] + 64 * j);
+                }
+            });
         }
-    });
+        for (int i = 0; i < kCount; ++i) {
+            sum[i][a] = _mm512_add_epi32(sum[i][a], on_axis[i][0]);
+            sum[i][u] = _mm512_add_epi32(sum[i][u], on_axis[i][1]);
+            sum[i][v] = _mm512_add_epi32(sum[i][v], on_axis[i][2]);
+        }
+    }
     for (int i = 0; i < kCount; ++i) {
         for (int k = 0; k < 3; ++k)
             sums[i].at[k] = _mm512_reduce_add_epi32(sum[i][k]);
@@ -518,20 +532,28 @@ SURFELAO_MASK_INLINE void first_moments(const MaskRaster& raster,
 
 SURFELAO_MASK_INLINE Second second_moments(const MaskRaster& raster, const std::uint32_t* mask)
 {
-    const auto table = [](const std::int8_t* p) { return _mm512_load_si512(p); };
     __m512i sum[6] = {};
-    each_word(mask, [&](int face, int j) {
-        const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3, back = face % 2;
-        const __m512i w =
-            weights(mask, face, j, _mm512_load_si512(raster.weight2 + 64 * j));
-        sum[a] = _mm512_dpbusd_epi32(sum[a], w, table(raster.one[0] + 64 * j));
-        sum[u] = _mm512_dpbusd_epi32(sum[u], w, table(raster.uu + 64 * j));
-        sum[v] = _mm512_dpbusd_epi32(sum[v], w, table(raster.vv + 64 * j));
+    for (int a = 0; a < 3; ++a) {
+        const int u = (a + 1) % 3, v = (a + 2) % 3;
+        __m512i on_axis[6] = {};
+        for (int back = 0; back < 2; ++back) {
+            const int face = 2 * a + back;
+            each_word(mask, face, [&](int j) {
+                const __m512i w = chosen_weights(mask, face, j,
+                                                 _mm512_load_si512(raster.weight2 + 64 * j));
+                on_axis[0] = dot_bytes(on_axis[0], w, raster.one[0] + 64 * j);
+                on_axis[1] = dot_bytes(on_axis[1], w, raster.uu + 64 * j);
+                on_axis[2] = dot_bytes(on_axis[2], w, raster.vv + 64 * j);
+                on_axis[3] = dot_bytes(on_axis[3], w, raster.u[back] + 64 * j);
+                on_axis[4] = dot_bytes(on_axis[4], w, raster.uv + 64 * j);
+                on_axis[5] = dot_bytes(on_axis[5], w, raster.v[back] + 64 * j);
+            });
+        }
         // products of axes i and i + 1 stand at 3 + i
-        sum[3 + a] = _mm512_dpbusd_epi32(sum[3 + a], w, table(raster.u[back] + 64 * j));
-        sum[3 + u] = _mm512_dpbusd_epi32(sum[3 + u], w, table(raster.uv + 64 * j));
-        sum[3 + v] = _mm512_dpbusd_epi32(sum[3 + v], w, table(raster.v[back] + 64 * j));
-    });
+        const int at[6] = {a, u, v, 3 + a, 3 + u, 3 + v};
+        for (int k = 0; k < 6; ++k)
+            sum[at[k]] = _mm512_add_epi32(sum[at[k]], on_axis[k]);
+    }
     Second sums;
     for (int k = 0; k < 6; ++k)
         sums.at[k] = _mm512_reduce_add_epi32(sum[k]);
