@@ -334,8 +334,8 @@ SURFELAO_MASK_INLINE void append(MaskColumns& list, const Vector16* corner, Floa
     list.count += static_cast<unsigned>(__builtin_popcount(bits(chosen)));
 }
 
-/// Through scratch.frontier, which grows meanwhile, to its end: far nodes are drawn into the group's
-/// mask; a leaf group lists the rest as polygons, an inner group hands it down.
+/// Through scratch.frontier, which grows meanwhile, to its end: far nodes are drawn into the
+/// group's mask; a leaf group lists the rest as polygons, an inner group hands it down.
 template <bool kLeaf>
 void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32_t>* out,
           std::uint32_t* mask, MaskScratch& scratch)
@@ -383,9 +383,9 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         const Float16 slab = min(node.radius(), fma(node.radius(), tilt, node.thickness()));
         const Float16 top = base + slab + all(group.rise);
         const Float16 nearest = distance - node.radius();
-        const Lanes alive =
-            active & (top > max(all(settings.graze) * (nearest - group_radius), zero)) &
-            (nearest - group_radius < all(settings.max_distance));
+        const Lanes alive = active &
+                            (top > max(all(settings.graze) * (nearest - group_radius), zero)) &
+                            (nearest - group_radius < all(settings.max_distance));
         const Float16 weight = min(max(top * inverse, all(kImportanceFloor)), all(1.0f));
         const Float16 relax = inverse_sqrt(weight);
 
@@ -417,7 +417,8 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
                 node.triangle(world_origin, corner);
                 append<3>(scratch.triangles, corner, node.radius(), listed & is_triangle);
                 node.quad(world_origin, corner);
-                append<4>(scratch.rectangles, corner, node.radius(), without(listed, sheet | is_triangle));
+                append<4>(scratch.rectangles, corner, node.radius(),
+                          without(listed, sheet | is_triangle));
                 append<4>(scratch.clusters, corner, node.radius(), listed & sheet);
             }
         } else {
@@ -539,8 +540,8 @@ SURFELAO_MASK_INLINE Second second_moments(const MaskRaster& raster, const std::
         for (int back = 0; back < 2; ++back) {
             const int face = 2 * a + back;
             each_word(mask, face, [&](int j) {
-                const __m512i w = chosen_weights(mask, face, j,
-                                                 _mm512_load_si512(raster.weight2 + 64 * j));
+                const __m512i w =
+                    chosen_weights(mask, face, j, _mm512_load_si512(raster.weight2 + 64 * j));
                 on_axis[0] = dot_bytes(on_axis[0], w, raster.one[0] + 64 * j);
                 on_axis[1] = dot_bytes(on_axis[1], w, raster.uu + 64 * j);
                 on_axis[2] = dot_bytes(on_axis[2], w, raster.vv + 64 * j);
@@ -693,8 +694,8 @@ void horizon(const MaskRaster& raster, const float* n, std::uint32_t* above)
 
 /// Draws the listed polygons that reach above the receiver's horizon.
 template <int kCorners, bool kLoose>
-SURFELAO_MASK_INLINE void draw_near(const MaskColumns& list, Vector16 position,
-                                    Vector16 normal, Float16 graze2, std::uint32_t target,
+SURFELAO_MASK_INLINE void draw_near(const MaskColumns& list, Vector16 position, Vector16 normal,
+                                    Float16 graze2, std::uint32_t target,
                                     Stream<kCorners, kLoose>& stream)
 {
     const Float16 zero = all(0.0f);

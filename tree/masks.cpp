@@ -95,7 +95,7 @@ const MaskKernel* kernel_of(MaskKernelSet set)
 struct FamilyPoint {
     float cluster, share_leaf, share_inner, graze;
 };
-constexpr FamilyPoint kFamily[] = {{0.9f, 0.3f, 0.2f, 0.2f},
+constexpr FamilyPoint kFamily[] = {{0.9f, 0.3f, 0.2f, 0.18f},
                                    {0.7f, 0.1f, 0.07f, 0.13f},
                                    {0.4f, 0.03f, 0.03f, 0.06f},
                                    {0.2f, 0.015f, 0.015f, 0.03f},
@@ -129,7 +129,6 @@ MaskSettings mask_settings(const MaskOptions& options)
     settings.share_leaf = between(a.share_leaf, b.share_leaf, t);
     settings.share_inner = between(a.share_inner, b.share_inner, t);
     settings.graze = between(a.graze, b.graze, t);
-    if (const char* g = getenv("GRAZE")) settings.graze = atof(g);
     return settings;
 }
 
