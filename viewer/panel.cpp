@@ -16,6 +16,7 @@ namespace surfelao {
 namespace {
 
 constexpr float kWidth = 330.0f;  // of the panel, unscaled pixels
+constexpr float kGrip = 6.0f;     // how near to the wipe's line a press takes it, unscaled pixels
 constexpr float kDegreesPerPixel = 0.35f;
 constexpr float kZoomPerNotch = 0.88f;
 constexpr int kBins = 48;
@@ -32,9 +33,11 @@ constexpr const char* kHelp[][2] = {
     {"1 .. 7", "colours, in the panel's order"},
     {"T", "next surface: triangles, splats, affine, points"},
     {"R", "ray reference on or off"},
-    {"W", "wipe to the reference on or off"},
+    {"W", "wipe to the reference on or off; drag the line"},
+    {"S", "reference side by side on or off"},
     {"G", "ground on or off"},
     {"Esc", "cancel what runs in the background"},
+    {"Tab", "hide or show the panel"},
     {"P", "save the picture"},
     {"B", "save the baked file"},
     {"H", "this help"},
@@ -51,11 +54,12 @@ void style_widgets(float scale)
 {
     ImGui::StyleColorsDark();
     ImGuiStyle& style = ImGui::GetStyle();
-    style.WindowRounding = 5.0f;
+    style.WindowRounding = 0.0f;
     style.FrameRounding = 3.0f;
     style.GrabRounding = 3.0f;
     style.WindowBorderSize = 0.0f;
-    style.Colors[ImGuiCol_WindowBg].w = 0.86f;
+    style.Colors[ImGuiCol_WindowBg].w = 0.92f;
+    style.Colors[ImGuiCol_PopupBg].w = 1.0f;
     style.ScaleAllSizes(scale);
     ImGui::GetIO().FontGlobalScale = scale;
 }
@@ -159,17 +163,38 @@ void histogram(const SessionState& s)
 {
     if (s.occlusion.empty())
         return;
-    std::array<float, kBins> bins{};
+    std::array<std::size_t, kBins> bins{};
     const std::size_t vertices = s.model->geometry.positions.size();
     for (std::size_t v = 0; v < vertices; ++v) {
         const float position = s.occlusion[v].occlusion * static_cast<float>(kBins);
-        bins[std::min(static_cast<std::size_t>(position), bins.size() - 1)] += 1.0f;
+        ++bins[std::min(static_cast<std::size_t>(position), bins.size() - 1)];
     }
-    for (float& bin : bins)
-        bin = std::sqrt(bin);  // so that the many open vertices do not flatten the rest
-    ImGui::PlotHistogram(
-        "##occlusion", bins.data(), kBins, 0, "vertices by occlusion 0 .. 1, root scale", 0.0f,
-        FLT_MAX, ImVec2(ImGui::GetContentRegionAvail().x, 70.0f * ImGui::GetIO().FontGlobalScale));
+    // roots, so that the many open vertices do not flatten the rest
+    const float most = std::sqrt(static_cast<float>(*std::max_element(bins.begin(), bins.end())));
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const ImVec2 size(ImGui::GetContentRegionAvail().x, 70.0f * ImGui::GetIO().FontGlobalScale);
+    const float step = size.x / kBins;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(corner, ImVec2(corner.x + size.x, corner.y + size.y),
+                       ImGui::GetColorU32(ImGuiCol_FrameBg));
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+        const float left = corner.x + step * static_cast<float>(i);
+        const float height = size.y * std::sqrt(static_cast<float>(bins[i])) / std::max(most, 1.0f);
+        list.AddRectFilled(ImVec2(left, corner.y + size.y - height),
+                           ImVec2(left + step - 1.0f, corner.y + size.y),
+                           ImGui::GetColorU32(ImGuiCol_PlotHistogram));
+    }
+    const char* title = "vertices by occlusion 0 .. 1, root scale";
+    list.AddText(ImVec2(corner.x + size.x - ImGui::CalcTextSize(title).x - 4.0f, corner.y),
+                 ImGui::GetColorU32(ImGuiCol_Text), title);
+    ImGui::Dummy(size);
+    if (ImGui::IsItemHovered()) {
+        const float at = (ImGui::GetIO().MousePos.x - corner.x) / step;
+        const auto bin =
+            static_cast<std::size_t>(std::clamp(at, 0.0f, static_cast<float>(kBins - 1)));
+        ImGui::SetTooltip("%zu vertices from %.2f to %.2f", bins[bin],
+                          static_cast<double>(bin) / kBins, static_cast<double>(bin + 1) / kBins);
+    }
 }
 
 /// The twin of draw_heat_legend, in the lower right corner of the window.
@@ -223,62 +248,81 @@ void help_window(bool& open)
     ImGui::End();
 }
 
-/// Wipe needs a reference, and so do two of the colours.
-void ask_for_reference(PanelState& state)
+void switch_comparison(PanelState& state, Comparison comparison)
 {
-    if (needs_reference(state.view))
-        state.wants_reference = true;
+    state.comparison = state.comparison == comparison ? Comparison::none : comparison;
 }
 
-void keys(PanelState& state, PanelInput& input)
+/// One key that the widgets leave to the picture.
+void press(char key, PanelState& state, PanelInput& input)
 {
-    if (ImGui::GetIO().WantTextInput)
-        return;
-    // GLFW's codes of letters and digits are those of ASCII
-    const auto pressed = [](char key) { return ImGui::IsKeyPressed(key, false); };
-    for (char digit = '1'; digit <= '7'; ++digit) {
-        if (pressed(digit)) {
-            state.view.colors = static_cast<Colors>(digit - '1');
-            input.view_changed = true;
-        }
+    input.view_changed |= std::string_view("1234567TGWS").find(key) != std::string_view::npos;
+    switch (key) {
+        case 'T':
+            state.view.surface =
+                static_cast<Surface>((static_cast<int>(state.view.surface) + 1) % 4);
+            break;
+        case 'G':
+            state.view.ground = !state.view.ground;
+            break;
+        case 'W':
+            switch_comparison(state, Comparison::wipe);
+            break;
+        case 'S':
+            switch_comparison(state, Comparison::side_by_side);
+            break;
+        case 'R':
+            state.wants_reference = !state.wants_reference;
+            break;
+        case 'H':
+            state.shows_help = !state.shows_help;
+            break;
+        case 'F':
+            input.frame_all = true;
+            break;
+        case 'P':
+            input.save_picture = true;
+            break;
+        case 'B':
+            input.save_baked = true;
+            break;
+        case 'Q':
+            input.close = true;
+            break;
+        case Panel::kEscape:
+            input.cancel = true;
+            break;
+        case Panel::kTab:
+            state.is_hidden = !state.is_hidden;
+            break;
+        case '+':
+        case '=':
+            input.zoom *= kZoomPerNotch;
+            break;
+        case '-':
+            input.zoom /= kZoomPerNotch;
+            break;
+        default:
+            if (key >= '1' && key <= '7')
+                state.view.colors = static_cast<Colors>(key - '1');
     }
-    if (pressed('T')) {
-        state.view.surface = static_cast<Surface>((static_cast<int>(state.view.surface) + 1) % 4);
-        input.view_changed = true;
-    }
-    if (pressed('G')) {
-        state.view.ground = !state.view.ground;
-        input.view_changed = true;
-    }
-    if (pressed('W')) {
-        state.view.wipe = state.view.wipe < 1.0f ? 1.0f : 0.5f;
-        input.view_changed = true;
-    }
-    if (pressed('R'))
-        state.wants_reference = !state.wants_reference;
-    if (pressed('H'))
-        state.shows_help = !state.shows_help;
-    input.frame_all |= pressed('F');
-    input.save_picture |= pressed('P');
-    input.save_baked |= pressed('B');
-    input.close |= pressed('Q');
-    input.cancel |= ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
-    if (ImGui::IsKeyPressed('='))
-        input.zoom *= kZoomPerNotch;
-    if (ImGui::IsKeyPressed('-'))
-        input.zoom /= kZoomPerNotch;
 }
 
-void mouse(PanelInput& input)
+/// Whether the button was already down: what the mouse did before the press is no drag.
+bool drags(ImGuiMouseButton button)
 {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (io.WantCaptureMouse)
-        return;
-    if (io.MouseDown[ImGuiMouseButton_Left])
-        input.orbit_deg = kDegreesPerPixel * glm::vec2(-io.MouseDelta.x, io.MouseDelta.y);
-    if (io.MouseDown[ImGuiMouseButton_Right] || io.MouseDown[ImGuiMouseButton_Middle])
-        input.pan = glm::vec2(io.MouseDelta.x, -io.MouseDelta.y) / std::max(1.0f, io.DisplaySize.y);
-    input.zoom *= std::pow(kZoomPerNotch, io.MouseWheel);
+    return ImGui::IsMouseDown(button) && !ImGui::IsMouseClicked(button);
+}
+
+/// Two lines of what is on which side, and the line between them.
+void comparison_labels(float x, const char* left)
+{
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const ImU32 color = IM_COL32(255, 255, 255, 150);
+    const float margin = 8.0f * ImGui::GetIO().FontGlobalScale;
+    list.AddLine(ImVec2(x, 0.0f), ImVec2(x, ImGui::GetIO().DisplaySize.y), color, 1.0f);
+    list.AddText(ImVec2(x - margin - ImGui::CalcTextSize(left).x, margin), color, left);
+    list.AddText(ImVec2(x + margin, margin), color, "rays");
 }
 
 }  // namespace
@@ -300,18 +344,84 @@ Panel::~Panel()
     ImGui::DestroyContext();
 }
 
-PanelInput Panel::build(PanelState& state, const Session& session, const PanelFigures& figures)
+bool needs_reference(const PanelState& state)
+{
+    return needs_reference(state.view) || state.comparison != Comparison::none;
+}
+
+PanelInput Panel::build(PanelState& state, const Session& session, const PanelFigures& figures,
+                        std::string_view keys)
 {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     PanelInput input;
-    const SessionState& shown_state = session.state();
+    if (!ImGui::GetIO().WantTextInput) {
+        for (const char key : keys)
+            press(key, state, input);
+    }
+    // beside the picture where there is room for both, else over it
+    const float scale = ImGui::GetIO().FontGlobalScale;
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    if (!state.is_hidden) {
+        const bool beside = display.x > 2.0f * kWidth * scale;
+        input.covered = beside ? kWidth * scale / display.x : 0.0f;
+        ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
+        ImGui::SetNextWindowSize(ImVec2(kWidth * scale, beside ? display.y : 0.0f));
+        widgets(state, session, figures, input);
+    }
+    if (state.shows_help)
+        help_window(state.shows_help);
+    if (state.view.colors == Colors::difference)
+        legend("occlusion difference to rays", 0.0f, state.view.difference_scale);
+    if (state.view.colors == Colors::levels && session.state().model) {
+        const glm::vec2 range = level_range(*session.state().model);
+        legend("octree level", range.x, range.y);
+    }
+    const float left = input.covered * display.x;
+    const float line =
+        left + (display.x - left) * (state.comparison == Comparison::wipe ? state.wipe : 0.5f);
+    if (state.comparison != Comparison::none)
+        comparison_labels(line, session.services().engines[state.settings.engine].name.c_str());
+    mouse(state, input, line, left);
+    if (input.view_changed && needs_reference(state))
+        state.wants_reference = true;
+    ImGui::Render();
+    return input;
+}
 
-    ImGui::SetNextWindowPos(ImVec2(10.0f, 10.0f), ImGuiCond_FirstUseEver);
-    ImGui::SetNextWindowSize(ImVec2(kWidth, 0.0f), ImGuiCond_Always);
-    ImGui::Begin("surfelao", nullptr, ImGuiWindowFlags_NoResize);
-    ImGui::PushItemWidth(-100.0f);
+void Panel::mouse(PanelState& state, PanelInput& input, float wipe_x, float left)
+{
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.WantCaptureMouse)
+        return;
+    const bool at_line = state.comparison == Comparison::wipe &&
+                         std::abs(io.MousePos.x - wipe_x) < kGrip * io.FontGlobalScale;
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left))
+        drags_wipe_ = at_line;
+    if (at_line || (drags_wipe_ && ImGui::IsMouseDown(ImGuiMouseButton_Left)))
+        ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    if (drags(ImGuiMouseButton_Left)) {
+        if (drags_wipe_) {
+            const float width = std::max(1.0f, io.DisplaySize.x - left);
+            state.wipe = std::clamp((io.MousePos.x - left) / width, 0.0f, 1.0f);
+            input.view_changed = true;
+        } else {
+            input.orbit_deg = kDegreesPerPixel * glm::vec2(-io.MouseDelta.x, io.MouseDelta.y);
+        }
+    }
+    if (drags(ImGuiMouseButton_Right) || drags(ImGuiMouseButton_Middle))
+        input.pan = glm::vec2(io.MouseDelta.x, -io.MouseDelta.y) / std::max(1.0f, io.DisplaySize.y);
+    input.zoom *= std::pow(kZoomPerNotch, io.MouseWheel);
+}
+
+void Panel::widgets(PanelState& state, const Session& session, const PanelFigures& figures,
+                    PanelInput& input)
+{
+    const SessionState& shown_state = session.state();
+    ImGui::Begin("surfelao", nullptr,
+                 ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse);
+    ImGui::PushItemWidth(-100.0f * ImGui::GetIO().FontGlobalScale);
     if (shown_state.model)
         ImGui::Text("%s\n%zu vertices, %zu triangles", shown_state.path.filename().c_str(),
                     shown_state.model->geometry.positions.size(),
@@ -327,8 +437,12 @@ PanelInput Panel::build(PanelState& state, const Session& session, const PanelFi
             progress_line(shown_state.occlusion.empty() ? "draft" : "solving",
                           session.solve_progress());
             input.cancel |= ImGui::Button("cancel");
-        } else if (shown_state.is_draft && !session.opening()) {
-            ImGui::TextUnformatted("cancelled: the draft is shown");
+        } else if (session.was_cancelled() && shown_state.model) {
+            ImGui::TextUnformatted(shown_state.occlusion.empty() ? "cancelled"
+                                   : shown_state.is_draft        ? "cancelled: the draft is shown"
+                                                          : "cancelled: the last answer is shown");
+            ImGui::SameLine();
+            input.solve_again |= ImGui::SmallButton("solve");
         }
         stage_lines(shown_state);
         histogram(shown_state);
@@ -344,16 +458,15 @@ PanelInput Panel::build(PanelState& state, const Session& session, const PanelFi
         if (ImGui::SliderInt("rays##reference", &half, 8, 4096, "2 x %d",
                              ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
             state.reference_rays = 2 * half;
-        bool wipes = state.view.wipe < 1.0f;
-        if (ImGui::Checkbox("wipe", &wipes)) {
-            state.view.wipe = wipes ? 0.5f : 1.0f;
+        int comparison = static_cast<int>(state.comparison);
+        if (ImGui::Combo("comparison", &comparison, "none\0wipe\0side by side\0")) {
+            state.comparison = static_cast<Comparison>(comparison);
             input.view_changed = true;
         }
-        if (wipes)
-            input.view_changed |= ImGui::SliderFloat("left | right", &state.view.wipe, 0.0f, 0.999f,
-                                                     "%.2f", ImGuiSliderFlags_AlwaysClamp);
         if (session.tracing())
             progress_line("tracing", session.trace_progress());
+        else if (needs_reference(state) && shown_state.model && shown_state.reference.empty())
+            ImGui::TextUnformatted("not traced: the result is shown instead");
     }
     if (ImGui::CollapsingHeader("Save")) {
         ImGui::InputText("##picture", state.picture_path, sizeof state.picture_path);
@@ -378,26 +491,6 @@ PanelInput Panel::build(PanelState& state, const Session& session, const PanelFi
     ImGui::PopTextWrapPos();
     ImGui::PopItemWidth();
     ImGui::End();
-
-    if (state.shows_help)
-        help_window(state.shows_help);
-    if (state.view.colors == Colors::difference)
-        legend("occlusion difference to rays", 0.0f, state.view.difference_scale);
-    if (state.view.colors == Colors::levels && shown_state.model) {
-        const glm::vec2 range = level_range(*shown_state.model);
-        legend("octree level", range.x, range.y);
-    }
-    if (state.view.wipe < 1.0f) {
-        const float x = state.view.wipe * ImGui::GetIO().DisplaySize.x;
-        ImGui::GetBackgroundDrawList()->AddLine(ImVec2(x, 0.0f),
-                                                ImVec2(x, ImGui::GetIO().DisplaySize.y),
-                                                IM_COL32(255, 255, 255, 120), 1.0f);
-    }
-    keys(state, input);
-    mouse(input);
-    ask_for_reference(state);
-    ImGui::Render();
-    return input;
 }
 
 void Panel::draw()

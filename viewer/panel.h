@@ -1,4 +1,4 @@
-/// panel.h: the widgets over the picture, and the mouse and keys that they leave to the picture.
+/// panel.h: the widgets beside the picture, and the mouse and keys that they leave to the picture.
 #pragma once
 
 #include "viewer/session.h"
@@ -7,14 +7,25 @@
 #include <glm/vec2.hpp>
 
 #include <string>
+#include <string_view>
 
 struct GLFWwindow;
 
 namespace surfelao {
 
+/// How the ray reference is shown beside the result.
+enum class Comparison {
+    none,
+    wipe,          ///< right of a line
+    side_by_side,  ///< in a picture of its own
+};
+
 /// What the widgets show and change.
 struct PanelState {
-    ViewOptions view;
+    ViewOptions view;  ///< but its wipe, which follows from the comparison
+    Comparison comparison = Comparison::none;
+    float wipe = 0.5f;  ///< where the line is, as a share of the picture's width
+    bool is_hidden = false;
     SolveSettings settings;
     int reference_rays = 1024;  ///< even
     bool wants_reference = false;
@@ -33,16 +44,21 @@ struct PanelFigures {
 
 /// What the user did in one frame.
 struct PanelInput {
-    bool view_changed = false;  ///< PanelState::view
+    bool view_changed = false;  ///< PanelState::view and what belongs to the comparison
     bool frame_all = false;
     bool save_picture = false;
     bool save_baked = false;
     bool cancel = false;
+    bool solve_again = false;  ///< after it was cancelled
     bool close = false;
     glm::vec2 orbit_deg{0.0f};  ///< azimuth, elevation
     glm::vec2 pan{0.0f};        ///< shares of the window's height, y upwards
     float zoom = 1.0f;          ///< factor on the distance
+    float covered = 0.0f;  ///< share of the window's width, from the left, that the widgets keep
 };
+
+/// Whether what is to be shown needs a ray reference.
+[[nodiscard]] bool needs_reference(const PanelState& state);
 
 /// Dear ImGui in a window whose context is current in this thread. At most one at a time.
 class Panel {
@@ -53,14 +69,21 @@ public:
     Panel(const Panel&) = delete;
     Panel& operator=(const Panel&) = delete;
 
-    /// Takes the input that came since the last call and lays the widgets out.
-    PanelInput build(PanelState& state, const Session& session, const PanelFigures& figures);
+    /// Takes the input that came since the last call and lays the widgets out. keys: pressed since
+    /// then, in order: capital letters, digits, signs, and the two below.
+    PanelInput build(PanelState& state, const Session& session, const PanelFigures& figures,
+                     std::string_view keys);
+    static constexpr char kEscape = 27, kTab = 9;
 
     /// Draws what build() laid out onto the window.
     void draw();
 
 private:
+    void widgets(PanelState& state, const Session& session, const PanelFigures& figures,
+                 PanelInput& input);
+    void mouse(PanelState& state, PanelInput& input, float wipe_x, float left);
     SolveSettings edited_;
+    bool drags_wipe_ = false;
 };
 
 }  // namespace surfelao

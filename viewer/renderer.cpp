@@ -458,6 +458,7 @@ void SampleSum::add(const Framebuffer& drawing)
     impl_->program.set("u_image", drawing.color());
     impl_->program.set("u_factor", 1.0f);
     impl_->program.set("u_encode", 0);
+    impl_->program.set("u_corner", glm::ivec2(0));
     draw_fullscreen(impl_->sum, impl_->program, impl_->nothing, {.blend = Blend::add});
     ++impl_->count;
 }
@@ -478,12 +479,14 @@ Image SampleSum::mean() const
     return image;
 }
 
-void SampleSum::show(const Framebuffer& target) const
+void SampleSum::show(const Framebuffer& target, glm::ivec2 corner) const
 {
     impl_->program.set("u_image", impl_->sum.color());
     impl_->program.set("u_factor", 1.0f / static_cast<float>(std::max(1, impl_->count)));
     impl_->program.set("u_encode", 1);
-    draw_fullscreen(target, impl_->program, impl_->nothing);
+    impl_->program.set("u_corner", corner);
+    const Rect place = {corner.x, corner.y, impl_->sum.width(), impl_->sum.height()};
+    draw_fullscreen(target, impl_->program, impl_->nothing, {.viewport = place, .scissor = place});
 }
 
 }  // namespace surfelao

@@ -74,8 +74,9 @@ public:
     /// The mean as linear light; row 0 is the top. At least one drawing must have been added.
     [[nodiscard]] Image mean() const;
 
-    /// Shows the mean, sRGB-encoded, on an 8-bit target of the same size, a window's for example.
-    void show(const Framebuffer& target) const;
+    /// Shows the mean, sRGB-encoded, on an 8-bit target, a window's for example; `corner` is where
+    /// its lower left corner goes.
+    void show(const Framebuffer& target, glm::ivec2 corner) const;
 
 private:
     struct Impl;

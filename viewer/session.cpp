@@ -105,6 +105,7 @@ void Session::solve(const SolveSettings& settings)
 
 void Session::start_solve()
 {
+    was_cancelled_ = false;
     const std::uint64_t number = ++solve_number_;
     const EngineTraits& traits = services_.engines[settings_.engine];
     std::vector<SolveSettings> steps = {draft_of(settings_, traits), settings_};
@@ -167,8 +168,15 @@ void Session::start_reference()
     });
 }
 
+void Session::solve_again()
+{
+    if (state_.model && !opening_)
+        start_solve();
+}
+
 void Session::cancel()
 {
+    was_cancelled_ = solver_.busy();
     opening_ = false;
     solver_.cancel();
     tracer_.cancel();
@@ -221,6 +229,7 @@ Session::Changes Session::update()
     if (answer && answer->number == solve_number_) {
         state_.occlusion = std::move(answer->solved.occlusion);
         state_.is_draft = answer->is_draft;
+        was_cancelled_ = was_cancelled_ && answer->is_draft;
         state_.build_s = answer->solved.build_s;
         state_.solve_s = answer->solved.solve_s;
         state_.message.clear();

@@ -101,6 +101,9 @@ public:
     /// Stops solving and tracing; the last answers stay.
     void cancel();
 
+    /// Solves the model once more with the last settings, after cancel().
+    void solve_again();
+
     /// What changed in state() since the last call.
     struct Changes {
         bool model = false, occlusion = false, reference = false;
@@ -111,6 +114,7 @@ public:
     const Services& services() const { return services_; }
     const SolveSettings& settings() const { return settings_; }
     bool opening() const { return opening_; }
+    bool was_cancelled() const { return was_cancelled_; }  ///< the last solving, before its end
     bool solving() const { return solver_.busy(); }
     bool tracing() const { return tracer_.busy(); }
     double solve_progress() const { return solver_.progress(); }
@@ -128,6 +132,7 @@ private:
     SolveSettings settings_;
     std::uint32_t reference_rays_ = 0;
     bool opening_ = false;
+    bool was_cancelled_ = false;
     SessionState state_;
     std::vector<bool> has_answer_;  ///< per vertex, by the reference
 

@@ -119,6 +119,24 @@ TEST(Session, CancelKeepsTheDraft)
     EXPECT_EQ(session.state().occlusion[0].occlusion, 0.0f);
 }
 
+TEST(Session, WhatWasCancelledCanBeSolvedAgain)
+{
+    Fake fake;
+    Session session(fake.services());
+    session.open(triangle_file(), UpAxis::y);
+    session.solve({.quality = 2.0f});
+    ASSERT_TRUE(wait_for(session, [&] { return session.state().is_draft; }));
+    EXPECT_FALSE(session.was_cancelled());
+    session.cancel();
+    EXPECT_TRUE(session.was_cancelled());
+    ASSERT_TRUE(wait_for(session, [&] { return !session.solving(); }));
+    EXPECT_TRUE(session.was_cancelled());
+    const int before = fake.calls;
+    session.solve_again();
+    EXPECT_FALSE(session.was_cancelled());
+    ASSERT_TRUE(wait_for(session, [&] { return fake.calls == before + 2; }));
+}
+
 TEST(Session, TheReferenceIsTracedAndMeasuredAgainst)
 {
     Fake fake;

@@ -1,4 +1,5 @@
-// The window itself, on the display that DISPLAY names: xvfb-run in CMakeLists.txt.
+// The window itself, on the display that DISPLAY names: xvfb-run in CMakeLists.txt. Keys, drops and
+// sizes come to it as the window system brings them, by GLFW's callbacks of the window.
 
 #include "viewer/window.h"
 
@@ -6,6 +7,7 @@
 #include "scenes.h"
 #include "surfels/scene_io.h"
 
+#include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,6 +15,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -38,20 +41,69 @@ std::filesystem::path box_file()
     return path;
 }
 
-/// All open; counts how often it is asked.
-Services open_everywhere(std::atomic<int>& calls)
+/// The same occlusion everywhere; counts how often it is asked.
+Services same_everywhere(float occlusion, std::atomic<int>& calls)
 {
     Services all;
-    all.engines = {{.name = "open"}};
-    all.solve = [&calls](const Model& model, const SolveSettings&, const Progress&) {
+    all.engines = {{.name = "same"}};
+    all.solve = [occlusion, &calls](const Model& model, const SolveSettings&, const Progress&) {
         ++calls;
-        std::vector<Occlusion> occlusion;
+        std::vector<Occlusion> answer;
         for (const Receiver& receiver : model.receivers)
-            occlusion.push_back({0.0f, receiver.normal});
-        return Solved{std::move(occlusion)};
+            answer.push_back({occlusion, receiver.normal});
+        return Solved{std::move(answer)};
     };
     all.measure = [](auto, auto) { return ErrorFigures{}; };
     return all;
+}
+Services open_everywhere(std::atomic<int>& calls)
+{
+    return same_everywhere(0.0f, calls);
+}
+
+bool is_light(const glm::vec4& pixel)
+{
+    return pixel.r > 0.8f;
+}
+
+/// The first and the last column with more light pixels than text has.
+struct Extent {
+    int low, high;
+};
+Extent light_columns(const Image& image)
+{
+    Extent extent{image.width, -1};
+    for (int x = 0; x < image.width; ++x) {
+        int count = 0;
+        for (int y = 0; y < image.height; ++y)
+            count += is_light(image.at(x, y));
+        if (4 * count > image.height) {
+            extent.low = std::min(extent.low, x);
+            extent.high = std::max(extent.high, x);
+        }
+    }
+    return extent;
+}
+
+/// A key goes down and up again before the next frame.
+void press(int key)
+{
+    GLFWwindow* window = glfwGetCurrentContext();
+    const GLFWkeyfun callback = glfwSetKeyCallback(window, nullptr);
+    glfwSetKeyCallback(window, callback);
+    const int scancode = glfwGetKeyScancode(key);
+    callback(window, key, scancode, GLFW_PRESS, 0);
+    callback(window, key, scancode, GLFW_RELEASE, 0);
+}
+
+void drop(const std::filesystem::path& path)
+{
+    GLFWwindow* window = glfwGetCurrentContext();
+    const GLFWdropfun callback = glfwSetDropCallback(window, nullptr);
+    glfwSetDropCallback(window, callback);
+    const std::string name = path.string();
+    const char* names[] = {"not this one.obj", name.c_str()};
+    callback(window, 2, names);
 }
 
 double share(const Image& image, auto condition)
@@ -78,11 +130,146 @@ TEST_F(Window, ShowsTheModelAndTheWidgetsAndMovesWithoutSolving)
     show_window(options, open_everywhere(calls));
     ASSERT_EQ(last.width, 800);
     ASSERT_EQ(last.height, 600);
-    EXPECT_GT(share(last, [](const glm::vec4& p) { return p.r > 0.8f; }), 0.1);
+    EXPECT_GT(share(last, is_light), 0.1);
     EXPECT_GT(share(last, [](const glm::vec4& p) { return p.b > 0.03f && p.b > 3.0f * p.r; }),
               0.01);
     EXPECT_EQ(calls, 1);
     write_image(std::filesystem::path(testing::TempDir()) / "surfelao_window.png", last);
+}
+
+// The panel is 330 pixels wide; the box stands in the middle of the rest.
+TEST_F(Window, TheModelStandsBesideThePanelAndMovesWhenItIsHidden)
+{
+    std::atomic<int> calls{0};
+    int frames = 0;
+    Extent beside{}, alone{};
+    WindowOptions options;
+    options.input = box_file();
+    options.width = 1000;
+    options.height = 500;
+    options.on_frame = [&](const Image& shown, const Session& session) {
+        frames += !session.state().occlusion.empty();
+        if (frames == 3) {
+            beside = light_columns(shown);
+            press(GLFW_KEY_TAB);
+        }
+        alone = light_columns(shown);
+        return frames < 6;
+    };
+    show_window(options, open_everywhere(calls));
+    EXPECT_GT(beside.low, 330);
+    EXPECT_NEAR(beside.low - 330, 999 - beside.high, 60);
+    EXPECT_NEAR(alone.low, 999 - alone.high, 60);
+}
+
+TEST_F(Window, KeysThatGoDownAndUpWithinAFrameCountAndMovingSolvesNothing)
+{
+    std::atomic<int> calls{0};
+    int frames = 0;
+    double near = 0.0, far = 0.0, framed = 0.0;
+    WindowOptions options;
+    options.input = box_file();
+    options.width = 320;
+    options.height = 240;
+    options.panel.is_hidden = true;
+    options.on_frame = [&](const Image& shown, const Session& session) {
+        frames += !session.state().occlusion.empty();
+        const double light = share(shown, is_light);
+        if (frames == 2) {
+            near = light;
+            for (int i = 0; i < 5; ++i)
+                press(GLFW_KEY_MINUS);
+        } else if (frames == 4) {
+            far = light;
+            press(GLFW_KEY_F);
+        }
+        framed = light;
+        return frames < 6;
+    };
+    show_window(options, open_everywhere(calls));
+    EXPECT_LT(far, 0.5 * near);
+    EXPECT_GT(far, 0.0);
+    EXPECT_NEAR(framed, near, 1e-3);
+    EXPECT_EQ(calls, 1);
+}
+
+TEST_F(Window, ADroppedFileIsOpenedAndABrokenOneIsToldAndChangesNothing)
+{
+    std::atomic<int> calls{0};
+    const std::filesystem::path good = box_file();
+    const std::filesystem::path broken =
+        std::filesystem::path(testing::TempDir()) / "surfelao_window_broken.ply";
+    std::ofstream(broken) << "ply\nformat ascii 1.0\nelement vertex 3\n";
+    std::filesystem::path shown_path;
+    std::string message;
+    int step = 0;
+    WindowOptions options;
+    options.width = 320;
+    options.height = 240;
+    options.on_frame = [&](const Image&, const Session& session) {
+        if (step == 0) {
+            EXPECT_FALSE(session.state().model);
+            drop(good);
+            step = 1;
+        } else if (step == 1 && !session.state().occlusion.empty()) {
+            drop(broken);
+            step = 2;
+        }
+        shown_path = session.state().path;
+        message = session.state().message;
+        return step < 2 || message.empty();
+    };
+    show_window(options, open_everywhere(calls));
+    EXPECT_EQ(shown_path, good);
+    EXPECT_NE(message.find("surfelao_window_broken.ply"), std::string::npos) << message;
+    EXPECT_EQ(calls, 1);
+}
+
+// Rays see a box as open, the answer says half: light is right of the line only.
+TEST_F(Window, TheReferenceStandsRightOfTheWipeAndInThePictureBeside)
+{
+    for (const int key : {GLFW_KEY_W, GLFW_KEY_S}) {
+        std::atomic<int> calls{0};
+        bool pressed = false;
+        int frames = 0;
+        Extent light{};
+        WindowOptions options;
+        options.input = box_file();
+        options.width = 600;
+        options.height = 200;
+        options.panel.is_hidden = true;
+        options.panel.reference_rays = 16;
+        options.on_frame = [&](const Image& shown, const Session& session) {
+            if (!session.state().occlusion.empty() && !std::exchange(pressed, true))
+                press(key);
+            frames += !session.state().reference.empty();
+            light = light_columns(shown);
+            return frames < 4;
+        };
+        show_window(options, same_everywhere(0.5f, calls));
+        EXPECT_GE(light.low, 300) << static_cast<char>(key);
+        EXPECT_GT(light.high, light.low + 50) << static_cast<char>(key);
+    }
+}
+
+TEST_F(Window, MayGetAsSmallAsItWill)
+{
+    std::atomic<int> calls{0};
+    int frames = 0;
+    WindowOptions options;
+    options.input = box_file();
+    options.width = 320;
+    options.height = 240;
+    options.panel.comparison = Comparison::side_by_side;
+    options.panel.reference_rays = 2;
+    options.on_frame = [&](const Image& shown, const Session& session) {
+        const int sizes[][2] = {{1, 1}, {2, 1}, {1, 300}, {700, 20}, {400, 300}};
+        if (!session.state().occlusion.empty() && ++frames <= 5)
+            glfwSetWindowSize(glfwGetCurrentContext(), sizes[frames - 1][0], sizes[frames - 1][1]);
+        return frames < 6 || (shown.width != 400 && frames < 100);
+    };
+    show_window(options, open_everywhere(calls));
+    EXPECT_EQ(calls, 1);
 }
 
 TEST_F(Window, EverySurfaceAndColourIsDrawn)
