@@ -175,6 +175,7 @@ private:
         walk.set("u_share", settings_.share_leaf);
         walk.set("u_cluster", settings_.cluster);
         walk.set("u_cluster_limit", settings_.cluster_limit);
+        walk.set("u_graze", settings_.graze);
         walk.set("u_max_distance", std::min(limit, std::numeric_limits<float>::max()));
         walk.set("u_exact_radius", settings_.exact_radius > 0.0f ? 0.0f : -1.0f);
         walk.set("u_step_limit", kStepLimit);

@@ -15,7 +15,7 @@
 //            u_face            from the mask frame to the face's axes
 //            u_half            0: rows 0 to 7, where V < 0; 1: rows 8 to 15
 //            u_groups          RGBA32F, 3 texels a group of 16 slots (disks_gather.frag)
-//            u_cluster, u_cluster_limit, u_share, u_max_distance  MaskSettings of
+//            u_cluster, u_cluster_limit, u_share, u_graze, u_max_distance  MaskSettings of
 //                              tree/mask_kernel.h; u_share is share_leaf; no limit: the largest float
 //            u_exact_radius    nodes with no larger open_radius are drawn as they are
 //            u_words0, u_words1, u_loose0, u_loose1, u_at  the outputs of the draw before
@@ -24,7 +24,7 @@
 // Writes     out_words0, 1     RGBA32UI: the mask's rows
 //            out_loose0, 1     the same: what of it clusters have set
 //            out_at            R32UI: node to go on with; u_node_count or more: done
-// CPU twin   walk<true> and draw in tree/mask_kernel_body.h: the same decisions for groups of 16, but
+// CPU twin   walk<true>, draw_near and draw in tree/mask_kernel_body.h: the same decisions for groups of 16, but
 //            the CPU's larger groups share what is far: tests/gpu/gpu_masks_test.cpp says how much
 //            that makes
 uniform usamplerBuffer u_nodes;
@@ -38,6 +38,7 @@ uniform samplerBuffer u_groups;
 uniform float u_cluster;
 uniform float u_share;
 uniform float u_cluster_limit;
+uniform float u_graze;
 uniform float u_max_distance;
 uniform float u_exact_radius;
 uniform usampler2D u_words0;
@@ -105,7 +106,8 @@ void main()
         // the short loop: to the next node that is drawn. What is used behind the loop is fetched
         // there again: llvmpipe goes on computing for receivers that have left a loop as long as
         // their neighbours are in it, so a value from inside may be of a later round
-        bool found = false;
+        bool found  = false;
+        bool shared = false;
         do {
             ++steps;
             vec4  ball  = uintBitsToFloat(texelFetch(u_nodes, at * 4));
@@ -127,11 +129,12 @@ void main()
             float nearest   = distance - ball.w;
             vec4  within    = within_half(u_face * (ball.xyz - position));
             bool  before    = all(greaterThan(within, vec4(-kFaceReach * ball.w)));
-            bool  alive     = before && top > 0.0 && nearest - group.w < u_max_distance;
+            bool  alive     = before && top > max(u_graze * (nearest - group.w), 0.0) &&
+                         nearest - group.w < u_max_distance;
             float relax     = inversesqrt(clamp(top * inverse, kImportanceFloor, 1.0));
             float cluster   = min(u_cluster * relax, u_cluster_limit);
-            bool  far       = group.w < u_share * relax * nearest;
-            float from_all   = far ? distance : distance - group.w;
+            shared = group.w < u_share * relax * nearest;
+            float from_all = shared ? distance : distance - group.w;
             found = alive && (opening == kTriangle || open_radius <= u_exact_radius ||
                               open_radius < cluster * from_all);
             if (!alive)
@@ -147,7 +150,9 @@ void main()
         bool  triangle = third.w == kTriangle;
         bool  exact    = triangle || uintBitsToFloat(third.w) <= u_exact_radius;
         bool  loose    = !exact && (last.w & kSheet) != 0u;
-        vec3  center   = u_face * (uintBitsToFloat(texelFetch(u_nodes, at * 4).xyz) - position);
+        vec4  ball     = uintBitsToFloat(texelFetch(u_nodes, at * 4));
+        vec3  center   = u_face * (ball.xyz - position);
+        float radius   = ball.w;
         vec3  axis_u   = u_face * uintBitsToFloat(third.xyz);
         vec3  axis_v   = u_face * uintBitsToFloat(last.xyz);
         at = int(last.w & ~kSheet);
@@ -177,19 +182,22 @@ void main()
             normal = -normal;
             height = -height;
         }
-        float farthest2 = max(max(dot(c0, c0), dot(c1, c1)), max(dot(c2, c2), dot(c3, c3)));
+        vec4  squares   = vec4(dot(c0, c0), dot(c1, c1), dot(c2, c2), dot(c3, c3));
+        float farthest2 = max(max(squares.x, squares.y), max(squares.z, squares.w));
         if (farthest2 > u_max_distance * u_max_distance) {
             inside0 &= cone_bits(normal, height / u_max_distance, q);
             inside1 &= cone_bits(normal, height / u_max_distance, q + 1);
         }
 
-        // not where it lies wholly below the horizon or beside the half: seen edge-on, its planes are
-        // rounding noise and may enclose directions anywhere
+        // not where it lies wholly below the horizon, or so little above that it weighs nothing, unless
+        // the receiver is next to it. Nor beside the half: seen edge-on, its planes are rounding noise
+        // and may enclose directions anywhere
         vec4 beside = max(max(within_half(c0), within_half(c1)),
                           max(within_half(c2), within_half(c3)));
-        float top = max(max(dot(c0, up), dot(c1, up)), max(dot(c2, up), dot(c3, up)));
-        bool seen = volume != 0.0 && top > 0.0 && all(greaterThanEqual(beside, vec4(0.0))) &&
-                    height < u_max_distance;
+        vec4 heights = max(vec4(dot(c0, up), dot(c1, up), dot(c2, up), dot(c3, up)), 0.0);
+        float sine = shared || dot(center, center) < radius * radius ? 0.0 : u_graze;
+        bool seen = volume != 0.0 && any(greaterThan(heights * heights, sine * sine * squares)) &&
+                    all(greaterThanEqual(beside, vec4(0.0))) && height < u_max_distance;
         uvec4 drawn       = uvec4(seen ? 0xFFFFFFFFu : 0u);
         uvec4 drawn_loose = uvec4(seen && loose ? 0xFFFFFFFFu : 0u);
         words0 |= inside0 & drawn;
