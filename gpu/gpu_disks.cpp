@@ -183,7 +183,8 @@ public:
         for (int pass = 1; pass < options_.passes; ++pass) {
             double change = 0.0;
             for (FarSide& side : sides) {
-                gather(side.gathered, 0.5f * options_.definition.max_distance, meter);
+                gather(side.gathered, correction_opening(options_.opening),
+                       0.5f * options_.definition.max_distance, meter);
                 change += fit(side, pass == 1 ? 1.0f : kDamping);
             }
             average(sides);
@@ -204,7 +205,7 @@ private:
         return std::string("TWO_SIDED ") + (two_sided_ ? "1" : "0");
     }
 
-    void gather(GatherGrid& gathered, float max_distance, ProgressMeter& meter)
+    void gather(GatherGrid& gathered, float opening, float max_distance, ProgressMeter& meter)
     {
         const bool bunnell = options_.definition.kernel == Kernel::bunnell;
         Program& program = context_.program(
@@ -213,7 +214,7 @@ private:
              std::string("BUNNELL ") + (bunnell ? "1" : "0")});
         program.set("u_records", records_texture_);
         program.set("u_record_count", static_cast<int>(records_.records.size()));
-        program.set("u_opening", options_.opening);
+        program.set("u_opening", opening);
         program.set("u_far_front", visibility_[0].color());
         if (two_sided_) {
             const std::uint32_t from = limited_ ? 0 : records_.two_sided_from;
@@ -286,7 +287,7 @@ private:
                                   ProgressMeter& meter)
     {
         GatherGrid gathered(context_, groups);
-        gather(gathered, options_.definition.max_distance, meter);
+        gather(gathered, options_.opening, options_.definition.max_distance, meter);
         const TextureBuffer slots = upload_slots(context_, slots_of_receivers(groups, count));
         const Framebuffer rows = make_rows(context_, count, {TexelFormat::rgba32f});
         Program& program = context_.program("fullscreen.vert", "disks_result.frag");

@@ -127,6 +127,11 @@ void check_disk_options(const DiskOptions& options)
     SURFELAO_CHECK(options.passes >= 1 && options.strength >= 0.0f);
 }
 
+float correction_opening(float opening)
+{
+    return std::max(opening, std::min(kCoarser * opening, kDraftOpening));
+}
+
 std::vector<Receiver> far_sides(const Octree& octree, float offset, float side)
 {
     std::vector<Receiver> receivers(octree.surfels.size());
@@ -148,6 +153,7 @@ DiskResult solve_disks(const Octree& octree, std::span<const Receiver> receivers
     GatherSettings settings = {definition, options.opening, std::isfinite(definition.max_distance)};
     GatherSettings beyond = settings;
     beyond.definition.max_distance *= 0.5f;
+    beyond.opening = correction_opening(options.opening);
     const bool two_sided =
         settings.all_two_sided || octree.two_sided_surfels < octree.surfels.size();
 

@@ -43,7 +43,7 @@ namespace surfelao {
 /// A node stands for its surfels where its opening_size (octree.h: radius, more where it is folded)
 /// is below opening * distance to the nearest receiver of a group. From 1/sqrt(3) = 0.577 on the
 /// error of such a sum has no bound (Salmon, Warren 1994): draft is beyond, for speed. Error and
-/// time on the bunny, relative to good: draft 1.3 and 0.8, best 0.95 and 1.9.
+/// time on the bunny, relative to good: draft 1.16 and 0.8, best 0.99 and 1.4.
 inline constexpr float kDraftOpening = 0.8f;
 inline constexpr float kGoodOpening = 0.5f;
 inline constexpr float kBestOpening = 0.25f;
@@ -76,6 +76,12 @@ inline constexpr float kDamping = 0.7f;
 /// where any of them is two-sided. Throws Cancelled.
 [[nodiscard]] DiskResult solve_disks(const Octree& octree, std::span<const Receiver> receivers,
                                      const DiskOptions& options, const Progress& progress = {});
+
+/// The opening of the correcting passes: what lies beyond a disk only weighs it, so it is summed
+/// kCoarser than the answer, up to draft. On five meshes the error stayed the same or fell, by up
+/// to a tenth, and a quarter to a half of the time was saved. 0 stays 0.
+[[nodiscard]] float correction_opening(float opening);
+inline constexpr float kCoarser = 3.2f;
 
 /// Aborts where an option is out of its range.
 void check_disk_options(const DiskOptions& options);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the fuzzers and runs each for SECONDS (default 60); with NAMES only those (gltf ...).
+# Builds the fuzzers and runs each for SECONDS (default 60); with NAMES only those (gltf solve ...).
 # What they learn stays in build/fuzz/corpus, findings in build/fuzz/findings. Exit 1 on a finding.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."

@@ -108,6 +108,35 @@ void save_ply_seeds(const fs::path& folder)
     save(folder / "big.ply", big_header + big_rows);
 }
 
+/// Scenes of every engine, as solve_fuzz.cpp reads them: bytes that look like nothing in
+/// particular, and grids of places with the triangles between neighbours.
+void save_solve_seeds(const fs::path& folder)
+{
+    for (int engine = 0; engine < 4; ++engine) {
+        std::string head(12, '\0');
+        head[0] = static_cast<char>(engine);
+        head[1] = '\x40';
+        std::string scattered = head, grid = head;
+        std::uint32_t state = 1;
+        for (int i = 0; i < 600; ++i) {
+            state = 1664525u * state + 1013904223u;  // Numerical Recipes' generator
+            scattered += static_cast<char>(state >> 24);
+        }
+        grid += "\x3D\x62";  // 64 vertices; 99 triangles
+        grid += '\0';
+        for (int v = 0; v < 64; ++v)
+            grid += {static_cast<char>(12 + v % 8), static_cast<char>(12 + v / 8),
+                     static_cast<char>(16 + v * v % 5)};
+        for (int t = 0; t < 49; ++t) {
+            const int a = t / 7 * 8 + t % 7;
+            grid += {static_cast<char>(a), static_cast<char>(a + 1), static_cast<char>(a + 9),
+                     static_cast<char>(a), static_cast<char>(a + 9), static_cast<char>(a + 8)};
+        }
+        save(folder / ("scattered" + std::to_string(engine)), scattered);
+        save(folder / ("grid" + std::to_string(engine)), grid);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv)
@@ -118,4 +147,5 @@ int main(int argc, char** argv)
     save_gltf_seeds(folder / "gltf");
     save_ply_seeds(folder / "ply");
     save_text_seeds(folder);
+    save_solve_seeds(folder / "solve");
 }

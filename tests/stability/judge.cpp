@@ -84,22 +84,16 @@ Finding examine(const Trial& trial, const Engine& engine, const std::string& exc
     finding.verdict = Verdict::fail;
     finding.bound = engine.bound;
 
-    const std::vector<Occlusion> answers = solve(trial.world, engine, 1);
-    if (answers.size() != trial.world.receivers.size()) {
-        finding.fault = "not one answer per receiver";
+    const Answers answers = solve_twice(trial.world, engine);
+    finding.fault = answers.fault;
+    if (answers.occlusion.size() != trial.world.receivers.size())
         return finding;
-    }
     std::vector<Occlusion> like;
     if (trial.world.like) {
         like = solve(*trial.world.like, engine, tbb::task_arena::automatic);
         finding.bound = {2.0 * engine.bound.rms, 2.0 * engine.bound.worst};
     }
-    finding.error = error_of(trial, answers, like);
-
-    finding.fault = fault_in_numbers(trial.world.receivers, answers);
-    if (finding.fault.empty() &&
-        !same_bytes(answers, solve(trial.world, engine, tbb::task_arena::automatic)))
-        finding.fault = "two runs differ";
+    finding.error = error_of(trial, answers.occlusion, like);
     if (!finding.fault.empty())
         return finding;
 
@@ -152,6 +146,20 @@ Trial prepare(World world)
     trial.undefined = static_cast<std::size_t>(
         std::count(trial.has_answer.begin(), trial.has_answer.end(), false));
     return trial;
+}
+
+Answers solve_twice(const World& world, const Engine& engine)
+{
+    Answers answers;
+    answers.occlusion = solve(world, engine, 1);
+    if (answers.occlusion.size() != world.receivers.size())
+        answers.fault = "not one answer per receiver";
+    else
+        answers.fault = fault_in_numbers(world.receivers, answers.occlusion);
+    if (answers.fault.empty() &&
+        !same_bytes(answers.occlusion, solve(world, engine, tbb::task_arena::automatic)))
+        answers.fault = "two runs differ";
+    return answers;
 }
 
 Finding judge(const Trial& trial, const Engine& engine, const std::string& excuse)

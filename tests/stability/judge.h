@@ -49,10 +49,20 @@ struct Trial {
 /// closed form.
 [[nodiscard]] Trial prepare(World world);
 
-/// Solves twice, on one thread and on several, and checks in this order: it did not throw, one
-/// answer per receiver, all numbers finite, occlusion in [0, 1], bent normals of unit length and
-/// not below the horizon (receivers without a normal: occlusion 0, bent normal zero), both runs
-/// equal in every byte, errors within the bound. Against `like` the bound is doubled: both sides
+/// The answers of one thread, and what is wrong with them whatever the right ones are.
+struct Answers {
+    std::vector<Occlusion> occlusion;
+    std::string fault;  ///< one phrase; empty where nothing is
+};
+
+/// Solves twice, on one thread and on several, and checks in this order: one answer per receiver,
+/// all numbers finite, occlusion in [0, 1], bent normals of unit length and not below the horizon
+/// (receivers without a normal: occlusion 0, bent normal zero), both runs equal in every byte.
+/// Throws what the engine throws.
+[[nodiscard]] Answers solve_twice(const World& world, const Engine& engine);
+
+/// Solves twice, and checks in this order: it did not throw, solve_twice found no fault, errors
+/// within the bound. Against `like` the bound is doubled: both sides
 /// may be off. `excuse`: Case::disks_excused; it forgives the error only.
 [[nodiscard]] Finding judge(const Trial& trial, const Engine& engine, const std::string& excuse);
 

@@ -1,0 +1,201 @@
+// Any bytes as a scene, receivers, an engine and its settings: no engine may crash, answer with
+// what is no number or outside its range, or answer twice differently.
+#include "scene_checks.h"
+
+#include "reference/rays.h"
+#include "surfels/surfel.h"
+#include "tests/stability/judge.h"
+#include "tree/disks.h"
+#include "tree/masks.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <vector>
+
+using namespace surfelao;
+using namespace surfelao::stability;
+
+namespace {
+
+/// Reads bytes one after the other; behind the end all are 0.
+class Bytes {
+public:
+    Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
+
+    [[nodiscard]] bool empty() const { return at_ >= size_; }
+    std::uint8_t byte() { return empty() ? std::uint8_t{0} : data_[at_++]; }
+
+    template <class T, std::size_t n>
+    T one_of(const T (&values)[n])
+    {
+        return values[byte() % n];
+    }
+
+    float share() { return static_cast<float>(byte()) / 255.0f; }
+
+    /// One byte for one of a few places, which then coincide often; some bytes ask for another one
+    /// that says how far beside such a place, down to the last bit, or how far out.
+    double coordinate()
+    {
+        const std::uint8_t code = byte();
+        const double place = (code % 32 - 16) / 8.0;
+        switch (code / 32) {
+            case 0:
+            case 1:
+            case 2:
+            case 3:
+            case 4:
+                return place;
+            case 5:
+                return place + std::ldexp(1.0, -byte() % 60);
+            case 6:
+                return place * (1.0 + std::ldexp(1.0, -byte() % 60));
+            default:
+                return std::ldexp(place, byte() % 201 - 100);
+        }
+    }
+
+    glm::dvec3 point()
+    {
+        const double x = coordinate(), y = coordinate(), z = coordinate();
+        return {x, y, z};
+    }
+
+private:
+    const std::uint8_t* data_;
+    std::size_t size_;
+    std::size_t at_ = 0;
+};
+
+constexpr std::size_t kMostVertices = 256;
+constexpr std::size_t kMostTriangles = 400;
+constexpr std::size_t kMostReceivers = 64;
+
+Engine engine_of(Bytes& bytes)
+{
+    Engine engine;
+    switch (bytes.byte() % 4) {
+        case 0: {
+            RayOptions options;
+            options.rays = 16;
+            const auto build = bytes.one_of({RayScene::Build::robust, RayScene::Build::fast});
+            engine.name = "rays";
+            engine.solve = [=](const Geometry& geometry, std::span<const Receiver> receivers,
+                               const Definition& definition) mutable {
+                options.definition = definition;
+                return trace_occlusion(RayScene(geometry, build), receivers, options);
+            };
+            break;
+        }
+        case 1: {
+            DiskOptions options;
+            options.opening = 0.95f * bytes.share();
+            options.passes = 1 + bytes.byte() % 4;
+            options.strength = bytes.one_of({1.0f, 0.0f, 0.7f, 3.0f});
+            const std::uint8_t sides = bytes.byte();
+            engine.name = "disks";
+            engine.solve = [=](const Geometry& geometry, std::span<const Receiver> receivers,
+                               const Definition& definition) mutable {
+                options.definition = definition;
+                const std::vector<OccluderSide> found = analyse_topology(geometry).sides;
+                std::vector<OccluderSide> used;
+                for (std::size_t v = 0; v < geometry.areas.size(); ++v) {
+                    if (geometry.areas[v] > 0.0f)
+                        used.push_back(sides < 128 ? found[v] : OccluderSide::both);
+                }
+                return solve_disks(build_octree(surfels_at_vertices(geometry), used), receivers,
+                                   options)
+                    .occlusion;
+            };
+            break;
+        }
+        default: {
+            MaskOptions options;
+            options.quality = 4.0f * bytes.share();
+            const std::vector<MaskKernelSet> kernels = available_mask_kernels();
+            options.kernel = kernels[bytes.byte() % kernels.size()];
+            options.exact = bytes.byte() >= 224;
+            engine.name = "masks " + std::string(name_of(options.kernel));
+            engine.solve = [=](const Geometry& geometry, std::span<const Receiver> receivers,
+                               const Definition& definition) mutable {
+                options.definition = definition;
+                return solve_masks(*build_mask_tree(geometry), receivers, options);
+            };
+        }
+    }
+    return engine;
+}
+
+/// sums: the engine knows more kernels than the cosine.
+Definition definition_of(Bytes& bytes, bool sums)
+{
+    Definition definition;
+    definition.offset = bytes.one_of({1e-4f, 1e-9f, 1e-6f, 1e-2f});
+    definition.max_distance =
+        bytes.one_of({std::numeric_limits<float>::infinity(), 1.0f, 0.1f, 1e-3f, 1e-7f});
+    if (definition.max_distance < 2.0f)
+        definition.falloff = bytes.one_of({Falloff::none, Falloff::smooth});
+    if (sums)
+        definition.kernel = bytes.one_of({Kernel::cosine, Kernel::bunnell});
+    return definition;
+}
+
+Scene scene_of(Bytes& bytes)
+{
+    Scene scene;
+    const double scale = bytes.one_of({1.0, 1e-30, 1e30, 1e-6});
+    const glm::dvec3 place = bytes.one_of({0.0, 0.0, 1e7, -1e3}) * bytes.point();
+    const std::size_t vertices = 3 + bytes.byte() % (kMostVertices - 3);
+    for (std::size_t v = 0; v < vertices; ++v)
+        scene.positions.push_back(scale * (bytes.point() + place));
+    const std::size_t triangles = 1 + (bytes.byte() + 256u * bytes.byte()) % kMostTriangles;
+    const auto corner = [&] { return static_cast<std::uint32_t>(bytes.byte() % vertices); };
+    for (std::size_t t = 0; t < triangles && !bytes.empty(); ++t) {
+        const std::uint32_t a = corner(), b = corner(), c = corner();
+        scene.triangles.emplace_back(a, b, c);
+    }
+    Part part;
+    part.vertex_count = static_cast<std::uint32_t>(vertices);
+    part.triangle_count = static_cast<std::uint32_t>(scene.triangles.size());
+    scene.parts.push_back(part);
+    return scene;
+}
+
+/// At the vertices, and anywhere else with any normal.
+std::vector<Receiver> receivers_of(Bytes& bytes, const World& world)
+{
+    std::vector<Receiver> receivers = world.receivers;
+    receivers.resize(std::min(receivers.size(), kMostReceivers));
+    while (receivers.size() < kMostReceivers && !bytes.empty()) {
+        const glm::vec3 position = glm::clamp(glm::vec3(bytes.point()), -4.0f, 4.0f);
+        const glm::dvec3 normal = bytes.point();
+        const double length = glm::length(normal);
+        receivers.push_back({position, length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0)});
+    }
+    return receivers;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+    Bytes bytes(data, size);
+    const Engine engine = engine_of(bytes);
+    const Definition definition = definition_of(bytes, !engine.name.starts_with("masks"));
+    const Scene scene = scene_of(bytes);
+    if (scene.triangles.empty())
+        return 0;
+    check_geometry(scene);
+    World world = at_vertices(scene, definition);
+    world.receivers = receivers_of(bytes, world);
+    const std::string fault = solve_twice(world, engine).fault;
+    if (!fault.empty())
+        std::fprintf(stderr, "%s: %s\n", engine.name.c_str(), fault.c_str());
+    SURFELAO_CHECK(fault.empty());
+    return 0;
+}
