@@ -66,13 +66,6 @@ int integer_of(const GlTable& gl, GLenum name)
 
 }  // namespace
 
-void add_reason(std::string& reasons, const std::string& reason)
-{
-    if (!reasons.empty())
-        reasons += "; ";
-    reasons += reason;
-}
-
 void check_gl(const GlTable& gl, const char* doing)
 {
     if (gl.GetGraphicsResetStatus != nullptr && gl.GetGraphicsResetStatus() != GL_NO_ERROR)

@@ -23,4 +23,27 @@ std::unique_ptr<GlPlatform> make_egl_platform(std::string& reasons);
 /// "; " between the entries of such a list.
 void add_reason(std::string& reasons, const std::string& reason);
 
+/// A shared library that is opened when a context is first wanted, and never closed: its contexts
+/// may outlive any owner.
+class SharedLibrary {
+public:
+    explicit SharedLibrary(const char* file);
+
+    /// Sets the pointer to that function, or to null.
+    template <typename Function>
+    void find(Function*& function, const char* name)
+    {
+        function = reinterpret_cast<Function*>(symbol(name));
+    }
+
+    /// Why the library or, the last of those asked for, a function is missing; else empty.
+    const std::string& error() const { return error_; }
+
+private:
+    void* symbol(const char* name);
+    std::string file_;
+    void* handle_;
+    std::string error_;
+};
+
 }  // namespace surfelao

@@ -3,7 +3,6 @@
 #define EGL_NO_PLATFORM_SPECIFIC_TYPES
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
-#include <dlfcn.h>
 
 #include <algorithm>
 #include <array>
@@ -37,26 +36,17 @@ struct Egl {
     std::string error;  ///< why the functions are missing
 };
 
-/// Opened once and never closed, and displays are never terminated: EGL hands out the same display
-/// to everyone who asks, so nobody knows who is the last.
+/// Displays are never terminated: EGL hands out the same one to everyone who asks, so nobody knows
+/// who is the last.
 const Egl& egl()
 {
     static const Egl loaded = [] {
         Egl result;
-        void* library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
-        if (library == nullptr) {
-            result.error = dlerror();
-            return result;
-        }
-        const auto find = [&](auto& function, const char* name) {
-            function =
-                reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
-            if (function == nullptr)
-                result.error = std::string("libEGL.so.1 has no ") + name;
-        };
-#define SURFELAO_EGL_FIND(name, upper) find(result.name, "egl" #name);
+        SharedLibrary library("libEGL.so.1");
+#define SURFELAO_EGL_FIND(name, upper) library.find(result.name, "egl" #name);
         SURFELAO_EGL_FUNCTIONS(SURFELAO_EGL_FIND)
 #undef SURFELAO_EGL_FIND
+        result.error = library.error();
         if (!result.error.empty())
             return result;
         const auto extension = [&](auto& function, const char* name) {

@@ -1,7 +1,5 @@
 #include "gpu/platform.h"
 
-#include <dlfcn.h>
-
 #include <array>
 
 namespace surfelao {
@@ -23,26 +21,16 @@ struct Osmesa {
     std::string error;  ///< why the functions are missing
 };
 
-/// Opened once and never closed: contexts of the library may outlive any owner.
 const Osmesa& osmesa()
 {
     static const Osmesa loaded = [] {
         Osmesa result;
-        void* library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
-        if (library == nullptr) {
-            result.error = dlerror();
-            return result;
-        }
-        const auto find = [&](auto& function, const char* name) {
-            function =
-                reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
-            if (function == nullptr)
-                result.error = std::string("libOSMesa.so.8 has no ") + name;
-        };
-        find(result.create, "OSMesaCreateContextAttribs");
-        find(result.destroy, "OSMesaDestroyContext");
-        find(result.make_current, "OSMesaMakeCurrent");
-        find(result.get_proc, "OSMesaGetProcAddress");
+        SharedLibrary library("libOSMesa.so.8");
+        library.find(result.create, "OSMesaCreateContextAttribs");
+        library.find(result.destroy, "OSMesaDestroyContext");
+        library.find(result.make_current, "OSMesaMakeCurrent");
+        library.find(result.get_proc, "OSMesaGetProcAddress");
+        result.error = library.error();
         return result;
     }();
     return loaded;
