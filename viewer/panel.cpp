@@ -314,15 +314,15 @@ bool drags(ImGuiMouseButton button)
     return ImGui::IsMouseDown(button) && !ImGui::IsMouseClicked(button);
 }
 
-/// Two lines of what is on which side, and the line between them.
-void comparison_labels(float x, const char* left)
+/// What is on which side, and the line between.
+void comparison_labels(float x, const char* left, const char* right)
 {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const ImU32 color = IM_COL32(255, 255, 255, 150);
     const float margin = 8.0f * ImGui::GetIO().FontGlobalScale;
     list.AddLine(ImVec2(x, 0.0f), ImVec2(x, ImGui::GetIO().DisplaySize.y), color, 1.0f);
     list.AddText(ImVec2(x - margin - ImGui::CalcTextSize(left).x, margin), color, left);
-    list.AddText(ImVec2(x + margin, margin), color, "rays");
+    list.AddText(ImVec2(x + margin, margin), color, right);
 }
 
 }  // namespace
@@ -382,7 +382,8 @@ PanelInput Panel::build(PanelState& state, const Session& session, const PanelFi
     const float line =
         left + (display.x - left) * (state.comparison == Comparison::wipe ? state.wipe : 0.5f);
     if (state.comparison != Comparison::none)
-        comparison_labels(line, session.services().engines[state.settings.engine].name.c_str());
+        comparison_labels(line, session.services().engines[state.settings.engine].name.c_str(),
+                          session.state().reference.empty() ? "no rays yet" : "rays");
     mouse(state, input, line, left);
     if (input.view_changed && needs_reference(state))
         state.wants_reference = true;
