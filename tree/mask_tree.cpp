@@ -3,6 +3,7 @@
 #include "tree/lanes.h"
 #include "tree/mask_patch.h"
 #include "tree/masks.h"
+#include "tree/raw_vector.h"
 
 #include <glm/geometric.hpp>
 
@@ -17,6 +18,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <vector>
 
 namespace surfelao {
 namespace {
@@ -38,7 +40,7 @@ constexpr std::size_t kBlock = 4096;           ///< keys of one task
 struct alignas(16) Key {
     std::array<float, 6> at;
     std::uint32_t triangle;
-    std::uint32_t padding = 0;
+    std::uint32_t padding;
 };
 
 struct Extent {
@@ -138,7 +140,7 @@ class Builder {
 public:
     explicit Builder(const Geometry& geometry) : geometry_(geometry) {}
 
-    std::vector<MaskNode> build()
+    RawVector<MaskNode> build()
     {
         const std::size_t count = geometry_.triangles.size();
         if (count == 0)
@@ -146,7 +148,7 @@ public:
         positions_.resize(geometry_.positions.size());
         for_blocks(positions_.size(),
                    [&](std::size_t v) { positions_[v] = kMaskFrame * geometry_.positions[v]; });
-        for (std::vector<Key>& side : keys_)
+        for (RawVector<Key>& side : keys_)
             side.resize(count);
         for_blocks(count, [&](std::size_t t) { keys_[0][t] = key_of(t); });
         order_.resize(count);
@@ -176,7 +178,8 @@ private:
         const float length = glm::length(cross);
         const glm::vec3 normal = length > 0.0f ? cross / length : glm::vec3(0.0f);
         return {{center.x, center.y, center.z, normal.x, normal.y, normal.z},
-                static_cast<std::uint32_t>(triangle)};
+                static_cast<std::uint32_t>(triangle),
+                0};
     }
 
     /// Node `index` over keys [begin, end) of one side; its descendants stand in nodes [first,
@@ -356,10 +359,10 @@ private:
     }
 
     const Geometry& geometry_;
-    std::vector<glm::vec3> positions_;      ///< in the mask frame
-    std::array<std::vector<Key>, 2> keys_;  ///< to and fro from level to level
-    std::vector<std::uint32_t> order_;      ///< the triangles below each finished node in one range
-    std::vector<MaskNode> nodes_;
+    RawVector<glm::vec3> positions_;      ///< in the mask frame
+    std::array<RawVector<Key>, 2> keys_;  ///< to and fro from level to level
+    RawVector<std::uint32_t> order_;      ///< the triangles below each finished node in one range
+    RawVector<MaskNode> nodes_;
 };
 
 }  // namespace

@@ -7,11 +7,12 @@
 /// Internal to the mask engine; masks.h is its door.
 #pragma once
 
+#include "tree/raw_vector.h"
+
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
-#include <vector>
 
 namespace surfelao {
 
@@ -41,7 +42,7 @@ static_assert(sizeof(MaskNode) == 64);
 
 /// In the mask frame. nodes[0] is the root; empty where the scene has no triangle.
 struct MaskTree {
-    std::vector<MaskNode> nodes;
+    RawVector<MaskNode> nodes;
 };
 
 }  // namespace surfelao
