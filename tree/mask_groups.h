@@ -5,7 +5,9 @@
 
 #include "surfels/receiver.h"
 #include "tree/mask_kernel.h"
+#include "tree/raw_vector.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,13 +16,17 @@ namespace surfelao {
 
 constexpr std::uint32_t kMaskGroupSize = 16;  ///< receivers in a leaf group at most
 
+/// Groups own ranges of `order` and of the columns.
 struct MaskGroups {
-    std::vector<MaskGroup> groups;     ///< groups[0] is the root; empty without receivers
-    std::vector<std::uint32_t> order;  ///< groups own ranges of this; values index the receivers
+    std::vector<MaskGroup> groups;   ///< groups[0] is the root; empty without receivers
+    RawVector<std::uint32_t> order;  ///< into the receivers
+    /// Position and normal in the mask frame: x, y, z each. Readable for kMaskGroupSize
+    /// values beyond the end, zeros.
+    std::array<RawVector<float>, 3> position, normal;
 };
 
-/// Receivers without a normal are left out. O(n log n), all cores, same result for any number of
-/// threads.
+/// In the mask frame. Receivers without a normal are left out. O(n log n), all cores, same result
+/// for any number of threads.
 [[nodiscard]] MaskGroups group_for_masks(std::span<const Receiver> receivers);
 
 }  // namespace surfelao

@@ -3,14 +3,12 @@
 #include "tree/lanes.h"
 #include "tree/mask_patch.h"
 #include "tree/masks.h"
+#include "tree/part.h"
 #include "tree/raw_vector.h"
 
 #include <glm/geometric.hpp>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <array>
@@ -31,9 +29,7 @@ constexpr float kNormalExtent = 0.5f;
 /// measured at the corners; above, these follow from the children's.
 constexpr std::size_t kBundle = 32;
 
-constexpr std::size_t kParallelNode = 2048;    ///< smaller subtrees are built by one thread
-constexpr std::size_t kParallelSplit = 32768;  ///< smaller nodes are split by one thread
-constexpr std::size_t kBlock = 4096;           ///< keys of one task
+constexpr std::size_t kParallelNode = 2048;  ///< smaller subtrees are built by one thread
 
 /// Where the splits look: centroid and unit normal of one triangle, in the scene's own axes: what
 /// is built along them is cut along them.
@@ -72,12 +68,25 @@ struct Extent {
     }
 };
 
-/// Keys below and above `at` on one of the six axes are parted.
+Extent extent_of(std::span<const Key> keys)
+{
+    if (keys.size() < kPartMany)
+        return Extent(keys);
+    std::vector<Extent> extents(keys.size() / kPartBlock + 1);
+    for_blocks(keys,
+               [&](std::span<const Key> block, std::size_t i) { extents[i] = Extent(block); });
+    Extent extent;
+    for (const Extent& one : extents)
+        extent.add(one);
+    return extent;
+}
+
+/// Parts the keys below `at` on one of the six axes from the others.
 struct Plane {
     std::size_t axis;
     float at;
 
-    bool below(const Key& key) const { return key.at[axis] < at; }
+    bool operator()(const Key& key) const { return key.at[axis] < at; }
 };
 
 /// The middle of the longest of the six extents.
@@ -98,22 +107,6 @@ Plane plane_of(const Extent& extent)
         longest = here > longest ? here : longest;
     }
     return {axis, 0.5f * (low[axis] + high[axis])};
-}
-
-/// Writes the keys that are below to out[left...], the others to out[..., right - 1] from the end
-/// on. Returns how many are below.
-std::size_t part(std::span<const Key> keys, Plane plane, Key* out, std::size_t left,
-                 std::size_t right)
-{
-    const std::size_t first = left;
-    for (const Key& key : keys) {
-        // no branch depends on a key: half of them would be guessed wrong
-        const std::size_t below = plane.below(key) ? 1 : 0;
-        out[(right - 1) + (left - (right - 1)) * below] = key;
-        left += below;
-        right -= 1 - below;
-    }
-    return left - first;
 }
 
 /// Nodes over up to kBundle triangles while they are built. Node 0 is the root; children stand
@@ -146,11 +139,16 @@ public:
         if (count == 0)
             return {};
         positions_.resize(geometry_.positions.size());
-        for_blocks(positions_.size(),
-                   [&](std::size_t v) { positions_[v] = kMaskFrame * geometry_.positions[v]; });
+        for_blocks(std::span(positions_), [&](std::span<glm::vec3> block, std::size_t i) {
+            for (std::size_t v = 0; v < block.size(); ++v)
+                block[v] = kMaskFrame * geometry_.positions[i * kPartBlock + v];
+        });
         for (RawVector<Key>& side : keys_)
             side.resize(count);
-        for_blocks(count, [&](std::size_t t) { keys_[0][t] = key_of(t); });
+        for_blocks(std::span(keys_[0]), [&](std::span<Key> block, std::size_t i) {
+            for (std::size_t t = 0; t < block.size(); ++t)
+                block[t] = key_of(i * kPartBlock + t);
+        });
         order_.resize(count);
         nodes_.resize(2 * count - 1);
         build_node(0, 1, 0, count, 0);
@@ -158,16 +156,6 @@ public:
     }
 
 private:
-    template <class Work>
-    static void for_blocks(std::size_t count, const Work& work)
-    {
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kBlock),
-                          [&](const tbb::blocked_range<std::size_t>& range) {
-                              for (std::size_t i = range.begin(); i < range.end(); ++i)
-                                  work(i);
-                          });
-    }
-
     Key key_of(std::size_t triangle) const
     {
         const glm::uvec3 t = geometry_.triangles[triangle];
@@ -228,36 +216,8 @@ private:
     std::size_t split(std::size_t begin, std::size_t end, int side)
     {
         const std::span<const Key> keys(keys_[side].data() + begin, end - begin);
-        Key* const out = keys_[1 - side].data() + begin;
-        std::size_t below = 0;
-        if (keys.size() <= kParallelSplit) {
-            below = part(keys, plane_of(Extent(keys)), out, 0, keys.size());
-        } else {
-            // the same in blocks: the keys of each go where they would go in one pass
-            const auto block = [&](std::size_t i) {
-                return keys.subspan(i * kBlock, std::min(kBlock, keys.size() - i * kBlock));
-            };
-            const std::size_t blocks = (keys.size() + kBlock - 1) / kBlock;
-            std::vector<Extent> extents(blocks);
-            tbb::parallel_for(std::size_t{0}, blocks,
-                              [&](std::size_t i) { extents[i] = Extent(block(i)); });
-            Extent extent;
-            for (const Extent& one : extents)
-                extent.add(one);
-            const Plane plane = plane_of(extent);
-            std::vector<std::size_t> below_before(blocks + 1, 0);
-            tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t i) {
-                for (const Key& key : block(i))
-                    below_before[i + 1] += plane.below(key) ? 1 : 0;
-            });
-            for (std::size_t i = 0; i < blocks; ++i)
-                below_before[i + 1] += below_before[i];
-            below = below_before[blocks];
-            tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t i) {
-                const std::size_t above_before = i * kBlock - below_before[i];
-                part(block(i), plane, out, below_before[i], keys.size() - above_before);
-            });
-        }
+        const Plane plane = plane_of(extent_of(keys));
+        const std::size_t below = part(keys, plane, keys_[1 - side].data() + begin);
         const bool parted = below != 0 && below != keys.size();
         return begin + (parted ? below : keys.size() / 2);
     }
@@ -346,7 +306,7 @@ private:
             if (size > 2) {
                 side = 1 - side;
                 Key* const out = bundle.keys[side].data() + node.begin;
-                below = part({keys, size}, plane_of(Extent({keys, size})), out, 0, size);
+                below = part<Key>({keys, size}, plane_of(Extent({keys, size})), out, 0, size);
                 below = below != 0 && below != size ? below : size / 2;
             }
             const auto middle = static_cast<std::uint8_t>(node.begin + below);

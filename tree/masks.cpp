@@ -158,14 +158,6 @@ std::vector<float> distance_limits(const Definition& definition)
 
 namespace {
 
-std::vector<Receiver> in_mask_frame(std::span<const Receiver> receivers)
-{
-    std::vector<Receiver> turned(receivers.size());
-    for (std::size_t i = 0; i < receivers.size(); ++i)
-        turned[i] = {kMaskFrame * receivers[i].position, kMaskFrame * receivers[i].normal};
-    return turned;
-}
-
 /// Buffers of one thread: one list of nodes per level of the group tree on the way down.
 struct Workspace {
     MaskScratch scratch;
@@ -194,8 +186,7 @@ public:
                  mask_settings(options)},
           has_triangles_(!tree.nodes.empty()),
           receivers_(receivers),
-          turned_(in_mask_frame(receivers)),
-          groups_(group_for_masks(turned_)),
+          groups_(group_for_masks(receivers)),
           limits_(distance_limits(options.definition)),
           progress_(progress, groups_.order.size() * limits_.size()),
           answers_(receivers.size())
@@ -265,12 +256,9 @@ private:
     {
         MaskReceivers columns{};
         columns.count = group.end - group.begin;
-        for (std::uint32_t i = 0; i < columns.count; ++i) {
-            const Receiver& receiver = turned_[groups_.order[group.begin + i]];
-            for (int k = 0; k < 3; ++k) {
-                columns.position[k][i] = receiver.position[k];
-                columns.normal[k][i] = receiver.normal[k];
-            }
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::copy_n(&groups_.position[k][group.begin], columns.count, columns.position[k]);
+            std::copy_n(&groups_.normal[k][group.begin], columns.count, columns.normal[k]);
         }
         MaskAnswers found{};
         kernel_.solve(world_, group, in, in_count, mask, columns, found,
@@ -288,7 +276,6 @@ private:
     MaskWorld world_;
     bool has_triangles_;
     std::span<const Receiver> receivers_;
-    std::vector<Receiver> turned_;
     MaskGroups groups_;
     std::vector<float> limits_;
     ProgressMeter progress_;
