@@ -330,10 +330,13 @@ void show_patches(std::span<MaskPatchNode> nodes)
 
 void make_whole(const MaskPatch& patch, const MaskCorners& corners, MaskNode& node)
 {
-    const glm::vec3 a = corners.at(0, 0), b = corners.at(1, 0), c = corners.at(2, 0);
+    const float u2 = glm::dot(node.axis_u, node.axis_u), v2 = glm::dot(node.axis_v, node.axis_v);
+    if (make_whole_along(glm::normalize(node.axis_u), patch, corners, node) || u2 > 1.2f * v2)
+        return;
     // a square has no axes of its own: its triangles' edges lie along them
-    for (const glm::vec3 direction : {node.axis_u, b - a, c - b, a - c}) {
-        if (make_whole_along(glm::normalize(direction), patch, corners, node))
+    const glm::vec3 a = corners.at(0, 0), b = corners.at(1, 0), c = corners.at(2, 0);
+    for (const glm::vec3 edge : {b - a, c - b, a - c}) {
+        if (make_whole_along(glm::normalize(edge), patch, corners, node))
             return;
     }
 }

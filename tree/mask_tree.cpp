@@ -94,15 +94,14 @@ Plane plane_of(const Extent& extent)
 {
     const auto low = std::bit_cast<std::array<float, 8>>(extent.low);
     const auto high = std::bit_cast<std::array<float, 8>>(extent.high);
-    std::array<float, 6> length;
+    std::array<float, 6> square;
     for (std::size_t i = 0; i < 6; ++i)
-        length[i] = high[i] - low[i];
-    const float unit = kNormalExtent * std::sqrt(length[0] * length[0] + length[1] * length[1] +
-                                                 length[2] * length[2]);
+        square[i] = (high[i] - low[i]) * (high[i] - low[i]);
+    const float unit = kNormalExtent * kNormalExtent * (square[0] + square[1] + square[2]);
     std::size_t axis = 0;
-    float longest = length[0];
+    float longest = square[0];
     for (std::size_t i = 1; i < 6; ++i) {
-        const float here = i < 3 ? length[i] : unit * length[i];
+        const float here = i < 3 ? square[i] : unit * square[i];
         axis = here > longest ? i : axis;
         longest = here > longest ? here : longest;
     }
@@ -240,7 +239,9 @@ private:
     {
         Bundle bundle;
         const std::size_t count = end - begin;
-        // triangles stand anywhere in memory: they are asked for long before they are needed
+        // memory is asked for long before it is needed: triangles stand anywhere
+        for (std::size_t k = 0; k < 2 * (count - 1); ++k)
+            __builtin_prefetch(&nodes_[first + k], 1);
         for (std::size_t i = 0; i < count; ++i) {
             bundle.keys[0][i] = keys_[side][begin + i];
             __builtin_prefetch(&geometry_.triangles[bundle.keys[0][i].triangle]);

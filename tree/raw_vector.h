@@ -1,29 +1,56 @@
 /// raw_vector.h: a std::vector for large arrays that are about to be filled in by all threads.
 ///
 /// resize() leaves new elements unset instead of writing zeros first on one thread, which takes as
-/// long as the filling. Each must be written before it is read. For trivial types only.
+/// long as the filling. Each must be written before it is read. Large arrays ask the system for
+/// large pages (2 MiB): where memory is fresh, a fault for every 4 KiB takes a third of the time of
+/// building a tree. For trivial types only.
 #pragma once
 
+#include <cstddef>
+#include <cstdlib>
 #include <memory>
+#include <new>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
 namespace surfelao {
 
 template <class T>
-struct RawAllocator : std::allocator<T> {
+class RawAllocator {
+public:
+    using value_type = T;
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
-
-    template <class U>
-    struct rebind {
-        using other = RawAllocator<U>;
-    };
 
     RawAllocator() = default;
     template <class U>
     RawAllocator(const RawAllocator<U>&)
     {
+    }
+
+    [[nodiscard]] T* allocate(std::size_t count)
+    {
+        if (count > static_cast<std::size_t>(-1) / 2 / sizeof(T))
+            throw std::bad_array_new_length();
+        const bool large = count * sizeof(T) >= kPage / 2;
+        const std::size_t unit = large ? kPage : kLine;
+        const std::size_t bytes = (count * sizeof(T) + unit - 1) / unit * unit;
+        void* const memory = std::aligned_alloc(unit, bytes);
+        if (memory == nullptr)
+            throw std::bad_alloc();
+#if defined(MADV_HUGEPAGE)
+        if (large)
+            static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));  // small pages do as well
+#endif
+        return static_cast<T*>(memory);
+    }
+    void deallocate(T* memory, std::size_t)
+    {
+        std::free(memory);
     }
 
     template <class U, class... Arguments>
@@ -34,6 +61,16 @@ struct RawAllocator : std::allocator<T> {
         else
             ::new (static_cast<void*>(at)) U;
     }
+
+    bool operator==(const RawAllocator&) const
+    {
+        return true;
+    }
+
+private:
+    static constexpr std::size_t kPage = std::size_t{2} << 20;
+    static constexpr std::size_t kLine = 64;
+    static_assert(alignof(T) <= kLine);
 };
 
 template <class T>
