@@ -1,5 +1,8 @@
 #include "tests/stability/engines.h"
 
+#include "gpu/context.h"
+#include "gpu/gpu_disks.h"
+#include "gpu/gpu_masks.h"
 #include "reference/rays.h"
 #include "surfels/surfel.h"
 #include "surfels/topology.h"
@@ -19,6 +22,7 @@ Engine rays(const char* name, RayScene::Build build, std::uint32_t count)
     return {name,
             {rms, 4.0 * rms},
             false,
+            false,
             [build, count](const Geometry& geometry, std::span<const Receiver> receivers,
                            const Definition& definition) {
                 RayOptions options;
@@ -29,13 +33,23 @@ Engine rays(const char* name, RayScene::Build build, std::uint32_t count)
             }};
 }
 
+enum class Where { cpu, gpu };
+
+/// Software, so that the table is the same everywhere; current in this thread.
+const GlContext& software_gpu()
+{
+    static const GlContext context = GlContext::create(GlBackend::osmesa);
+    context.make_current();
+    return context;
+}
+
 /// Figures of the disk engine's own design: closed smooth bodies 0.005 to 0.025 RMS; the worst
 /// receiver is not promised, five times the RMS is what its tails show.
-Engine disks(const char* name, float opening, Bound bound)
+Engine disks(const char* name, Where where, float opening, Bound bound)
 {
-    return {name, bound, true,
-            [opening](const Geometry& geometry, std::span<const Receiver> receivers,
-                      const Definition& definition) {
+    return {name, bound, true, true,
+            [where, opening](const Geometry& geometry, std::span<const Receiver> receivers,
+                             const Definition& definition) {
                 const Topology topology = analyse_topology(geometry);
                 std::vector<OccluderSide> sides;
                 for (std::size_t v = 0; v < geometry.areas.size(); ++v) {
@@ -45,24 +59,28 @@ Engine disks(const char* name, float opening, Bound bound)
                 DiskOptions options;
                 options.definition = definition;
                 options.opening = opening;
-                return solve_disks(build_octree(surfels_at_vertices(geometry), sides), receivers,
-                                   options)
-                    .occlusion;
+                const Octree octree = build_octree(surfels_at_vertices(geometry), sides);
+                return where == Where::cpu
+                           ? solve_disks(octree, receivers, options).occlusion
+                           : solve_disks_gpu(software_gpu(), octree, receivers, options).occlusion;
             }};
 }
 
 /// One bit per direction. The bounds are the measured RMS of the worst cases plus a fifth; the
 /// worst receiver has up to six times that. Worst cases: draft a closed sphere (0.043), good a
 /// closed sphere (0.015), best a square pit along the raster's axes (0.014).
-Engine masks(const char* name, float quality, Bound bound)
+Engine masks(const char* name, Where where, float quality, Bound bound)
 {
-    return {name, bound, false,
-            [quality](const Geometry& geometry, std::span<const Receiver> receivers,
-                      const Definition& definition) {
+    return {name, bound, false, where == Where::gpu,
+            [where, quality](const Geometry& geometry, std::span<const Receiver> receivers,
+                             const Definition& definition) {
                 MaskOptions options;
                 options.definition = definition;
                 options.quality = quality;
-                return solve_masks(*build_mask_tree(geometry), receivers, options);
+                const std::shared_ptr<const MaskTree> tree = build_mask_tree(geometry);
+                return where == Where::cpu
+                           ? solve_masks(*tree, receivers, options)
+                           : solve_masks_gpu(software_gpu(), *tree, receivers, options);
             }};
 }
 
@@ -70,15 +88,21 @@ Engine masks(const char* name, float quality, Bound bound)
 
 std::vector<Engine> all_engines()
 {
+    constexpr Bound kMasksDraft{0.05, 0.15}, kMasksGood{0.018, 0.1}, kMasksBest{0.018, 0.06};
+    constexpr Bound kDisksDraft{0.05, 0.25}, kDisksGood{0.03, 0.15};
     return {
         rays("rays 4096", RayScene::Build::robust, 4096),
         rays("rays 256", RayScene::Build::fast, 256),
-        masks("masks draft", MaskOptions::kDraft, {0.05, 0.15}),
-        masks("masks good", MaskOptions::kGood, {0.018, 0.1}),
-        masks("masks best", MaskOptions::kBest, {0.018, 0.06}),
-        disks("disks draft", kDraftOpening, {0.05, 0.25}),
-        disks("disks good", kGoodOpening, {0.03, 0.15}),
-        disks("disks best", kBestOpening, {0.03, 0.15}),
+        masks("masks draft", Where::cpu, MaskOptions::kDraft, kMasksDraft),
+        masks("masks good", Where::cpu, MaskOptions::kGood, kMasksGood),
+        masks("masks best", Where::cpu, MaskOptions::kBest, kMasksBest),
+        disks("disks draft", Where::cpu, kDraftOpening, kDisksDraft),
+        disks("disks good", Where::cpu, kGoodOpening, kDisksGood),
+        disks("disks best", Where::cpu, kBestOpening, kDisksGood),
+        masks("GPU m. draft", Where::gpu, MaskOptions::kDraft, kMasksDraft),
+        masks("GPU m. good", Where::gpu, MaskOptions::kGood, kMasksGood),
+        masks("GPU m. best", Where::gpu, MaskOptions::kBest, kMasksBest),
+        disks("GPU d. good", Where::gpu, kGoodOpening, kDisksGood),
     };
 }
 

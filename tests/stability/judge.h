@@ -22,6 +22,7 @@ struct Engine {
     std::string name;
     Bound bound;
     bool may_be_excused = false;  ///< by Case::disks_excused
+    bool skips_slow = false;      ///< not run where Case::slow
     std::function<std::vector<Occlusion>(const Geometry&, std::span<const Receiver>,
                                          const Definition&)>
         solve;

@@ -12,6 +12,9 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <span>
+#include <string>
+#include <vector>
 
 using namespace surfelao::stability;
 
@@ -22,6 +25,9 @@ struct Totals {
     Bound worst;  ///< over the cases that the engine is held to
     std::string worst_case;
 };
+
+constexpr std::size_t kColumns = 8;  ///< the other engines follow in a table of their own
+constexpr const char* kNotRun = "      -     -  ";
 
 char mark(Verdict verdict)
 {
@@ -40,7 +46,7 @@ const char* source_of(const World& world)
     return world.like ? "like" : world.answer ? "form" : "rays";
 }
 
-void print_header(const std::vector<Engine>& engines)
+void print_header(std::span<const Engine> engines)
 {
     std::printf("%-52s %5s %6s %5s", "case", "truth", "points", "undef");
     for (const Engine& engine : engines)
@@ -49,6 +55,22 @@ void print_header(const std::vector<Engine>& engines)
     for (const Engine& engine : engines)
         std::printf("  %5.3f %5.3f  ", engine.bound.rms, engine.bound.worst);
     std::printf("\n");
+}
+
+std::string title_of(const Case& item, const Trial& trial)
+{
+    char text[120];
+    std::snprintf(text, sizeof text, "%-52s %5s %6zu %5zu", (item.group + ": " + item.name).c_str(),
+                  source_of(trial.world), trial.world.receivers.size(), trial.undefined);
+    return text;
+}
+
+std::string cell_of(const Finding& finding)
+{
+    char text[40];
+    std::snprintf(text, sizeof text, "  %5.3f %5.3f %c", finding.error.rms, finding.error.worst,
+                  mark(finding.verdict));
+    return text;
 }
 
 void print_summary(const std::vector<Engine>& engines, const std::vector<Totals>& totals)
@@ -70,19 +92,29 @@ int run(bool quick, const std::vector<std::string>& texts)
     std::vector<std::string> faults;
     std::size_t cases = 0, receivers = 0, undefined = 0;
 
-    print_header(engines);
+    const std::span<const Engine> shown = std::span(engines).first(kColumns);
+    const std::span<const Engine> others = std::span(engines).subspan(kColumns);
+    std::string table_of_others;
+    print_header(shown);
     for (const Case& item : all_cases()) {
         if ((quick && item.slow) || !asked_for(item, texts))
             continue;
         const std::string title = item.group + ": " + item.name;
         const Trial trial = prepare(item.make());
-        std::printf("%-52s %5s %6zu %5zu", title.c_str(), source_of(trial.world),
-                    trial.world.receivers.size(), trial.undefined);
+        std::fputs(title_of(item, trial).c_str(), stdout);
+        table_of_others += title_of(item, trial);
         for (std::size_t e = 0; e < engines.size(); ++e) {
-            const Finding finding = judge(trial, engines[e], item.disks_excused);
-            std::printf("  %5.3f %5.3f %c", finding.error.rms, finding.error.worst,
-                        mark(finding.verdict));
+            const bool skipped = item.slow && engines[e].skips_slow;
+            const Finding finding =
+                skipped ? Finding() : judge(trial, engines[e], item.disks_excused);
+            const std::string cell = skipped ? kNotRun : cell_of(finding);
+            if (e < kColumns)
+                std::fputs(cell.c_str(), stdout);
+            else
+                table_of_others += cell;
             std::fflush(stdout);
+            if (skipped)
+                continue;
             Totals& total = totals[e];
             ++total.verdicts[static_cast<int>(finding.verdict)];
             if (finding.verdict == Verdict::fail)
@@ -96,10 +128,14 @@ int run(bool quick, const std::vector<std::string>& texts)
             }
         }
         std::printf("\n");
+        table_of_others += '\n';
         ++cases;
         receivers += trial.world.receivers.size();
         undefined += trial.undefined;
     }
+    std::printf("\n");
+    print_header(others);
+    std::fputs(table_of_others.c_str(), stdout);
     print_summary(engines, totals);
     std::printf(
         "\n%zu cases, %zu receivers, of which %zu have no answer by the definition "

@@ -67,7 +67,9 @@ struct Case {
     /// Why the disk engine is not held to its bounds here: one of the classes that design section 5
     /// gives up. Empty: it is held.
     std::string disks_excused = {};
-    bool slow = false;  ///< left out of --quick: seconds or gigabytes
+    /// Left out of --quick, and not run by engines whose cost follows the scene and not the
+    /// receivers: disks, and what has to be uploaded.
+    bool slow = false;
 };
 
 /// All of them, in the order of the table.
