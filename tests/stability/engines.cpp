@@ -35,10 +35,10 @@ Engine rays(const char* name, RayScene::Build build, std::uint32_t count)
 
 enum class Where { cpu, gpu };
 
-/// Software, so that the table is the same everywhere; current in this thread.
+/// Software, so that the table is the same everywhere; one for each thread, current in it.
 const GlContext& software_gpu()
 {
-    static const GlContext context = GlContext::create(GlBackend::osmesa);
+    thread_local const GlContext context = GlContext::create(GlBackend::osmesa);
     context.make_current();
     return context;
 }
