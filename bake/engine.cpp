@@ -28,18 +28,6 @@ float opening_at(float quality)
                             : kGoodOpening * std::pow(kBestOpening / kGoodOpening, quality - kGood);
 }
 
-/// The side from which each surfel casts, in the order of surfels_at_vertices.
-std::vector<OccluderSide> sides_of_surfels(const Geometry& geometry)
-{
-    const Topology topology = analyse_topology(geometry);
-    std::vector<OccluderSide> sides;
-    for (std::size_t v = 0; v < geometry.areas.size(); ++v) {
-        if (geometry.areas[v] > 0.0f)
-            sides.push_back(topology.sides[v]);
-    }
-    return sides;
-}
-
 /// Made at first use and kept: shaders take longer to compile than a small scene to solve. Never
 /// destroyed: at exit the driver may be gone before.
 const GlContext& gpu_context()
@@ -55,11 +43,11 @@ EngineResult run_disks(const Geometry& geometry, std::span<const Receiver> recei
     const GlContext* gpu = settings.device == Device::gpu ? &gpu_context() : nullptr;
     EngineResult result;
     Stopwatch watch;
-    const std::vector<Surfel> surfels = surfels_at_vertices(geometry);
-    const std::vector<OccluderSide> sides = sides_of_surfels(geometry);
-    result.surfels = surfels.size();
+    const SurfelCloud cloud = surfels_of(geometry);
+    const std::vector<OccluderSide> sides = sides_of(cloud, analyse_topology(geometry));
+    result.surfels = cloud.surfels.size();
     result.surfels_s = watch.lap();
-    const Octree octree = build_octree(surfels, sides);
+    const Octree octree = build_octree(cloud.surfels, sides);
     result.tree_s = watch.lap();
     DiskOptions options;
     options.definition = settings.definition;

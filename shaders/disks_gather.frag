@@ -161,7 +161,7 @@ void main()
         form_factor *= clamp(seen, 0.0, 1.0);
 #if LIMITED
         float distance = 1.0 / inverse;
-        float width    = 2.0 * sqrt(area / kPi);
+        float width    = min(2.0 * sqrt(area / kPi), u_max_distance);
         float share    = clamp(0.5 + (u_max_distance - distance) / width, 0.0, 1.0);
         float t        = distance / u_max_distance;
         float fading   = max(0.0, 1.0 - t * t);

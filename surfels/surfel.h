@@ -5,6 +5,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstdint>
 #include <vector>
 
 namespace surfelao {
@@ -21,5 +22,22 @@ static_assert(sizeof(Surfel) == 32);
 /// One surfel per distinct vertex position: area = a third of the adjacent triangles' areas. The
 /// areas sum to the area of the mesh. Positions without area give no surfel. O(n).
 [[nodiscard]] std::vector<Surfel> surfels_at_vertices(const Geometry& geometry);
+
+struct SurfelCloud {
+    std::vector<Surfel> surfels;
+    std::vector<std::uint32_t>
+        vertices;  ///< per surfel: the vertex whose side of the surface is its
+};
+
+/// The surface as disks of no very different sizes: as surfels_at_vertices, but triangles that are
+/// large give their area to disks inside of them, in k x k equal cells, and not to their corners.
+/// Large is more than 1 / kFewestSurfels of the whole area, and more than kLargeSurfel times what a
+/// vertex has in the mean. So a body of few triangles becomes some thousands of disks, a fine mesh
+/// stays as it is, and no more than kFewestSurfels + n / kLargeSurfel + triangles are added. The
+/// areas sum to the area of the mesh. O(n).
+[[nodiscard]] SurfelCloud surfels_of(const Geometry& geometry);
+
+inline constexpr std::uint32_t kFewestSurfels = 4096;
+inline constexpr double kLargeSurfel = 16.0;
 
 }  // namespace surfelao

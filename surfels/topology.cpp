@@ -316,4 +316,12 @@ Topology analyse_topology(const Geometry& geometry)
     return topology;
 }
 
+std::vector<OccluderSide> sides_of(const SurfelCloud& cloud, const Topology& topology)
+{
+    std::vector<OccluderSide> sides(cloud.surfels.size());
+    for (std::size_t i = 0; i < sides.size(); ++i)
+        sides[i] = topology.sides[cloud.vertices[i]];
+    return sides;
+}
+
 }  // namespace surfelao

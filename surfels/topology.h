@@ -18,6 +18,7 @@
 #pragma once
 
 #include "surfels/geometry.h"
+#include "surfels/surfel.h"
 
 #include <cstdint>
 #include <vector>
@@ -46,5 +47,9 @@ struct Topology {
 /// O(n), and O(k log k) for a vertex with k triangles. Equal input gives equal bytes. Fewer than
 /// 2^31 triangles.
 [[nodiscard]] Topology analyse_topology(const Geometry& geometry);
+
+/// Per surfel: the side of the surface at its vertex.
+[[nodiscard]] std::vector<OccluderSide> sides_of(const SurfelCloud& cloud,
+                                                 const Topology& topology);
 
 }  // namespace surfelao

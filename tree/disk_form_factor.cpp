@@ -33,7 +33,8 @@ double distance_weight(const Definition& definition, double distance, double are
         return 1.0;
     if (definition.falloff != Falloff::none)
         return hit_weight(definition, static_cast<float>(distance));
-    const double width = 2.0 * std::sqrt(area / std::numbers::pi);
+    const double width =
+        std::min(2.0 * std::sqrt(area / std::numbers::pi), double{definition.max_distance});
     return std::clamp(0.5 + (definition.max_distance - distance) / width, 0.0, 1.0);
 }
 

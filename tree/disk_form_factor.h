@@ -67,7 +67,8 @@ inline constexpr float kTinyLength = 1e-8f;
                                       const glm::dvec3& normal, const DiskShape& disk);
 
 /// The share of a disk at this distance that counts: hit_weight of its centre, and without falloff
-/// the share of its width that lies within max_distance, so that nothing jumps at the limit.
+/// the share of its width that lies within max_distance, so that nothing jumps at the limit. A disk
+/// wider than the limit counts as that wide: else the ones around a receiver would never fade.
 [[nodiscard]] double distance_weight(const Definition& definition, double distance, double area);
 
 /// FarVisibility in direction w, in [0, 1].

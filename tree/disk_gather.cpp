@@ -106,7 +106,8 @@ HWY_INLINE void add_disk(const Disk& disk, const Definition& definition, Sums& s
         const Vec distance = hn::Mul(d2, inverse);
         Vec weight;
         if (definition.falloff == Falloff::none) {
-            const Vec width = hn::Mul(hn::Set(tag, 2.0f), hn::Sqrt(hn::Set(tag, disk.all)));
+            const Vec width =
+                hn::Min(hn::Mul(hn::Set(tag, 2.0f), hn::Sqrt(hn::Set(tag, disk.all))), limit);
             weight = hn::Add(hn::Set(tag, 0.5f), hn::Div(hn::Sub(limit, distance), width));
             weight = hn::Min(one, hn::Max(zero, weight));
         } else {

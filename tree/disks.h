@@ -19,8 +19,9 @@
 ///
 /// Known limits: surfaces nearer to each other than three times the vertex spacing; the foot of a
 /// concave edge (what a vertex's own triangles hide from it is no disk's: 0.29 too little at a
-/// right angle); closed rooms with much in them (every ray passes many layers); floors of few large
-/// triangles.
+/// right angle); closed rooms with much in them (every ray passes many layers); a ground of few
+/// triangles that is hundreds of times as wide as the model on it (surfels_of cuts triangles by the
+/// size of the whole scene, not by what is near them).
 ///
 /// Based on:
 ///   Bunnell. Dynamic Ambient Occlusion and Indirect Lighting. GPU Gems 2, ch. 14. 2005

@@ -41,13 +41,8 @@ struct World {
     {
         const Geometry geometry = make_geometry(scene);
         receivers = receivers_at_vertices(geometry, Definition{}.offset);
-        const Topology topology = analyse_topology(geometry);
-        std::vector<OccluderSide> sides;
-        for (std::size_t v = 0; v < geometry.areas.size(); ++v) {
-            if (geometry.areas[v] > 0.0f)
-                sides.push_back(topology.sides[v]);
-        }
-        octree = build_octree(surfels_at_vertices(geometry), sides);
+        const SurfelCloud cloud = surfels_of(geometry);
+        octree = build_octree(cloud.surfels, sides_of(cloud, analyse_topology(geometry)));
         masks = build_mask_tree(geometry);
     }
 };

@@ -97,20 +97,19 @@ Engine engine_of(Bytes& bytes)
             options.opening = 0.95f * bytes.share();
             options.passes = 1 + bytes.byte() % 4;
             options.strength = bytes.one_of({1.0f, 0.0f, 0.7f, 3.0f});
-            const std::uint8_t sides = bytes.byte();
+            const bool even = bytes.byte() < 128;
             engine.name = "disks";
             engine.solve = [=](const Geometry& geometry, std::span<const Receiver> receivers,
                                const Definition& definition) mutable {
                 options.definition = definition;
-                const std::vector<OccluderSide> found = analyse_topology(geometry).sides;
-                std::vector<OccluderSide> used;
-                for (std::size_t v = 0; v < geometry.areas.size(); ++v) {
-                    if (geometry.areas[v] > 0.0f)
-                        used.push_back(sides < 128 ? found[v] : OccluderSide::both);
-                }
-                return solve_disks(build_octree(surfels_at_vertices(geometry), used), receivers,
-                                   options)
-                    .occlusion;
+                if (!even)
+                    return solve_disks(build_octree(surfels_at_vertices(geometry)), receivers,
+                                       options)
+                        .occlusion;
+                const SurfelCloud cloud = surfels_of(geometry);
+                const Octree octree =
+                    build_octree(cloud.surfels, sides_of(cloud, analyse_topology(geometry)));
+                return solve_disks(octree, receivers, options).occlusion;
             };
             break;
         }

@@ -50,16 +50,12 @@ Engine disks(const char* name, Where where, float opening, Bound bound)
     return {name, bound, true, true,
             [where, opening](const Geometry& geometry, std::span<const Receiver> receivers,
                              const Definition& definition) {
-                const Topology topology = analyse_topology(geometry);
-                std::vector<OccluderSide> sides;
-                for (std::size_t v = 0; v < geometry.areas.size(); ++v) {
-                    if (geometry.areas[v] > 0.0f)
-                        sides.push_back(topology.sides[v]);
-                }
                 DiskOptions options;
                 options.definition = definition;
                 options.opening = opening;
-                const Octree octree = build_octree(surfels_at_vertices(geometry), sides);
+                const SurfelCloud cloud = surfels_of(geometry);
+                const Octree octree =
+                    build_octree(cloud.surfels, sides_of(cloud, analyse_topology(geometry)));
                 return where == Where::cpu
                            ? solve_disks(octree, receivers, options).occlusion
                            : solve_disks_gpu(software_gpu(), octree, receivers, options).occlusion;

@@ -4,6 +4,8 @@
 #include "surfels/receiver.h"
 #include "surfels/surfel.h"
 
+#include "scenes.h"
+
 #include <glm/geometric.hpp>
 
 #include <gtest/gtest.h>
@@ -57,6 +59,63 @@ TEST(Geometry, SurfelAreasSumToTheMeshArea)
     for (const Surfel& surfel : surfels_at_vertices(geometry))
         sum += surfel.area;
     EXPECT_NEAR(sum, 0.5, 1e-6);  // area 1 in units of diagonal^2 = 2
+}
+
+double area_of(const std::vector<Surfel>& surfels)
+{
+    double sum = 0.0;
+    for (const Surfel& surfel : surfels)
+        sum += surfel.area;
+    return sum;
+}
+
+TEST(SurfelCloud, LargeTrianglesBecomeManyDisksInTheirPlane)
+{
+    const Geometry geometry = make_geometry(unit_square());
+    const SurfelCloud cloud = surfels_of(geometry);
+    EXPECT_GE(cloud.surfels.size(), kFewestSurfels);
+    EXPECT_LE(cloud.surfels.size(), 2 * kFewestSurfels);
+    ASSERT_EQ(cloud.vertices.size(), cloud.surfels.size());
+    EXPECT_NEAR(area_of(cloud.surfels), 0.5, 1e-6);
+    glm::dvec3 mean(0.0);
+    for (const Surfel& surfel : cloud.surfels) {
+        EXPECT_EQ(surfel.normal, glm::vec3(0, 0, 1));
+        EXPECT_LE(std::abs(surfel.position.x), 0.5f);
+        EXPECT_EQ(surfel.position.z, 0.0f);
+        EXPECT_LE(surfel.area, 0.5f / kFewestSurfels);
+        mean += glm::dvec3(surfel.position) / static_cast<double>(cloud.surfels.size());
+    }
+    EXPECT_NEAR(glm::length(mean), 0.0, 1e-6);  // the square's middle
+}
+
+TEST(SurfelCloud, DoubledLargeTrianglesCountOnce)
+{
+    Scene scene = unit_square();
+    scene.triangles.push_back({2, 0, 1});
+    scene.triangles.push_back({0, 3, 2});
+    const std::vector<Surfel> surfels = surfels_of(make_geometry(scene)).surfels;
+    EXPECT_EQ(surfels.size(), surfels_of(make_geometry(unit_square())).surfels.size());
+    EXPECT_NEAR(area_of(surfels), 0.5, 1e-6);
+}
+
+TEST(SurfelCloud, AFineMeshStaysAsItIs)
+{
+    const Geometry geometry = make_geometry(scenes::bumpy_sphere(64));
+    const std::vector<Surfel> plain = surfels_at_vertices(geometry);
+    const SurfelCloud cloud = surfels_of(geometry);
+    ASSERT_EQ(cloud.surfels.size(), plain.size());
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+        EXPECT_EQ(cloud.surfels[i].position, plain[i].position);
+        EXPECT_EQ(cloud.surfels[i].area, plain[i].area);
+        EXPECT_EQ(cloud.vertices[i], i);
+    }
+}
+
+TEST(SurfelCloud, WithoutTrianglesIsEmpty)
+{
+    Scene scene;
+    scene.positions = {{0, 0, 0}, {1, 0, 0}};
+    EXPECT_TRUE(surfels_of(make_geometry(scene)).surfels.empty());
 }
 
 // Vertices 0 and 4 stand at one place: a seam. Both get the mean normal of the fold.
