@@ -58,7 +58,7 @@ std::vector<MaskNode> in_preorder(const MaskTree& tree)
         const auto written = static_cast<std::uint32_t>(nodes.size());
         MaskNode& node = nodes.emplace_back(tree.nodes[visit.node]);
         stack.push_back({visit.node, written, true});
-        const std::uint32_t first_child = node.links & ~kMaskSheet;
+        const std::uint32_t first_child = node.links & kMaskFirstChild;
         if (first_child == 0) {
             node.open_radius = -0.0f;
         } else {

@@ -24,6 +24,7 @@ struct MaskSettings {
     float exact_radius;  ///< nodes with a smaller open_radius are never opened
     float graze;         ///< polygons all of whose corners lie below this sine of elevation over
                          ///< the receiver's tangent plane are not drawn
+    bool one_sided;      ///< of small closed bodies only what faces away is drawn
     bool fill;           ///< close single-bit cracks where much is covered
 };
 
@@ -42,8 +43,13 @@ struct MaskGroup {
     std::uint32_t first_child;  ///< two, side by side; 0 = leaf of at most 16 receivers
 };
 
-/// In MaskNode::first_child: the node is a patch without gaps, whose neighbours likely continue it.
+/// In MaskNode::links: the node is a patch without gaps, whose neighbours likely continue it.
 constexpr std::uint32_t kMaskSheet = 0x80000000u;
+/// The node is exact and part of a small closed body: what of it faces a receiver is covered by
+/// what faces away (mask_solids.h).
+constexpr std::uint32_t kMaskSolid = 0x40000000u;
+/// The rest: the first of two children side by side; 0 = triangle.
+constexpr std::uint32_t kMaskFirstChild = 0x3fffffffu;
 
 /// A growing array of plain values.
 template <typename T>

@@ -289,7 +289,7 @@ struct Node16 {
     Float16 open_radius() const { return field[11]; }
     Vector16 axis_v() const { return {field[12], field[13], field[14]}; }
     Int16 links() const { return as_int(field[15]); }
-    Int16 first_child() const { return links() & all(~kMaskSheet); }
+    Int16 first_child() const { return links() & all(kMaskFirstChild); }
 
     SURFELAO_MASK_INLINE void quad(Vector16 origin, Vector16* corner) const
     {
@@ -325,7 +325,7 @@ SURFELAO_MASK_INLINE void append(MaskColumns& list, const Vector16* corner, Floa
         return;
     reserve(list, 3 * kCorners + 1, list.count + kLanes);
     float* at = list.data + list.count;
-    store(at + 3 * kCorners * list.stride, pack(radius * radius, chosen));
+    store(at + 3 * kCorners * list.stride, pack(radius, chosen));
     for (int i = 0; i < kCorners; ++i) {
         store(at + (3 * i) * list.stride, pack(corner[i].x, chosen));
         store(at + (3 * i + 1) * list.stride, pack(corner[i].y, chosen));
@@ -352,6 +352,7 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
     Stream<4, false> rectangles(world, mask);
     Stream<3, false> triangles(world, mask);
     const Float16 exact_radius = all(settings.exact_radius);
+    const Int16 solid = all(settings.one_sided ? kMaskSolid : 0u);
     MaskBuffer<std::uint32_t>& frontier = scratch.frontier;
 
     // level by level: what is opened now is looked at later, when it has come from memory
@@ -383,6 +384,8 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         const Float16 slab = min(node.radius(), fma(node.radius(), tilt, node.thickness()));
         const Float16 top = base + slab + all(group.rise);
         const Float16 nearest = distance - node.radius();
+        const Float16 away = dot(to_node, node.normal());
+        const Lanes one_sided = nonzero(node.links() & solid);
         const Lanes alive = active &
                             (top > max(all(settings.graze) * (nearest - group_radius), zero)) &
                             (nearest - group_radius < all(settings.max_distance));
@@ -390,13 +393,14 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         const Float16 relax = inverse_sqrt(weight);
 
         const Float16 cluster = min(all(settings.cluster) * relax, all(settings.cluster_limit));
-        const Lanes is_triangle = without(active, nonzero(node.links()));
+        const Lanes is_triangle = without(active, nonzero(node.first_child()));
         const Lanes exact = is_triangle | (node.open_radius() < exact_radius);
         const Lanes sheet = without(negative(node.links()), exact);
         const Lanes small = exact | (node.open_radius() < cluster * distance);
         const Lanes far = group_radius < share * relax * nearest;
-        const Lanes drawn = alive & small & far;
-        const Lanes rest = without(alive, drawn);
+        const Lanes shared = alive & small & far;
+        const Lanes rest = without(alive, shared | (one_sided & (away < zero - group_radius)));
+        const Lanes drawn = without(shared, one_sided & (away < zero));
         if (bits(drawn) != 0) {
             Vector16 corner[4];
             node.triangle(origin, corner);
@@ -412,14 +416,17 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
                 rest & (exact | (node.open_radius() < cluster * (distance - group_radius)));
             opened = without(rest, listed);
             if (bits(listed) != 0) {
+                // a negative radius tells that only one side counts
+                const Float16 radius =
+                    select(one_sided, zero - node.radius(), node.radius());
                 const Vector16 world_origin = {zero, zero, zero};
                 Vector16 corner[4];
                 node.triangle(world_origin, corner);
-                append<3>(scratch.triangles, corner, node.radius(), listed & is_triangle);
+                append<3>(scratch.triangles, corner, radius, listed & is_triangle);
                 node.quad(world_origin, corner);
                 append<4>(scratch.rectangles, corner, node.radius(),
                           without(listed, sheet | is_triangle));
-                append<4>(scratch.clusters, corner, node.radius(), listed & sheet);
+                append<4>(scratch.clusters, corner, radius, listed & sheet);
             }
         } else {
             opened = without(rest, small) & (group_radius < node.radius());
@@ -701,7 +708,7 @@ SURFELAO_MASK_INLINE void draw_near(const MaskColumns& list, Vector16 position, 
     const Float16 zero = all(0.0f);
     for (std::size_t first = 0; first < list.count; first += kLanes) {
         const float* at = list.data + first;
-        const Float16 radius2 = load(at + 3 * kCorners * list.stride);
+        const Float16 radius = load(at + 3 * kCorners * list.stride);
         Vector16 c[kCorners];
         Lanes above = {};
         for (int i = 0; i < kCorners; ++i) {
@@ -711,10 +718,15 @@ SURFELAO_MASK_INLINE void draw_near(const MaskColumns& list, Vector16 position, 
         }
         const Vector16 sum = kCorners == 3 ? c[0] + c[1] + c[2] : c[0] + c[2];
         const Float16 parts = all(kCorners == 3 ? 1.0f / 9.0f : 1.0f / 4.0f);
-        const Float16 sine2 = select(dot(sum, sum) * parts < radius2, zero, graze2);
+        const Float16 sine2 = select(dot(sum, sum) * parts < radius * radius, zero, graze2);
         for (int i = 0; i < kCorners; ++i) {
             const Float16 height = max(dot(c[i], normal), zero);
             above = above | (height * height > sine2 * dot(c[i], c[i]));
+        }
+        const Lanes one_sided = radius < zero;
+        if (bits(one_sided) != 0) {
+            const Float16 away = dot(cross(c[1] - c[0], c[2] - c[0]), c[0]);
+            above = without(above, one_sided & (away < zero));
         }
         const std::size_t left = list.count - first;
         above = above & first_lanes(left < kLanes ? static_cast<unsigned>(left) : kLanes);

@@ -1,7 +1,9 @@
 #include "tree/mask_tree.h"
 
 #include "tree/lanes.h"
+#include "tree/mask_kernel.h"
 #include "tree/mask_patch.h"
+#include "tree/mask_solids.h"
 #include "tree/masks.h"
 #include "tree/part.h"
 #include "tree/raw_vector.h"
@@ -130,7 +132,10 @@ struct Bundle {
 
 class Builder {
 public:
-    explicit Builder(const Geometry& geometry) : geometry_(geometry) {}
+    explicit Builder(const Geometry& geometry)
+        : geometry_(geometry), solid_(small_solids(geometry))
+    {
+    }
 
     RawVector<MaskNode> build()
     {
@@ -204,7 +209,8 @@ private:
             std::vector<float> columns(9 * stride);
             for (std::size_t i = 0; i < count; ++i)
                 gather_corners(order_[begin + i], columns.data(), stride, i);
-            make_whole(patch, {columns.data(), stride, count}, nodes_[index]);
+            make_whole(patch, {columns.data(), stride, count}, order_.data() + begin,
+                       nodes_[index]);
         }
         nodes_[index].links |= static_cast<std::uint32_t>(first);
         return patch;
@@ -231,6 +237,17 @@ private:
             for (int axis = 0; axis < 3; ++axis, columns += stride)
                 columns[i] = p[axis];
         }
+    }
+
+    /// Of the triangles order[0 ...].
+    void make_whole(const MaskPatch& patch, const MaskCorners& corners, const std::uint32_t* order,
+                    MaskNode& node) const
+    {
+        surfelao::make_whole(patch, corners, node);
+        const bool is_whole = node.open_radius == 0.0f;
+        if (is_whole && std::all_of(order, order + corners.count,
+                                    [&](std::uint32_t t) { return solid_[t] != 0; }))
+            node.links |= kMaskSolid;
     }
 
     /// build_node for few triangles.
@@ -266,6 +283,8 @@ private:
             bundle.shown[i] = {&bundle.patches[k], &nodes_[place(k)], false};
         }
         set_triangles({bundle.shown.data(), count}, corners);
+        for (std::size_t i = 0; i < count; ++i)
+            bundle.shown[i].node->links = solid_[order[i]] != 0 ? kMaskSolid : 0;
 
         // children before their parents
         for (std::size_t i = inner_count; i-- > 0;) {
@@ -280,7 +299,8 @@ private:
             const Bundle::Node node = bundle.nodes[bundle.inner[i]];
             const MaskPatchNode& shown = bundle.shown[i];
             if (shown.may_be_whole)
-                make_whole(*shown.patch, corners.part(node.begin, node.end), *shown.node);
+                make_whole(*shown.patch, corners.part(node.begin, node.end),
+                           order + node.begin, *shown.node);
             shown.node->links |= static_cast<std::uint32_t>(first + node.first_child - 1);
         }
         return bundle.patches[0];
@@ -320,6 +340,7 @@ private:
     }
 
     const Geometry& geometry_;
+    std::vector<std::uint8_t> solid_;     ///< one per triangle
     RawVector<glm::vec3> positions_;      ///< in the mask frame
     std::array<RawVector<Key>, 2> keys_;  ///< to and fro from level to level
     RawVector<std::uint32_t> order_;      ///< the triangles below each finished node in one range

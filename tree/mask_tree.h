@@ -36,7 +36,7 @@ struct alignas(64) MaskNode {
                           ///< the rectangle
     glm::vec3 axis_v;     ///< triangle: corners at center + axis_u, center + axis_v, and
                           ///< center - axis_u - axis_v
-    std::uint32_t links;  ///< first of two children side by side, and kMaskSheet; 0 = triangle
+    std::uint32_t links;  ///< kMaskFirstChild, kMaskSheet and kMaskSolid of mask_kernel.h
 };
 static_assert(sizeof(MaskNode) == 64);
 

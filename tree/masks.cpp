@@ -118,6 +118,8 @@ MaskSettings mask_settings(const MaskOptions& options)
         throw std::invalid_argument("MaskOptions: masks know the cosine kernel only");
     MaskSettings settings{};
     settings.fill = !options.exact;
+    // within a limit a body's far side may be missing
+    settings.one_sided = !options.exact && std::isinf(options.definition.max_distance);
     if (options.exact)
         return settings;
     settings.exact_radius = std::numeric_limits<float>::min();

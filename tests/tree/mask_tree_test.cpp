@@ -21,7 +21,7 @@ using Triangle = std::array<glm::vec3, 3>;
 
 std::uint32_t first_child(const MaskNode& node)
 {
-    return node.links & ~kMaskSheet;
+    return node.links & kMaskFirstChild;
 }
 
 /// The triangles below a node, as its leaves show them. Counts visits.

@@ -1,0 +1,109 @@
+#include "tree/mask_solids.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <span>
+#include <utility>
+
+namespace surfelao {
+namespace {
+
+class Bodies {
+public:
+    explicit Bodies(const Geometry& geometry)
+        : geometry_(geometry), parent_(geometry.positions.size())
+    {
+        std::iota(parent_.begin(), parent_.end(), 0u);
+        for (const glm::uvec3 t : geometry.triangles) {
+            const std::uint32_t a = root(geometry.welded[t.x]);
+            const std::uint32_t b = root(geometry.welded[t.y]);
+            const std::uint32_t c = root(geometry.welded[t.z]);
+            const std::uint32_t least = std::min({a, b, c});
+            parent_[a] = parent_[b] = parent_[c] = least;
+        }
+    }
+
+    std::uint32_t body_of(std::size_t triangle)
+    {
+        return root(geometry_.welded[geometry_.triangles[triangle].x]);
+    }
+
+private:
+    std::uint32_t root(std::uint32_t v)
+    {
+        while (parent_[v] != v) {
+            parent_[v] = parent_[parent_[v]];
+            v = parent_[v];
+        }
+        return v;
+    }
+
+    const Geometry& geometry_;
+    std::vector<std::uint32_t> parent_;
+};
+
+/// Every edge in both directions equally often, and from one point, the middle of the corners, all
+/// triangles are seen from behind. From there outward the winding number only falls, to 0.
+bool is_star_solid(const Geometry& geometry, std::span<const std::uint32_t> triangles)
+{
+    using Edge = std::pair<std::uint32_t, std::uint32_t>;
+    std::vector<Edge> forward, backward;
+    glm::vec3 sum(0.0f);
+    for (const std::uint32_t triangle : triangles) {
+        const glm::uvec3 t = geometry.triangles[triangle];
+        for (int i = 0; i < 3; ++i) {
+            const std::uint32_t a = geometry.welded[t[i]], b = geometry.welded[t[(i + 1) % 3]];
+            forward.emplace_back(a, b);
+            backward.emplace_back(b, a);
+            sum += geometry.positions[a];
+        }
+    }
+    const glm::vec3 middle = sum / static_cast<float>(forward.size());
+    for (const std::uint32_t triangle : triangles) {
+        const glm::uvec3 t = geometry.triangles[triangle];
+        const glm::vec3 a = geometry.positions[t.x] - middle, b = geometry.positions[t.y] - middle,
+                        c = geometry.positions[t.z] - middle;
+        if (!(glm::dot(a, glm::cross(b - a, c - a)) > 0.0f))
+            return false;
+    }
+    std::sort(forward.begin(), forward.end());
+    std::sort(backward.begin(), backward.end());
+    return forward == backward;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> small_solids(const Geometry& geometry)
+{
+    const std::size_t count = geometry.triangles.size();
+    Bodies bodies(geometry);
+    std::vector<std::uint32_t> size(geometry.positions.size(), 0);
+    std::vector<std::uint32_t> body(count);
+    for (std::size_t t = 0; t < count; ++t)
+        ++size[body[t] = bodies.body_of(t)];
+
+    // the triangles of small bodies side by side
+    std::vector<std::uint32_t> members;
+    for (std::uint32_t t = 0; t < count; ++t) {
+        if (size[body[t]] <= kMostOfSolid)
+            members.push_back(t);
+    }
+    std::stable_sort(members.begin(), members.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return body[a] < body[b]; });
+    std::vector<std::uint8_t> solid(count, 0);
+    for (std::size_t first = 0; first < members.size();) {
+        const std::size_t last = first + size[body[members[first]]];
+        const std::span<const std::uint32_t> triangles(members.data() + first, last - first);
+        if (is_star_solid(geometry, triangles)) {
+            for (const std::uint32_t t : triangles)
+                solid[t] = 1;
+        }
+        first = last;
+    }
+    return solid;
+}
+
+}  // namespace surfelao
