@@ -48,8 +48,10 @@ constexpr std::uint32_t kMaskSheet = 0x80000000u;
 /// The node is exact and part of a small closed body: what of it faces a receiver is covered by
 /// what faces away (mask_solids.h).
 constexpr std::uint32_t kMaskSolid = 0x40000000u;
+/// The patch is hollow on the side where its normal points.
+constexpr std::uint32_t kMaskHollow = 0x20000000u;
 /// The rest: the first of two children side by side; 0 = triangle.
-constexpr std::uint32_t kMaskFirstChild = 0x3fffffffu;
+constexpr std::uint32_t kMaskFirstChild = 0x1fffffffu;
 
 /// A growing array of plain values.
 template <typename T>

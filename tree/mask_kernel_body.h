@@ -12,10 +12,12 @@ namespace surfelao::SURFELAO_MASK_ISA {
 namespace {
 
 constexpr float kImportanceFloor = 0.1f;  ///< directions weigh at least this in the opening tests
-constexpr float kFillFrom = 0.4f;         ///< no filling below this occlusion ...
-constexpr float kFillRange = 0.5f;        ///< ... and full weight this much above
-constexpr float kCloseFrom = 0.9f;        ///< the same for cracks of two bits
-constexpr float kCloseRange = 0.06f;
+constexpr float kFillFrom = 0.6f;         ///< no filling below this occlusion ...
+constexpr float kFillRange = 0.3f;        ///< ... and full weight this much above
+constexpr float kCloseFrom = 0.95f;       ///< the same for cracks of two bits
+constexpr float kCloseRange = 0.04f;
+constexpr float kHollowGrowth =
+    1.1f;  ///< of a hollow front, whose clusters tilt away from each other
 constexpr float kTinyComponent =
     1e-30f;  ///< stands for 0 in divisions; edge normals are above 1e-20
 
@@ -30,6 +32,10 @@ SURFELAO_MASK_INLINE Vector16 operator-(Vector16 a, Vector16 b)
 SURFELAO_MASK_INLINE Vector16 operator+(Vector16 a, Vector16 b)
 {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+SURFELAO_MASK_INLINE Vector16 operator*(Vector16 a, Float16 b)
+{
+    return {a.x * b, a.y * b, a.z * b};
 }
 SURFELAO_MASK_INLINE Float16 dot(Vector16 a, Vector16 b)
 {
@@ -291,11 +297,13 @@ struct Node16 {
     Int16 links() const { return as_int(field[15]); }
     Int16 first_child() const { return links() & all(kMaskFirstChild); }
 
-    SURFELAO_MASK_INLINE void quad(Vector16 origin, Vector16* corner) const
+    SURFELAO_MASK_INLINE void quad(Vector16 origin, Float16 grow, Vector16* corner) const
     {
         const Vector16 c = center() - origin;
-        const Vector16 sum = axis_u() + axis_v();
-        const Vector16 difference = axis_u() - axis_v();
+        const Vector16 u = axis_u() * grow;
+        const Vector16 v = axis_v() * grow;
+        const Vector16 sum = u + v;
+        const Vector16 difference = u - v;
         corner[0] = c + sum;
         corner[1] = c - difference;
         corner[2] = c - sum;
@@ -396,6 +404,9 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         const Lanes is_triangle = without(active, nonzero(node.first_child()));
         const Lanes exact = is_triangle | (node.open_radius() < exact_radius);
         const Lanes sheet = without(negative(node.links()), exact);
+        // a front that is hollow goes on beyond its rim
+        const Lanes hollow = nonzero(node.links() & all(kMaskHollow)) & (away < zero);
+        const Float16 grow = select(sheet & hollow, all(kHollowGrowth), all(1.0f));
         const Lanes small = exact | (node.open_radius() < cluster * distance);
         const Lanes far = group_radius < share * relax * nearest;
         const Lanes shared = alive & small & far;
@@ -405,7 +416,7 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
             Vector16 corner[4];
             node.triangle(origin, corner);
             triangles.add(corner, 0, drawn & is_triangle);
-            node.quad(origin, corner);
+            node.quad(origin, grow, corner);
             rectangles.add(corner, 0, without(drawn, sheet | is_triangle));
             clusters.add(corner, 0, drawn & sheet);
         }
@@ -417,13 +428,12 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
             opened = without(rest, listed);
             if (bits(listed) != 0) {
                 // a negative radius tells that only one side counts
-                const Float16 radius =
-                    select(one_sided, zero - node.radius(), node.radius());
+                const Float16 radius = select(one_sided, zero - node.radius(), node.radius());
                 const Vector16 world_origin = {zero, zero, zero};
                 Vector16 corner[4];
                 node.triangle(world_origin, corner);
                 append<3>(scratch.triangles, corner, radius, listed & is_triangle);
-                node.quad(world_origin, corner);
+                node.quad(world_origin, grow, corner);
                 append<4>(scratch.rectangles, corner, node.radius(),
                           without(listed, sheet | is_triangle));
                 append<4>(scratch.clusters, corner, radius, listed & sheet);

@@ -41,6 +41,10 @@ constexpr float kSheetCover = 0.75f;
 /// were larger by this factor times what its cover lacks of a sheet's.
 constexpr float kGapPenalty = 10.0f;
 
+/// A patch is hollow where the integral of n.(x - center) is below minus this share of area times
+/// radius; inside of a sphere it is minus half of the patch's radius over the sphere's.
+constexpr float kHollow = 0.02f;
+
 /// The same bytes, four floats at a time.
 using PatchRows = std::array<Lanes, sizeof(MaskPatch) / sizeof(Lanes)>;
 using NodeRows = std::array<Lanes, sizeof(MaskNode) / sizeof(Lanes)>;
@@ -58,6 +62,9 @@ void set_sums(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right)
     const float share = patch.area > 0.0f ? right.area / patch.area : 0.5f;
     const glm::vec3 apart = right.center - left.center;
     patch.center = left.center + share * apart;
+    patch.bulge = left.bulge + right.bulge +
+                  glm::dot(left.vector_area, left.center - patch.center) +
+                  glm::dot(right.vector_area, right.center - patch.center);
     patch.vector_area = left.vector_area + right.vector_area;
     patch.seen_area = glm::length(patch.vector_area);
     patch.normal = patch.seen_area > 0.0f ? patch.vector_area / patch.seen_area : left.normal;
@@ -68,7 +75,6 @@ void set_sums(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right)
     patch.yy = left.yy + right.yy + weighted.y * apart.y;
     patch.yz = left.yz + right.yz + weighted.y * apart.z;
     patch.zz = left.zz + right.zz + weighted.z * apart.z;
-    patch.padding = 0.0f;
 }
 
 /// What set_rectangles reads and what it finds, for as many patches as there are lanes.
@@ -323,6 +329,9 @@ void show_patches(std::span<MaskPatchNode> nodes)
             *out.node =
                 std::bit_cast<MaskNode>(NodeRows{node[0][i], node[1][i], node[2][i], node[3][i]});
             out.node->links = columns.sheet[i] != 0 ? kMaskSheet : 0;
+            const MaskPatch& of_node = *out.patch;
+            if (of_node.bulge < -kHollow * of_node.area * of_node.radius)
+                out.node->links |= kMaskHollow;
             out.may_be_whole = columns.may_be_whole[i] != 0;
         }
     }

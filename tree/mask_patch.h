@@ -25,7 +25,8 @@ struct alignas(16) MaskPatch {
     float xx, xy, xz;
     float thickness;  ///< no point is farther from the plane (center, normal)
     float yy, yz, zz;
-    float padding;
+    /// Integral of n.(x - center) over the area: positive where the patch bulges to its front.
+    float bulge;
 };
 
 /// Corners of triangles as nine columns of `stride` values: x, y and z of the first corners, then
