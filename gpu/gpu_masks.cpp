@@ -33,7 +33,7 @@ constexpr int kStepLimit = 8192;
 constexpr int kHalves = 2;
 constexpr std::array<const char*, 4> kHalfOutputs = {"words0", "words1", "loose0", "loose1"};
 
-/// The tree in preorder, links replaced by the node after the subtree, kMaskSheet kept; open_radius
+/// The tree in preorder, kMaskFirstChild replaced by the node after the subtree; open_radius
 /// -0 tells a triangle from an exact rectangle.
 std::vector<MaskNode> in_preorder(const MaskTree& tree)
 {
@@ -52,7 +52,7 @@ std::vector<MaskNode> in_preorder(const MaskTree& tree)
         stack.pop_back();
         if (visit.done) {
             std::uint32_t& links = nodes[visit.written].links;
-            links = (links & kMaskSheet) | static_cast<std::uint32_t>(nodes.size());
+            links = (links & ~kMaskFirstChild) | static_cast<std::uint32_t>(nodes.size());
             continue;
         }
         const auto written = static_cast<std::uint32_t>(nodes.size());
@@ -176,6 +176,7 @@ private:
         walk.set("u_cluster", settings_.cluster);
         walk.set("u_cluster_limit", settings_.cluster_limit);
         walk.set("u_graze", settings_.graze);
+        walk.set("u_one_sided", settings_.one_sided ? 1 : 0);
         walk.set("u_max_distance", std::min(limit, std::numeric_limits<float>::max()));
         walk.set("u_exact_radius", settings_.exact_radius > 0.0f ? 0.0f : -1.0f);
         walk.set("u_step_limit", kStepLimit);

@@ -21,10 +21,10 @@ uniform int u_blocks_per_row;
 
 out vec4 out_result;
 
-const float kFillFrom   = 0.4;
-const float kFillRange  = 0.5;
-const float kCloseFrom  = 0.9;
-const float kCloseRange = 0.06;
+const float kFillFrom   = 0.6;
+const float kFillRange  = 0.3;
+const float kCloseFrom  = 0.95;
+const float kCloseRange = 0.04;
 
 void main()
 {

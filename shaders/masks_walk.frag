@@ -7,15 +7,15 @@
 // Vertices   fullscreen.vert
 // Drawn by   gpu/gpu_masks.cpp, in pieces, once per half face
 // Reads      u_nodes           RGBA32UI, 4 texels a node: MaskNode of tree/mask_tree.h in preorder,
-//                              the last word the node after its subtree and, in the highest bit,
-//                              kMaskSheet; open_radius -0: a triangle
+//                              the last word the flags of tree/mask_kernel.h and the node after
+//                              its subtree; open_radius -0: a triangle
 //            u_node_count
 //            u_receivers       RGBA32F, 2 texels a slot, mask frame: position.xyz 0 | normal.xyz 0
 //            u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
 //            u_face            from the mask frame to the face's axes
 //            u_half            0: rows 0 to 7, where V < 0; 1: rows 8 to 15
 //            u_groups          RGBA32F, 3 texels a group of 16 slots (disks_gather.frag)
-//            u_cluster, u_cluster_limit, u_share, u_graze, u_max_distance  MaskSettings of
+//            u_cluster, u_cluster_limit, u_share, u_graze, u_one_sided, u_max_distance  MaskSettings of
 //                              tree/mask_kernel.h; u_share is share_leaf; no limit: the largest float
 //            u_exact_radius    nodes with no larger open_radius are drawn as they are
 //            u_words0, u_words1, u_loose0, u_loose1, u_at  the outputs of the draw before
@@ -39,6 +39,7 @@ uniform float u_cluster;
 uniform float u_share;
 uniform float u_cluster_limit;
 uniform float u_graze;
+uniform int u_one_sided;
 uniform float u_max_distance;
 uniform float u_exact_radius;
 uniform usampler2D u_words0;
@@ -56,7 +57,11 @@ layout(location = 3) out uvec4 out_loose1;
 layout(location = 4) out uint out_at;
 
 const uint  kTriangle        = 0x80000000u;  // open_radius -0
-const uint  kSheet           = 0x80000000u;
+const uint  kSheet           = 0x80000000u;  // these four as in tree/mask_kernel.h
+const uint  kSolid           = 0x40000000u;
+const uint  kHollow          = 0x20000000u;
+const uint  kNext            = 0x1FFFFFFFu;
+const float kHollowGrowth    = 1.1;
 const float kImportanceFloor = 0.1;
 const float kFaceReach       = 1.4143;  // a ball's radius to the planes that bound it, sqrt(2)
 const float kTinyLength2     = 1e-30;
@@ -138,7 +143,7 @@ void main()
             found = alive && (opening == kTriangle || open_radius <= u_exact_radius ||
                               open_radius < cluster * from_all);
             if (!alive)
-                at = int(texelFetch(u_nodes, at * 4 + 3).w & ~kSheet);
+                at = int(texelFetch(u_nodes, at * 4 + 3).w & kNext);
             else if (!found)
                 ++at;
         } while (!found && at < u_node_count && steps < u_step_limit);
@@ -153,9 +158,15 @@ void main()
         vec4  ball     = uintBitsToFloat(texelFetch(u_nodes, at * 4));
         vec3  center   = u_face * (ball.xyz - position);
         float radius   = ball.w;
-        vec3  axis_u   = u_face * uintBitsToFloat(third.xyz);
-        vec3  axis_v   = u_face * uintBitsToFloat(last.xyz);
-        at = int(last.w & ~kSheet);
+        // which side is seen: shared polygons from the group's centre
+        vec3  plane_normal = uintBitsToFloat(texelFetch(u_nodes, at * 4 + 1).xyz);
+        float away         = dot(plane_normal, ball.xyz - group.xyz);
+        float own_away     = shared ? away : dot(plane_normal, ball.xyz - position);
+        bool  dropped = u_one_sided != 0 && (last.w & kSolid) != 0u && own_away < 0.0;
+        float grow    = loose && (last.w & kHollow) != 0u && away < 0.0 ? kHollowGrowth : 1.0;
+        vec3  axis_u  = u_face * (grow * uintBitsToFloat(third.xyz));
+        vec3  axis_v  = u_face * (grow * uintBitsToFloat(last.xyz));
+        at = int(last.w & kNext);
 
         // planes through the receiver and each edge, turned inward; a triangle's first counts twice
         vec3 c0 = triangle ? center + axis_u : center + axis_u + axis_v;
@@ -196,7 +207,7 @@ void main()
                           max(within_half(c2), within_half(c3)));
         vec4 heights = max(vec4(dot(c0, up), dot(c1, up), dot(c2, up), dot(c3, up)), 0.0);
         float sine = shared || dot(center, center) < radius * radius ? 0.0 : u_graze;
-        bool seen = volume != 0.0 && any(greaterThan(heights * heights, sine * sine * squares)) &&
+        bool seen = !dropped && volume != 0.0 && any(greaterThan(heights * heights, sine * sine * squares)) &&
                     all(greaterThanEqual(beside, vec4(0.0))) && height < u_max_distance;
         uvec4 drawn       = uvec4(seen ? 0xFFFFFFFFu : 0u);
         uvec4 drawn_loose = uvec4(seen && loose ? 0xFFFFFFFFu : 0u);

@@ -132,8 +132,7 @@ struct Bundle {
 
 class Builder {
 public:
-    explicit Builder(const Geometry& geometry)
-        : geometry_(geometry), solid_(small_solids(geometry))
+    explicit Builder(const Geometry& geometry) : geometry_(geometry), solid_(small_solids(geometry))
     {
     }
 
@@ -299,8 +298,8 @@ private:
             const Bundle::Node node = bundle.nodes[bundle.inner[i]];
             const MaskPatchNode& shown = bundle.shown[i];
             if (shown.may_be_whole)
-                make_whole(*shown.patch, corners.part(node.begin, node.end),
-                           order + node.begin, *shown.node);
+                make_whole(*shown.patch, corners.part(node.begin, node.end), order + node.begin,
+                           *shown.node);
             shown.node->links |= static_cast<std::uint32_t>(first + node.first_child - 1);
         }
         return bundle.patches[0];

@@ -28,7 +28,7 @@ struct Setting {
 /// others were measured on these worlds and rounded up.
 std::vector<Setting> settings()
 {
-    return {{"draft", {.quality = MaskOptions::kDraft}, 0.07},
+    return {{"draft", {.quality = MaskOptions::kDraft}, 0.075},
             {"good", {.quality = MaskOptions::kGood}, 0.025},
             {"best", {.quality = MaskOptions::kBest}, 0.025},
             {"exact", {.exact = true}, 0.006}};
