@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -42,6 +43,9 @@ const Egl& egl()
 {
     static const Egl loaded = [] {
         Egl result;
+        // Mesa writes to the terminal what it also tells by errors; whoever wants to read it may
+        // say so
+        setenv("EGL_LOG_LEVEL", "fatal", 0);
         SharedLibrary library("libEGL.so.1");
 #define SURFELAO_EGL_FIND(name, upper) library.find(result.name, "egl" #name);
         SURFELAO_EGL_FUNCTIONS(SURFELAO_EGL_FIND)

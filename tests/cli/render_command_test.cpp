@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace surfelao {
@@ -100,6 +101,24 @@ TEST_F(RenderCommand, RefusesASizeThatTheDeviceCannotDraw)
     EXPECT_EQ(outcome.code, 1);
     EXPECT_NE(outcome.err.find("pixels was asked for"), std::string::npos) << outcome.err;
     EXPECT_FALSE(fs::exists(folder_ / "x.png"));
+}
+
+// EGL finds no driver then; OSMesa brings its own.
+TEST_F(RenderCommand, WithoutADriverItSaysSoInOneSentenceAndAutoDrawsBySoftware)
+{
+    setenv("LIBGL_DRIVERS_PATH", "/nowhere", 1);
+    const auto draw = [&](const char* output, const char* context) {
+        return run(folder_.path(), {"render", folder_ / "a.obj", "-o", folder_ / output, "--width",
+                                    "64", "--height", "48", "--context", context});
+    };
+    const Outcome refused = draw("x.png", "egl");
+    const Outcome drawn = draw("y.png", "auto");
+    unsetenv("LIBGL_DRIVERS_PATH");
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_EQ(refused.err.rfind("surfelao: no OpenGL context can be had: ", 0), 0u) << refused.err;
+    EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
+    EXPECT_FALSE(fs::exists(folder_ / "x.png"));
+    EXPECT_EQ(drawn.code, 0) << drawn.err;
 }
 
 TEST(ViewCommand, WithoutADisplayItSaysSoAndFails)
