@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -250,6 +251,43 @@ TEST_F(Window, TheReferenceStandsRightOfTheWipeAndInThePictureBeside)
         EXPECT_GE(light.low, 300) << static_cast<char>(key);
         EXPECT_GT(light.high, light.low + 50) << static_cast<char>(key);
     }
+}
+
+TEST_F(Window, SavesThePictureAndTheBakedFileAndTellsWhatCannotBeWritten)
+{
+    namespace fs = std::filesystem;
+    const fs::path picture = fs::path(testing::TempDir()) / "surfelao_window_saved.png";
+    const fs::path baked = fs::path(testing::TempDir()) / "surfelao_window_baked.ply";
+    fs::remove(picture);
+    fs::remove(baked);
+    std::atomic<int> calls{0};
+    for (const fs::path& folder : {fs::path("/nowhere"), fs::path(testing::TempDir())}) {
+        int frames = 0;
+        WindowOptions options;
+        options.input = box_file();
+        options.width = 320;
+        options.height = 240;
+        options.panel.is_hidden = true;
+        options.panel.comparison = Comparison::side_by_side;
+        options.panel.reference_rays = 2;
+        std::snprintf(options.panel.picture_path, sizeof options.panel.picture_path, "%s",
+                      (folder / picture.filename()).c_str());
+        std::snprintf(options.panel.baked_path, sizeof options.panel.baked_path, "%s",
+                      (folder / baked.filename()).c_str());
+        options.on_frame = [&](const Image&, const Session& session) {
+            if (!session.state().occlusion.empty() && ++frames == 2) {
+                press(GLFW_KEY_P);
+                press(GLFW_KEY_B);
+            }
+            return frames < 4;
+        };
+        show_window(options, same_everywhere(0.25f, calls));
+    }
+    const Image saved = read_image(picture);
+    EXPECT_EQ(saved.width, 320);
+    EXPECT_EQ(saved.height, 240);
+    const Scene scene = read_scene(baked);
+    EXPECT_EQ(scene.positions.size(), scenes::box({0, 0, 0}, {1, 1, 1}, 4).positions.size());
 }
 
 TEST_F(Window, MayGetAsSmallAsItWill)
