@@ -4,7 +4,7 @@
 /// `vertex_indices` or `vertex_index`; element `tristrips` (a strip ends at -1, triangles that use
 /// a vertex twice only turn the strip and are left out). Other elements and properties are passed
 /// over. In ascii files every row stands on a line of its own. Bytes after the last element are
-/// ignored.
+/// ignored. A header line that begins with `Created` is a comment: Blender 2.47 wrote it so.
 #pragma once
 
 #include "surfels/occlusion.h"
