@@ -4,6 +4,7 @@
 #include "tree/mask_kernel.h"
 #include "tree/mask_patch.h"
 #include "tree/mask_solids.h"
+#include "tree/mask_winding.h"
 #include "tree/masks.h"
 #include "tree/part.h"
 #include "tree/raw_vector.h"
@@ -351,7 +352,13 @@ private:
 std::shared_ptr<const MaskTree> build_mask_tree(const Geometry& geometry)
 {
     auto tree = std::make_shared<MaskTree>();
-    tree->nodes = Builder(geometry).build();
+    if (is_winding_mixed(geometry)) {
+        Geometry alike = geometry;
+        wind_alike(alike);
+        tree->nodes = Builder(alike).build();
+    } else {
+        tree->nodes = Builder(geometry).build();
+    }
     return tree;
 }
 
