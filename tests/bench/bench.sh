@@ -20,4 +20,5 @@ if [ $# -eq 0 ]; then
 fi
 "$build/bin/surfelao" compare --frontier "$@" -o "$out" \
     --json "$out/frontier.json" --csv "$out/frontier.csv"
-"$build/bin/disks_scaling"
+"$build/bin/scaling" masks
+"$build/bin/scaling" disks
