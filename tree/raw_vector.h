@@ -2,8 +2,8 @@
 ///
 /// resize() leaves new elements unset instead of writing zeros first on one thread, which takes as
 /// long as the filling. Each must be written before it is read. Large arrays ask the system for
-/// large pages (2 MiB): where memory is fresh, a fault for every 4 KiB takes a quarter of the time of
-/// building a tree. For trivial types only.
+/// large pages (2 MiB): where memory is fresh, a fault for every 4 KiB takes a quarter of the time
+/// of building a tree. For trivial types only.
 #pragma once
 
 #include <cstddef>
