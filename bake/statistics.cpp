@@ -87,9 +87,12 @@ std::optional<CurveTime> time_at(std::vector<CurvePoint> family, double rmse)
     const CurvePoint a = front[right - 1], b = front[right];
     const double position =
         (std::log(rmse) - std::log(a.rmse)) / (std::log(b.rmse) - std::log(a.rmse));
-    return CurveTime{
-        std::exp(std::log(a.seconds) + position * (std::log(b.seconds) - std::log(a.seconds))),
-        rmse > front.front().rmse || rmse < front.back().rmse};
+    const double seconds =
+        std::exp(std::log(a.seconds) + position * (std::log(b.seconds) - std::log(a.seconds)));
+    constexpr double kFar = 1000.0;  // a line through two points close together leads anywhere
+    if (!(seconds > front.front().seconds / kFar && seconds < front.back().seconds * kFar))
+        return std::nullopt;
+    return CurveTime{seconds, rmse > front.front().rmse || rmse < front.back().rmse};
 }
 
 double quantile(std::vector<double> values, double share)

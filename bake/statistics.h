@@ -41,7 +41,7 @@ struct CurveTime {
 /// The seconds that a family needs for an RMSE: straight lines through its points in log-log,
 /// beyond its ends along the last line. Points that another one beats in both time and error are
 /// left out, and so are points without error or without time, which have no logarithm. Empty with
-/// fewer than two points left, or rmse <= 0.
+/// fewer than two points left, rmse <= 0, or a time a thousand times beyond the family's own.
 [[nodiscard]] std::optional<CurveTime> time_at(std::vector<CurvePoint> family, double rmse);
 
 /// The value that `share` of the values do not exceed, straight between ranks. Values: not empty.

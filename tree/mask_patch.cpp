@@ -17,7 +17,7 @@ namespace {
 
 /// A node that is not flat is opened as if its radius were larger by this factor times 1 -
 /// flatness.
-constexpr float kFlatnessPenalty = 10.0f;
+constexpr float kFlatnessPenalty = 5.0f;
 
 /// Rectangles of flat nodes are drawn a little larger: their neighbours most likely continue the
 /// same plane, and the rim closes the cracks. None from a flatness of 1 - 1/kDilationSlope down.
@@ -39,7 +39,7 @@ constexpr float kSheetCover = 0.75f;
 
 /// A patch with gaps would be drawn as one rectangle in their midst: it is opened as if its radius
 /// were larger by this factor times what its cover lacks of a sheet's.
-constexpr float kGapPenalty = 10.0f;
+constexpr float kGapPenalty = 5.0f;
 
 /// A patch is hollow where the integral of n.(x - center) is below minus this share of area times
 /// radius; inside of a sphere it is minus half of the patch's radius over the sphere's.

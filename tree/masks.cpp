@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
@@ -97,7 +98,7 @@ struct FamilyPoint {
 };
 constexpr FamilyPoint kFamily[] = {{0.9f, 0.3f, 0.2f, 0.18f},
                                    {0.7f, 0.1f, 0.07f, 0.13f},
-                                   {0.4f, 0.03f, 0.03f, 0.06f},
+                                   {0.35f, 0.03f, 0.03f, 0.09f},
                                    {0.2f, 0.015f, 0.015f, 0.03f},
                                    {0.1f, 0.007f, 0.007f, 0.015f}};
 constexpr float kRelaxedCluster = 0.9f;  ///< a larger rectangle could swallow its receiver
@@ -206,18 +207,18 @@ public:
             }
         }
         const float weight = 1.0f / static_cast<float>(limits_.size());
-        for (std::size_t i = 0; i < answers_.size(); ++i) {
+        tbb::parallel_for(std::size_t{0}, answers_.size(), [&](std::size_t i) {
             Occlusion& answer = answers_[i];
             answer.occlusion *= weight;
             // a row vector times a rotation: turned back
             answer.bent_normal =
                 bent_normal_of(answer.bent_normal * kMaskFrame, receivers_[i].normal);
-        }
+        });
         return std::move(answers_);
     }
 
 private:
-    static constexpr std::uint32_t kParallelReceivers = 256;  ///< smaller groups stay on one thread
+    static constexpr std::uint32_t kParallelReceivers = 64;  ///< smaller groups stay on one thread
 
     void visit(std::uint32_t index, const std::uint32_t* in, std::size_t in_count,
                const std::uint32_t* mask, std::size_t level)

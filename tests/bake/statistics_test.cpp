@@ -60,6 +60,12 @@ TEST(TimeAt, IsExactOnAPowerLawInsideAndMarkedOutside)
     EXPECT_TRUE(time_at(family, 10.0)->extrapolated);
 }
 
+// An error that hardly falls with time: any answer would be a guess.
+TEST(TimeAt, ALineThatLeadsAnywhereLeadsNowhere)
+{
+    EXPECT_FALSE(time_at({{0.0090, 1.0}, {0.0089, 4.0}}, 0.005));
+}
+
 TEST(TimeAt, BeatenPointsDoNotCount)
 {
     // the second point costs more than the third and is less exact
