@@ -24,10 +24,10 @@ namespace surfelao {
 /// promised.
 ///
 /// O(n) for convex polygons. Others take n log n as a rule and n^1.5 where walls are folded many
-/// times (200,000 corners of a square spiral: some 1,100 tests each). No polygon gets more tests than
-/// kMostEarTests a corner, nor, where it has very many corners, than kManyEarTests and kFewEarTests
-/// a corner; what is left then, as most of a polygon that crosses itself all over, becomes a fan.
-/// So no file costs more than a bounded time per corner.
+/// times (200,000 corners of a square spiral: some 1,100 tests each). No polygon gets more tests
+/// than kMostEarTests a corner, nor, where it has very many corners, than kManyEarTests and
+/// kFewEarTests a corner; what is left then, as most of a polygon that crosses itself all over,
+/// becomes a fan. So no file costs more than a bounded time per corner.
 void triangulate(std::span<const glm::dvec3> positions, std::span<const std::uint32_t> corners,
                  std::vector<glm::uvec3>& triangles);
 
