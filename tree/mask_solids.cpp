@@ -4,9 +4,9 @@
 #include <glm/vec3.hpp>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <span>
-#include <utility>
 
 namespace surfelao {
 namespace {
@@ -49,19 +49,20 @@ private:
 /// triangles are seen from behind. From there outward the winding number only falls, to 0.
 bool is_star_solid(const Geometry& geometry, std::span<const std::uint32_t> triangles)
 {
-    using Edge = std::pair<std::uint32_t, std::uint32_t>;
-    std::vector<Edge> forward, backward;
+    // an edge's two ends in one number
+    std::array<std::uint64_t, 3 * kMostOfSolid> forward, backward;
+    std::size_t edges = 0;
     glm::vec3 sum(0.0f);
     for (const std::uint32_t triangle : triangles) {
         const glm::uvec3 t = geometry.triangles[triangle];
         for (int i = 0; i < 3; ++i) {
-            const std::uint32_t a = geometry.welded[t[i]], b = geometry.welded[t[(i + 1) % 3]];
-            forward.emplace_back(a, b);
-            backward.emplace_back(b, a);
+            const std::uint64_t a = geometry.welded[t[i]], b = geometry.welded[t[(i + 1) % 3]];
+            forward[edges] = a << 32 | b;
+            backward[edges++] = b << 32 | a;
             sum += geometry.positions[a];
         }
     }
-    const glm::vec3 middle = sum / static_cast<float>(forward.size());
+    const glm::vec3 middle = sum / static_cast<float>(edges);
     for (const std::uint32_t triangle : triangles) {
         const glm::uvec3 t = geometry.triangles[triangle];
         const glm::vec3 a = geometry.positions[t.x] - middle, b = geometry.positions[t.y] - middle,
@@ -69,9 +70,11 @@ bool is_star_solid(const Geometry& geometry, std::span<const std::uint32_t> tria
         if (!(glm::dot(a, glm::cross(b - a, c - a)) > 0.0f))
             return false;
     }
-    std::sort(forward.begin(), forward.end());
-    std::sort(backward.begin(), backward.end());
-    return forward == backward;
+    const auto forward_end = forward.begin() + static_cast<std::ptrdiff_t>(edges);
+    const auto backward_end = backward.begin() + static_cast<std::ptrdiff_t>(edges);
+    std::sort(forward.begin(), forward_end);
+    std::sort(backward.begin(), backward_end);
+    return std::equal(forward.begin(), forward_end, backward.begin());
 }
 
 }  // namespace
