@@ -1,6 +1,7 @@
 #include "surfels/topology.h"
 
 #include "surfels/errors.h"
+#include "surfels/union_find.h"
 
 #include <glm/geometric.hpp>
 
@@ -20,33 +21,6 @@ constexpr double kFlatThickness = 1e-7;
 
 /// Holes that are to be small span at most this share of their body's area.
 constexpr double kSmallHoles = 0.03;
-
-/// Sets of things that are connected.
-class UnionFind {
-public:
-    explicit UnionFind(std::size_t count) : parent_(count)
-    {
-        std::iota(parent_.begin(), parent_.end(), 0u);
-    }
-    std::uint32_t root(std::uint32_t i)
-    {
-        while (parent_[i] != i) {
-            parent_[i] = parent_[parent_[i]];
-            i = parent_[i];
-        }
-        return i;
-    }
-    /// The lower root stays: the result does not depend on the order of calls.
-    void join(std::uint32_t a, std::uint32_t b)
-    {
-        a = root(a);
-        b = root(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<std::uint32_t> parent_;
-};
 
 /// Items sorted by an owner below `owner_count`, then by value: counting sort, then each owner's
 /// own (few, unless a vertex has an enormous valence; then n log n).

@@ -1,49 +1,16 @@
 #include "tree/mask_solids.h"
 
+#include "surfels/union_find.h"
+
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <span>
 
 namespace surfelao {
 namespace {
-
-class Bodies {
-public:
-    explicit Bodies(const Geometry& geometry)
-        : geometry_(geometry), parent_(geometry.positions.size())
-    {
-        std::iota(parent_.begin(), parent_.end(), 0u);
-        for (const glm::uvec3 t : geometry.triangles) {
-            const std::uint32_t a = root(geometry.welded[t.x]);
-            const std::uint32_t b = root(geometry.welded[t.y]);
-            const std::uint32_t c = root(geometry.welded[t.z]);
-            const std::uint32_t least = std::min({a, b, c});
-            parent_[a] = parent_[b] = parent_[c] = least;
-        }
-    }
-
-    std::uint32_t body_of(std::size_t triangle)
-    {
-        return root(geometry_.welded[geometry_.triangles[triangle].x]);
-    }
-
-private:
-    std::uint32_t root(std::uint32_t v)
-    {
-        while (parent_[v] != v) {
-            parent_[v] = parent_[parent_[v]];
-            v = parent_[v];
-        }
-        return v;
-    }
-
-    const Geometry& geometry_;
-    std::vector<std::uint32_t> parent_;
-};
 
 /// Every edge in both directions equally often, and from one point, the middle of the corners, all
 /// triangles are seen from behind. From there outward the winding number only falls, to 0.
@@ -82,11 +49,15 @@ bool is_star_solid(const Geometry& geometry, std::span<const std::uint32_t> tria
 std::vector<std::uint8_t> small_solids(const Geometry& geometry)
 {
     const std::size_t count = geometry.triangles.size();
-    Bodies bodies(geometry);
+    UnionFind bodies(geometry.positions.size());
+    for (const glm::uvec3 t : geometry.triangles) {
+        bodies.join(geometry.welded[t.x], geometry.welded[t.y]);
+        bodies.join(geometry.welded[t.x], geometry.welded[t.z]);
+    }
     std::vector<std::uint32_t> size(geometry.positions.size(), 0);
     std::vector<std::uint32_t> body(count);
     for (std::size_t t = 0; t < count; ++t)
-        ++size[body[t] = bodies.body_of(t)];
+        ++size[body[t] = bodies.root(geometry.welded[geometry.triangles[t].x])];
 
     // the triangles of small bodies side by side
     std::vector<std::uint32_t> members;
