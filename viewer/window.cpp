@@ -328,12 +328,24 @@ private:
         return keep_open;
     }
 
+    /// Normals until the first values have come: all open is a silhouette without a shape.
+    ViewOptions shown_view() const
+    {
+        const SessionState& state = session_.state();
+        ViewOptions view = panel_state_.view;
+        const bool has_values = !state.occlusion.empty() || view.colors == Colors::levels ||
+                                (view.colors == Colors::rays && !state.reference.empty());
+        if (!has_values)
+            view.colors = Colors::normals;
+        return view;
+    }
+
     void draw_model(const Framebuffer& shown)
     {
         if (samples() < kMostSamples) {
             const auto start = std::chrono::steady_clock::now();
             for (Pane& pane : panes_) {
-                ViewOptions view = panel_state_.view;
+                ViewOptions view = shown_view();
                 view.wipe = pane.wipe;
                 renderer_.draw_frame(pane.target, camera_, view, sample_shift(pane.sum.count()));
                 pane.sum.add(pane.target);
@@ -406,7 +418,7 @@ private:
         for (const Pane& pane : panes_)
             images.push_back(pane.sum.mean());
         Image image = joined(images);
-        draw_legend(image, *session_.state().model, panel_state_.view);
+        draw_legend(image, *session_.state().model, shown_view());
         write_image(panel_state_.picture_path, image);
         return std::string("saved ") + panel_state_.picture_path;
     }

@@ -163,6 +163,48 @@ TEST_F(Window, TheModelStandsBesideThePanelAndMovesWhenItIsHidden)
     EXPECT_NEAR(alone.low, 999 - alone.high, 60);
 }
 
+// A white pixel would be an open place; normals of a box are no greys.
+TEST_F(Window, UntilTheFirstAnswerNormalsAreShown)
+{
+    std::atomic<int> calls{0};
+    std::atomic<bool> may_answer{false};
+    Services services = open_everywhere(calls);
+    services.solve = [&may_answer, answer = services.solve](const Model& model,
+                                                            const SolveSettings& settings,
+                                                            const Progress& progress) {
+        may_answer.wait(false);
+        return answer(model, settings, progress);
+    };
+    const auto is_white = [](const glm::vec4& p) { return p.r > 0.8f && p.g > 0.8f && p.b > 0.8f; };
+    const auto is_colored = [](const glm::vec4& p) {
+        return std::max({p.r, p.g, p.b}) - std::min({p.r, p.g, p.b}) > 0.3f;
+    };
+    int frames_before = 0, frames_after = 0;
+    Image before, after;
+    WindowOptions options;
+    options.input = box_file();
+    options.width = 320;
+    options.height = 240;
+    options.panel.is_hidden = true;
+    options.on_frame = [&](const Image& shown, const Session& session) {
+        if (!session.state().occlusion.empty()) {
+            after = shown;
+            return ++frames_after < 3;
+        }
+        if (session.state().model && ++frames_before == 3) {
+            before = shown;
+            may_answer = true;
+            may_answer.notify_all();
+        }
+        return true;
+    };
+    show_window(options, services);
+    EXPECT_GT(share(before, is_colored), 0.1);
+    EXPECT_EQ(share(before, is_white), 0.0);
+    EXPECT_EQ(share(after, is_colored), 0.0);
+    EXPECT_GT(share(after, is_white), 0.1);
+}
+
 TEST_F(Window, KeysThatGoDownAndUpWithinAFrameCountAndMovingSolvesNothing)
 {
     std::atomic<int> calls{0};
