@@ -80,6 +80,24 @@ glm::mat3 axes_of_face(int face)
     return glm::transpose(rows);
 }
 
+/// MaskRaster's moments in the order of masks_face.frag.
+std::vector<glm::vec4> raster_moments()
+{
+    const MaskRaster& raster = mask_raster();
+    std::vector<glm::vec4> texels;
+    for (int byte = 0; byte < kMaskFaceBytes; ++byte) {
+        for (int half = 0; half < 2; ++half) {
+            const auto first = [&](int m, int part) { return raster.first[m][part][byte]; };
+            const auto second = [&](int m) { return raster.second[m][half][byte]; };
+            const int low = 2 * half, high = low + 1;
+            texels.emplace_back(first(0, low), first(1, low), first(2, low), second(0));
+            texels.emplace_back(first(0, high), first(1, high), first(2, high), second(1));
+            texels.emplace_back(second(2), second(3), second(4), second(5));
+        }
+    }
+    return texels;
+}
+
 std::vector<Receiver> in_mask_frame(std::span<const Receiver> receivers)
 {
     std::vector<Receiver> turned;
@@ -96,8 +114,7 @@ public:
           settings_(mask_settings(options)),
           node_count_(tree.nodes.size()),
           nodes_(context, TexelFormat::rgba32ui, std::span<const MaskNode>(in_preorder(tree))),
-          first_(context, TexelFormat::rgba32ui, std::as_bytes(std::span(mask_raster().sum1))),
-          second_(context, TexelFormat::rgba32ui, std::as_bytes(std::span(mask_raster().sum2))),
+          moments_(context, TexelFormat::rgba32f, std::span<const glm::vec4>(raster_moments())),
           empty_(context)
     {
     }
@@ -182,8 +199,7 @@ private:
         walk.set("u_step_limit", kStepLimit);
         Program& worth = context_.program("fullscreen.vert", "masks_face.frag");
         worth.set("u_fill", settings_.fill ? 1 : 0);
-        worth.set("u_first", first_);
-        worth.set("u_second", second_);
+        worth.set("u_moments", moments_);
         worth.set("u_receivers", grid.receivers());
         worth.set("u_slot_count", grid.slot_count());
         worth.set("u_blocks_per_row", grid.blocks_per_row());
@@ -219,7 +235,7 @@ private:
     MaskSettings settings_;
     std::size_t node_count_;
     TextureBuffer nodes_;
-    TextureBuffer first_, second_;  ///< MaskRaster's sums
+    TextureBuffer moments_;
     VertexArray empty_;
 };
 

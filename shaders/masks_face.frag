@@ -11,8 +11,10 @@
 //            u_high_words0, u_high_words1, u_high_loose0, u_high_loose1
 //                              the same for half 1
 //            u_fill            0: as drawn is all there is
-//            u_first           RGBA32UI holding ints: MaskRaster::sum1 of tree/mask_raster.h
-//            u_second          the same: MaskRaster::sum2, 2 texels an entry
+//            u_moments         RGBA32F, 3 texels a nibble, row by row: what a set bit of it is worth
+//                              (MaskRaster of tree/mask_raster.h). First moments 1 u v of the lower
+//                              two bits, second moment 1 | first of the upper two, second u |
+//                              second v uu uv vv
 //            u_receivers       RGBA32F, 2 texels a slot, mask frame: position.xyz 0 | normal.xyz 0
 //            u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
 //            u_face            from the mask frame to the face's axes
@@ -20,7 +22,7 @@
 //                              those left open by filling, over those left open by closing
 //            out_bent, out_bent_filled, out_bent_closed
 //                              RGBA32F: integral of w (n.w) over the same bits, mask frame, 0
-// CPU twin   sum_bits, horizon, fill, close in tree/mask_kernel_body.h
+// CPU twin   first_moments, second_moments, horizon, fill, close in tree/mask_kernel_body.h
 uniform usampler2D u_low_words0;
 uniform usampler2D u_low_words1;
 uniform usampler2D u_low_loose0;
@@ -30,8 +32,7 @@ uniform usampler2D u_high_words1;
 uniform usampler2D u_high_loose0;
 uniform usampler2D u_high_loose1;
 uniform int u_fill;
-uniform usamplerBuffer u_first;
-uniform usamplerBuffer u_second;
+uniform samplerBuffer u_moments;
 uniform samplerBuffer u_receivers;
 uniform int u_slot_count;
 uniform int u_blocks_per_row;
@@ -42,31 +43,37 @@ layout(location = 1) out vec4 out_bent;
 layout(location = 2) out vec4 out_bent_filled;
 layout(location = 3) out vec4 out_bent_closed;
 
-// Sums over the bits of a face, as integers: they do not depend on the order.
+// Sums over the bits of a face. Integers below 2^24: they do not depend on the order.
 struct Sums {
-    ivec3 first;
-    ivec4 second;  // xx xy xz yy
-    ivec2 rest;    // yz zz
+    vec3 first;
+    vec4 second;  // xx xy xz yy
+    vec2 rest;    // yz zz
 };
+
+const Sums kNothing = Sums(vec3(0.0), vec4(0.0), vec2(0.0));
 
 void add(inout Sums sums, int y, uint bits)
 {
-    if (bits == 0u)
-        return;
-    for (int k = 0; k < 8; ++k) {
-        int entry = (y * 8 + k) * 16 + int((bits >> (4 * k)) & 15u);
-        sums.first += ivec3(texelFetch(u_first, entry).xyz);
-        sums.second += ivec4(texelFetch(u_second, entry * 2));
-        sums.rest += ivec2(texelFetch(u_second, entry * 2 + 1).xy);
+    uint pairs = bits - ((bits >> 1) & 0x55555555u);  // their set bits
+    for (int k = 0; pairs != 0u; ++k, pairs >>= 4) {
+        int   entry = (y * 8 + k) * 3;
+        float low   = float(pairs & 3u);
+        float high  = float((pairs >> 2) & 3u);
+        vec4  a     = texelFetch(u_moments, entry);
+        vec4  b     = texelFetch(u_moments, entry + 1);
+        vec4  c     = texelFetch(u_moments, entry + 2);
+        sums.first += low * a.xyz + high * b.xyz;
+        sums.second += (low + high) * vec4(a.w, b.w, c.xy);
+        sums.rest += (low + high) * c.zw;
     }
 }
 
-float along(Sums sums, vec3 n) { return dot(vec3(sums.first), n); }
+float along(Sums sums, vec3 n) { return dot(sums.first, n); }
 
 vec4 bent(Sums sums, vec3 n)
 {
-    vec4 a = vec4(sums.second);
-    vec2 b = vec2(sums.rest);
+    vec4 a = sums.second;
+    vec2 b = sums.rest;
     vec3 turned = vec3(dot(a.xyz, n), dot(vec3(a.y, a.w, b.x), n), dot(vec3(a.z, b.x, b.y), n));
     return vec4(turned * u_face, 0.0);
 }
@@ -115,8 +122,8 @@ void main()
             loose[1 + 4 * q + i]  = clusters[q][i];
         }
     }
-    Sums whole = Sums(ivec3(0), ivec4(0), ivec2(0));
-    Sums open  = whole;  // of the first, only `first` is of use
+    Sums whole = kNothing;
+    Sums open  = kNothing;  // of the first, only `first` is of use
     for (int y = 0; y < 16; ++y) {
         add(whole, y, above[1 + y]);
         add(open, y, ~closed[1 + y]);
@@ -149,8 +156,8 @@ void main()
         grown[1 + y]      = grown_across(filled, y);
         wide_loose[1 + y] = l | (l << 1) | (l >> 1);
     }
-    Sums filling = Sums(ivec3(0), ivec4(0), ivec2(0));
-    Sums closing = filling;
+    Sums filling = kNothing;
+    Sums closing = kNothing;
     for (int y = 0; y < 16; ++y) {
         uint m       = filled[1 + y];
         uint wide    = m | (m << 1) | (m >> 1);

@@ -473,7 +473,7 @@ void start_frontier(MaskScratch& scratch, const std::uint32_t* in, std::size_t i
 
 // --- what a mask is worth ---
 
-/// Sum of w over bits, cosine weights.
+/// Sum of w over bits, cosine weights, in the unit of MaskRaster::first.
 struct First {
     std::int32_t at[3] = {};
 
@@ -490,159 +490,112 @@ struct Second {
     std::int32_t at[6] = {};
 };
 
-#if defined(__AVX512VNNI__)
-
-/// For each 64 bits of a face of which any is set in `within`: their number / 64.
-template <class Work>
-SURFELAO_MASK_INLINE void each_word(const std::uint32_t* within, int face, const Work& work)
+/// Set bits among the kPart-th kBits of each byte of a face.
+template <int kBits, int kPart>
+SURFELAO_MASK_INLINE Bytes counts(Int16 face)
 {
-    const __m512i rows = _mm512_load_si512(within + kMaskFaceWords * face);
-    for (unsigned words = _mm512_test_epi64_mask(rows, rows); words != 0; words &= words - 1)
-        work(__builtin_ctz(words));
+    constexpr std::uint32_t chosen = kBits == 2 ? 0x03030303u : 0x0f0f0f0fu;
+    return nibble_counts(shift_right<kBits * kPart>(face) & all(chosen));
 }
 
-SURFELAO_MASK_INLINE __m512i chosen_weights(const std::uint32_t* mask, int face, int j,
-                                            __m512i weight)
-{
-    std::uint64_t chosen;
-    std::memcpy(&chosen, mask + kMaskFaceWords * face + 2 * j, sizeof chosen);
-    return _mm512_maskz_mov_epi8(chosen, weight);
-}
+/// Set bits of the two faces of an axis.
+struct FacePair {
+    Bytes both;  ///< the sum
+    Bytes more;  ///< what the front has more than the back, plus all that a face can have
 
-SURFELAO_MASK_INLINE __m512i dot_bytes(__m512i sum, __m512i weight, const std::int8_t* table)
-{
-    return _mm512_dpbusd_epi32(sum, weight, _mm512_load_si512(table));
-}
-
-/// `kCount` masks at once, none of which has bits outside of the last.
-template <int kCount>
-SURFELAO_MASK_INLINE void first_moments(const MaskRaster& raster,
-                                        const std::uint32_t* const (&mask)[kCount],
-                                        First (&sums)[kCount])
-{
-    __m512i sum[kCount][3] = {};
-    for (int a = 0; a < 3; ++a) {
-        const int u = (a + 1) % 3, v = (a + 2) % 3;
-        __m512i on_axis[kCount][3] = {};  // stays in registers: no index of its depends on a
-        for (int back = 0; back < 2; ++back) {
-            const int face = 2 * a + back;
-            each_word(mask[kCount - 1], face, [&](int j) {
-                const __m512i weight = _mm512_load_si512(raster.weight1 + 64 * j);
-                for (int i = 0; i < kCount; ++i) {
-                    const __m512i w = chosen_weights(mask[i], face, j, weight);
-                    on_axis[i][0] = dot_bytes(on_axis[i][0], w, raster.one[back] + 64 * j);
-                    on_axis[i][1] = dot_bytes(on_axis[i][1], w, raster.u[0] + 64 * j);
-                    on_axis[i][2] = dot_bytes(on_axis[i][2], w, raster.v[0] + 64 * j);
-                }
-            });
-        }
-        for (int i = 0; i < kCount; ++i) {
-            sum[i][a] = _mm512_add_epi32(sum[i][a], on_axis[i][0]);
-            sum[i][u] = _mm512_add_epi32(sum[i][u], on_axis[i][1]);
-            sum[i][v] = _mm512_add_epi32(sum[i][v], on_axis[i][2]);
-        }
+    template <int kBits, int kPart>
+    SURFELAO_MASK_INLINE static FacePair of(Int16 front, Int16 back)
+    {
+        const Bytes ahead = counts<kBits, kPart>(front);
+        return {ahead + counts<kBits, kPart>(back), ahead + counts<kBits, kPart>(~back)};
     }
-    for (int i = 0; i < kCount; ++i) {
-        for (int k = 0; k < 3; ++k)
-            sums[i].at[k] = _mm512_reduce_add_epi32(sum[i][k]);
+};
+
+template <int kAxis, int kPart>
+SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, Int16 front, Int16 back, ByteSum* sum)
+{
+    const auto faces = FacePair::of<2, kPart>(front, back);
+    sum[kAxis].add(faces.more, raster.first[0][kPart]);
+    sum[(kAxis + 1) % 3].add(faces.both, raster.first[1][kPart]);
+    sum[(kAxis + 2) % 3].add(faces.both, raster.first[2][kPart]);
+}
+
+template <int kAxis>
+SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, const std::uint32_t* mask,
+                                    ByteSum* sum)
+{
+    const Int16 front = load(mask + 2 * kAxis * kMaskFaceWords);
+    const Int16 back = load(mask + (2 * kAxis + 1) * kMaskFaceWords);
+    add_first<kAxis, 0>(raster, front, back, sum);
+    add_first<kAxis, 1>(raster, front, back, sum);
+    add_first<kAxis, 2>(raster, front, back, sum);
+    add_first<kAxis, 3>(raster, front, back, sum);
+}
+
+/// Of two masks.
+SURFELAO_MASK_INLINE void first_moments(const MaskRaster& raster, const std::uint32_t* a,
+                                        const std::uint32_t* b, First& of_a, First& of_b)
+{
+    ByteSum sum[6] = {};
+    add_first<0>(raster, a, sum);
+    add_first<0>(raster, b, sum + 3);
+    add_first<1>(raster, a, sum);
+    add_first<1>(raster, b, sum + 3);
+    add_first<2>(raster, a, sum);
+    add_first<2>(raster, b, sum + 3);
+    std::int32_t totals[6];
+    total(sum, totals);
+    for (int k = 0; k < 3; ++k) {
+        of_a.at[k] = totals[k] - 2 * raster.first_sum[0];
+        of_b.at[k] = totals[3 + k] - 2 * raster.first_sum[0];
     }
+}
+
+/// Products of axes i and i + 1 stand at 3 + i.
+template <int kAxis, int kPart>
+SURFELAO_MASK_INLINE void add_second(const MaskRaster& raster, Int16 front, Int16 back,
+                                     ByteSum* sum)
+{
+    constexpr int u = (kAxis + 1) % 3, v = (kAxis + 2) % 3;
+    const auto faces = FacePair::of<4, kPart>(front, back);
+    sum[kAxis].add(faces.both, raster.second[0][kPart]);
+    sum[3 + kAxis].add(faces.more, raster.second[1][kPart]);
+    sum[3 + v].add(faces.more, raster.second[2][kPart]);
+    sum[u].add(faces.both, raster.second[3][kPart]);
+    sum[3 + u].add(faces.both, raster.second[4][kPart]);
+    sum[v].add(faces.both, raster.second[5][kPart]);
+}
+
+template <int kAxis>
+SURFELAO_MASK_INLINE void add_second(const MaskRaster& raster, const std::uint32_t* mask,
+                                     ByteSum* sum)
+{
+    const Int16 front = load(mask + 2 * kAxis * kMaskFaceWords);
+    const Int16 back = load(mask + (2 * kAxis + 1) * kMaskFaceWords);
+    add_second<kAxis, 0>(raster, front, back, sum);
+    add_second<kAxis, 1>(raster, front, back, sum);
 }
 
 SURFELAO_MASK_INLINE Second second_moments(const MaskRaster& raster, const std::uint32_t* mask)
 {
-    __m512i sum[6] = {};
-    for (int a = 0; a < 3; ++a) {
-        const int u = (a + 1) % 3, v = (a + 2) % 3;
-        __m512i on_axis[6] = {};
-        for (int back = 0; back < 2; ++back) {
-            const int face = 2 * a + back;
-            each_word(mask, face, [&](int j) {
-                const __m512i w =
-                    chosen_weights(mask, face, j, _mm512_load_si512(raster.weight2 + 64 * j));
-                on_axis[0] = dot_bytes(on_axis[0], w, raster.one[0] + 64 * j);
-                on_axis[1] = dot_bytes(on_axis[1], w, raster.uu + 64 * j);
-                on_axis[2] = dot_bytes(on_axis[2], w, raster.vv + 64 * j);
-                on_axis[3] = dot_bytes(on_axis[3], w, raster.u[back] + 64 * j);
-                on_axis[4] = dot_bytes(on_axis[4], w, raster.uv + 64 * j);
-                on_axis[5] = dot_bytes(on_axis[5], w, raster.v[back] + 64 * j);
-            });
-        }
-        // products of axes i and i + 1 stand at 3 + i
-        const int at[6] = {a, u, v, 3 + a, 3 + u, 3 + v};
-        for (int k = 0; k < 6; ++k)
-            sum[at[k]] = _mm512_add_epi32(sum[at[k]], on_axis[k]);
-    }
-    Second sums;
-    for (int k = 0; k < 6; ++k)
-        sums.at[k] = _mm512_reduce_add_epi32(sum[k]);
-    return sums;
+    ByteSum sum[6] = {};
+    add_second<0>(raster, mask, sum);
+    add_second<1>(raster, mask, sum);
+    add_second<2>(raster, mask, sum);
+    Second second;
+    total(sum, second.at);
+    for (int k = 0; k < 3; ++k)
+        second.at[3 + k] -= 4 * (raster.second_sum[1] + raster.second_sum[2]);
+    return second;
 }
 
-#else
-
-/// For every nibble that is not zero: (face, row, nibble, its four bits).
-template <class Work>
-SURFELAO_MASK_INLINE void each_nibble(const std::uint32_t* mask, const Work& work)
-{
-    for (int face = 0; face < kMaskFaces; ++face) {
-        for (int y = 0; y < kMaskRows; ++y) {
-            std::uint32_t word = mask[kMaskFaceWords * face + y];
-            for (int k = 0; word != 0; ++k, word >>= 4)
-                work(face, y, k, word & 15u);
-        }
-    }
-}
-
-template <int kCount>
-SURFELAO_MASK_INLINE void first_moments(const MaskRaster& raster,
-                                        const std::uint32_t* const (&mask)[kCount],
-                                        First (&sums)[kCount])
-{
-    for (int i = 0; i < kCount; ++i) {
-        std::int32_t sum[kMaskFaces][4] = {};
-        each_nibble(mask[i], [&](int face, int y, int k, unsigned value) {
-            for (int m = 0; m < 4; ++m)
-                sum[face][m] += raster.sum1[y][k][value][m];
-        });
-        for (int face = 0; face < kMaskFaces; ++face) {
-            const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
-            sums[i].at[a] += face % 2 == 0 ? sum[face][0] : -sum[face][0];
-            sums[i].at[u] += sum[face][1];
-            sums[i].at[v] += sum[face][2];
-        }
-    }
-}
-
-SURFELAO_MASK_INLINE Second second_moments(const MaskRaster& raster, const std::uint32_t* mask)
-{
-    std::int32_t sum[kMaskFaces][8] = {};
-    each_nibble(mask, [&](int face, int y, int k, unsigned value) {
-        for (int m = 0; m < 8; ++m)
-            sum[face][m] += raster.sum2[y][k][value][m];
-    });
-    Second sums;
-    for (int face = 0; face < kMaskFaces; ++face) {
-        const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
-        const std::int32_t sign = face % 2 == 0 ? 1 : -1;
-        sums.at[a] += sum[face][0];
-        sums.at[u] += sum[face][3];
-        sums.at[v] += sum[face][5];
-        sums.at[3 + a] += sign * sum[face][1];
-        sums.at[3 + u] += sum[face][4];
-        sums.at[3 + v] += sign * sum[face][2];
-    }
-    return sums;
-}
-
-#endif
-
-/// Share of the weight above the horizon that the bits of `open` have; `whole`: that of all.
+/// Share of the weight above the horizon that the bits of `open` have.
 SURFELAO_MASK_INLINE float openness_of(const MaskRaster& raster, const std::uint32_t* open,
-                                       const float* n, float whole)
+                                       const std::uint32_t* above, const float* n)
 {
-    First sums[1];
-    first_moments<1>(raster, {open}, sums);
-    return sums[0].along(n) / whole;
+    First of_open, of_above;
+    first_moments(raster, open, above, of_open, of_above);
+    return of_open.along(n) / of_above.along(n);
 }
 
 /// A clear bit is a crack between two patches where its neighbours left and right are set, or those
@@ -798,10 +751,7 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
         horizon(raster, n, above);
         for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
             store(open + w, load(above + w) & ~load(mask + w));
-        First sums[2];
-        first_moments<2>(raster, {open, above}, sums);
-        const float whole = sums[1].along(n);
-        float openness = sums[0].along(n) / whole;
+        float openness = openness_of(raster, open, above, n);
         const float fill_weight = (1.0f - openness - kFillFrom) / kFillRange;
         if (world.settings.fill && fill_weight > 0.0f && openness > 0.0f) {
             for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
@@ -809,14 +759,14 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
                 const Int16 closed = load(mask + w) | ~load(above + w);
                 store(open + w, ~fill(raster, closed, load(mask + kMaskWords + w)));
             }
-            const float filled = openness_of(raster, open, n, whole);
+            const float filled = openness_of(raster, open, above, n);
             openness += (fill_weight < 1.0f ? fill_weight : 1.0f) * (filled - openness);
 
             const float close_weight = (1.0f - openness - kCloseFrom) / kCloseRange;
             if (close_weight > 0.0f && openness > 0.0f) {
                 for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
                     store(open + w, ~close(raster, ~load(open + w), load(mask + kMaskWords + w)));
-                const float sealed = openness_of(raster, open, n, whole);
+                const float sealed = openness_of(raster, open, above, n);
                 openness += (close_weight < 1.0f ? close_weight : 1.0f) * (sealed - openness);
             }
         }

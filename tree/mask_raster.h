@@ -9,7 +9,7 @@
 /// Each row is shifted by its own part of a column (multiples of the golden ratio), so that upright
 /// edges are sampled at 512 places and not at 32.
 ///
-/// Sums over bits are sums of small integers (weights of 8 bits times coordinates of 7), so every
+/// Sums over bits count them by twos and fours in a row and multiply by integers of 7 bits: every
 /// kernel gets the same ones.
 #pragma once
 
@@ -24,7 +24,7 @@ constexpr int kMaskWords = 128;            ///< six faces, and two unused: offse
 /// What is drawn is a pair of masks: all that is set, and what of it clusters set, whose rims are
 /// not where the surface ends.
 constexpr int kMaskPairWords = 2 * kMaskWords;
-constexpr int kMaskFaceBits = 32 * kMaskRows;
+constexpr int kMaskFaceBytes = 4 * kMaskRows;
 
 struct alignas(64) MaskRaster {
     float row_v[kMaskRows];
@@ -32,22 +32,19 @@ struct alignas(64) MaskRaster {
     std::uint32_t below_is_right[kMaskRows];  ///< ~0 where row y-1 is shifted further than row y
     std::uint32_t above_is_right[kMaskRows];  ///< ~0 where row y+1 is shifted further than row y
 
-    /// Per bit of a face. First order: solid angle / length, for integrals of (n.w). Second order:
-    /// solid angle / length^2, for integrals of w (n.w). Length of the direction as written above.
-    std::uint8_t weight1[kMaskFaceBits];
-    std::uint8_t weight2[kMaskFaceBits];
-    /// Coordinates of the bit's direction and their products, times 127 (and negated).
-    std::int8_t one[2][kMaskFaceBits];
-    std::int8_t u[2][kMaskFaceBits];
-    std::int8_t v[2][kMaskFaceBits];
-    std::int8_t uu[kMaskFaceBits];
-    std::int8_t uv[kMaskFaceBits];
-    std::int8_t vv[kMaskFaceBits];
+    /// What a bit is worth, times 127, as the mean over its neighbours in a row: two of them for
+    /// the first moments, integrals of (n.w), and four for the second, integrals of w (n.w), of
+    /// which only a direction is made. [moment][part][byte]: byte i of a face's 64 stands at bits
+    /// 8 (i mod 4) .. + 7 of row i / 4, and part 0 is its lowest two or four bits.
+    ///
+    /// First: solid angle / length times 1, u, v; length is that of the direction as written above.
+    /// Second: solid angle / length^2 times 1, u, v, uu, uv, vv.
+    alignas(64) std::int8_t first[3][4][kMaskFaceBytes];
+    alignas(64) std::int8_t second[6][2][kMaskFaceBytes];
 
-    /// The same for the kernels that look up four bits at a time: sums over the set bits of the
-    /// nibble `value` at bits 4 k .. 4 k + 3 of row y, at [y][k][value].
-    std::int32_t sum1[kMaskRows][8][16][4];  ///< weight1 times 127, u, v, 0
-    std::int32_t sum2[kMaskRows][8][16][8];  ///< weight2 times 127, u, v, uu, uv, vv, 0, 0
+    /// Sums over all parts and bytes.
+    std::int32_t first_sum[3];
+    std::int32_t second_sum[6];
 };
 
 /// Made at the first call; any thread.

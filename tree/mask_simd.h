@@ -249,6 +249,44 @@ SURFELAO_MASK_INLINE void load_transposed(const float* base, const std::uint32_t
     }
 }
 
+/// A small number for each byte of 16 words.
+struct Bytes {
+    __m512i v;
+};
+SURFELAO_MASK_INLINE Bytes operator+(Bytes a, Bytes b)
+{
+    return {_mm512_add_epi8(a.v, b.v)};
+}
+/// Set bits of each byte; all are below 16.
+SURFELAO_MASK_INLINE Bytes nibble_counts(Int16 a)
+{
+    const __m128i count = _mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4);
+    return {_mm512_shuffle_epi8(_mm512_broadcast_i32x4(count), a.v)};
+}
+/// Sum of products of bytes with table entries of 7 bits and a sign.
+struct ByteSum {
+    __m512i v;
+
+    /// All that is added must not exceed 48 a byte, so that no instruction set overflows.
+    SURFELAO_MASK_INLINE void add(Bytes a, const std::int8_t* table)
+    {
+        v = _mm512_dpbusd_epi32(v, a.v, _mm512_load_si512(table));
+    }
+};
+SURFELAO_MASK_INLINE void total(const ByteSum (&sum)[6], std::int32_t (&out)[6])
+{
+    __m128i x[6];
+    for (int i = 0; i < 6; ++i) {
+        const __m256i half = _mm256_add_epi32(_mm512_castsi512_si256(sum[i].v),
+                                              _mm512_extracti64x4_epi64(sum[i].v, 1));
+        x[i] = _mm_add_epi32(_mm256_castsi256_si128(half), _mm256_extracti128_si256(half, 1));
+    }
+    const __m128i last = _mm_hadd_epi32(x[4], x[5]);
+    const __m128i first = _mm_hadd_epi32(_mm_hadd_epi32(x[0], x[1]), _mm_hadd_epi32(x[2], x[3]));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out), first);
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(out + 4), _mm_hadd_epi32(last, last));
+}
+
 #elif defined(__AVX2__)
 
 struct Float16 {
@@ -523,6 +561,42 @@ SURFELAO_MASK_INLINE void load_transposed(const float* base, const std::uint32_t
     }
 }
 
+struct Bytes {
+    __m256i a, b;
+};
+SURFELAO_MASK_INLINE Bytes operator+(Bytes x, Bytes y)
+{
+    return {_mm256_add_epi8(x.a, y.a), _mm256_add_epi8(x.b, y.b)};
+}
+SURFELAO_MASK_INLINE Bytes nibble_counts(Int16 x)
+{
+    const __m256i count =
+        _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4));
+    return {_mm256_shuffle_epi8(count, x.a), _mm256_shuffle_epi8(count, x.b)};
+}
+struct ByteSum {
+    __m256i v;  ///< 16 bits each, at most 4 * 48 * 127
+
+    SURFELAO_MASK_INLINE void add(Bytes x, const std::int8_t* table)
+    {
+        const auto* at = reinterpret_cast<const __m256i*>(table);
+        v = _mm256_add_epi16(v, _mm256_maddubs_epi16(x.a, _mm256_load_si256(at)));
+        v = _mm256_add_epi16(v, _mm256_maddubs_epi16(x.b, _mm256_load_si256(at + 1)));
+    }
+};
+SURFELAO_MASK_INLINE void total(const ByteSum (&sum)[6], std::int32_t (&out)[6])
+{
+    __m128i x[6];
+    for (int i = 0; i < 6; ++i) {
+        const __m256i wide = _mm256_madd_epi16(sum[i].v, _mm256_set1_epi16(1));
+        x[i] = _mm_add_epi32(_mm256_castsi256_si128(wide), _mm256_extracti128_si256(wide, 1));
+    }
+    const __m128i last = _mm_hadd_epi32(x[4], x[5]);
+    const __m128i first = _mm_hadd_epi32(_mm_hadd_epi32(x[0], x[1]), _mm_hadd_epi32(x[2], x[3]));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out), first);
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(out + 4), _mm_hadd_epi32(last, last));
+}
+
 #else
 
 struct Float16 {
@@ -741,6 +815,41 @@ SURFELAO_MASK_INLINE void load_transposed(const float* base, const std::uint32_t
         for (int f = 0; f < 16; ++f)
             field[f].v[i] = record[f];
     }
+}
+
+struct Bytes {
+    std::uint8_t v[4 * kLanes];
+};
+SURFELAO_MASK_INLINE Bytes operator+(const Bytes& x, const Bytes& y)
+{
+    Bytes out;
+    for (int i = 0; i < 4 * kLanes; ++i)
+        out.v[i] = static_cast<std::uint8_t>(x.v[i] + y.v[i]);
+    return out;
+}
+[[gnu::noinline]] inline Bytes nibble_counts(const Int16& x)
+{
+    Bytes out;
+    for (int i = 0; i < 4 * kLanes; ++i) {
+        const std::uint32_t nibble = x.v[i / 4] >> 8 * (i % 4) & 15u;
+        const std::uint32_t pairs = nibble - (nibble >> 1 & 5u);
+        out.v[i] = static_cast<std::uint8_t>((pairs & 3u) + (pairs >> 2));
+    }
+    return out;
+}
+struct ByteSum {
+    std::int32_t v;
+
+    [[gnu::noinline]] void add(const Bytes& x, const std::int8_t* table)
+    {
+        for (int i = 0; i < 4 * kLanes; ++i)
+            v += x.v[i] * table[i];
+    }
+};
+SURFELAO_MASK_INLINE void total(const ByteSum (&sum)[6], std::int32_t (&out)[6])
+{
+    for (int i = 0; i < 6; ++i)
+        out[i] = sum[i].v;
 }
 
 #endif

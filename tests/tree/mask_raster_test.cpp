@@ -4,6 +4,8 @@
 #include "tree/mask_kernel_body.h"
 
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec3.hpp>
 
 #include <gtest/gtest.h>
@@ -161,6 +163,57 @@ TEST(MaskRaster, ALimitCutsWherePlanesAreTooFar)
         }
     }
     EXPECT_GT(cut, 1000);
+}
+
+/// Moments of half-spaces cut by another, against sums over the bits' own directions.
+TEST(MaskRaster, MomentsAreSumsOverBits)
+{
+    std::mt19937 random(7);
+    const auto number = [&] { return random() / 2147483648.0 - 1.0; };
+    const MaskRaster& raster = mask_raster();
+    double most_first = 0.0;
+    double most_second = 0.0;
+    for (int i = 0; i < 200; ++i) {
+        alignas(64) std::uint32_t above[kMaskWords] = {};
+        alignas(64) std::uint32_t open[kMaskWords] = {};
+        const float n[3] = {float(number()), float(number()), float(number())};
+        const float cut[3] = {float(number()), float(number()), float(number())};
+        horizon(raster, n, above);
+        horizon(raster, cut, open);
+        glm::dvec3 first(0.0);
+        glm::dmat3 second(0.0);
+        for (int face = 0; face < kMaskFaces; ++face) {
+            for (int y = 0; y < kMaskRows; ++y) {
+                open[16 * face + y] &= above[16 * face + y];
+                for (int x = 0; x < 32; ++x) {
+                    if (!(open[16 * face + y] >> x & 1u))
+                        continue;
+                    const glm::dvec3 d = direction_of(face, y, x);
+                    const double length = glm::length(d);
+                    const double v = raster.row_v[y];
+                    const double solid_angle = (1.0 + v * v) / std::pow(length, 3.0);
+                    first += 127.0 * solid_angle * d / length;
+                    second += 127.0 * solid_angle / (length * length) * glm::outerProduct(d, d);
+                }
+            }
+        }
+        First of_open, of_above;
+        first_moments(raster, open, above, of_open, of_above);
+        const Second of_second = second_moments(raster, open);
+        for (int k = 0; k < 3; ++k) {
+            most_first = std::max(most_first, std::abs(of_open.at[k] - first[k]));
+            most_second = std::max({most_second, std::abs(of_second.at[k] - second[k][k]),
+                                    std::abs(of_second.at[3 + k] - second[k][(k + 1) % 3])});
+        }
+        First of_none, again;
+        alignas(64) const std::uint32_t none[kMaskWords] = {};
+        first_moments(raster, none, above, of_none, again);
+        EXPECT_EQ(of_none.along(n), 0.0f);
+        EXPECT_EQ(again.along(n), of_above.along(n));
+    }
+    // a whole hemisphere's is 127 * 500; means over two bits and over four
+    EXPECT_LT(most_first, 0.002 * 63500.0);
+    EXPECT_LT(most_second, 0.005 * 63500.0);
 }
 
 // No half-plane is changed by the filling, whichever way its edge runs; a hole of one bit is
