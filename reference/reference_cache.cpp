@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Counts up whenever rays, layout or rule change: old files are then nobody's answer.
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 
 /// Seeds of the two halves. Neither is the opponents' seed 0, so that no error of theirs is hidden
 /// by being ours too.

@@ -41,9 +41,12 @@ std::vector<float> placement_change(const RayScene& scene, std::span<const Recei
         }
         done += 0.2;
     }
+    options.definition.max_distance = kSidestep;
+    options.definition.falloff = Falloff::none;
+    const std::vector<Occlusion> touched = trace_occlusion(scene, receivers, options);
     std::vector<float> change(receivers.size());
     for (std::size_t i = 0; i < change.size(); ++i)
-        change[i] = std::max(0.0f, high[i] - low[i]);
+        change[i] = std::max(touched[i].occlusion, high[i] - low[i]);
     return change;
 }
 

@@ -9,7 +9,10 @@
 /// The rule: rays are traced from five places, at half the offset, at twice the offset, and from
 /// the receiver moved sideways by kSidestep in three directions 120 degrees apart (any plane that
 /// contains the normal has two of them on different sides). The receiver is ill-defined when the
-/// five answers spread over more than kIllDefined.
+/// five answers spread over more than kIllDefined, or when more than that share of its own rays
+/// hits something within kSidestep: it stands on another surface. There the five may agree, as in
+/// nearly closed places, while the receiver itself is inside of the surface for a ray tracer that
+/// counts hits at distance zero, and on one or the other side of it for all others.
 #pragma once
 
 #include "reference/rays.h"
@@ -29,11 +32,13 @@ inline constexpr float kIllDefined = 0.05f;
 /// In diagonals: eight roundings of a float at the rim of the unit frame (2^-24 each).
 inline constexpr float kSidestep = 5e-7f;
 
-/// For each receiver the largest minus the smallest occlusion over the five places; it is
-/// ill-defined when that is above kIllDefined. 0 for receivers without a normal.
+/// For each receiver the largest minus the smallest occlusion over the five places, or the share of
+/// its rays that hit within kSidestep if that is more; it is ill-defined when that is above
+/// kIllDefined. 0 for receivers without a normal.
 ///
 /// scene: Build::robust. receivers: off the surface by definition.offset. The five places share
-/// their directions, so that their noise mostly cancels. Costs five times 256 rays a receiver.
+/// their directions, so that their noise mostly cancels. Costs five times 256 rays a receiver, and
+/// as many very short ones.
 /// Throws Cancelled.
 [[nodiscard]] std::vector<float> placement_change(const RayScene& scene,
                                                   std::span<const Receiver> receivers,

@@ -65,6 +65,16 @@ TEST(PlacementChange, FindsTheFootOfAWallInWhosePlaneTheReceiverStands)
     }
 }
 
+TEST(PlacementChange, FindsAWallThroughTheReceiverWhereEverySideIsClosed)
+{
+    Scene scene = floor_scene();
+    add_sheet(scene, {-1, -1, 0.01}, {2, 0, 0}, {0, 2, 0});  // a lid: closed on either side
+    EXPECT_LT(change_at(scene, 0, 0.2), 0.01f);
+    add_sheet(scene, {0, -1, 0}, {0, 2, 0}, {0, 0, 0.01});
+    EXPECT_GT(change_at(scene, 0, 0.2), 0.3f);
+    EXPECT_LT(change_at(scene, 1e-3, 0.2), 0.01f);  // beside it
+}
+
 TEST(PlacementChange, IsNothingInACreaseOfTwoDegreesWhichLooksTheSameAtEveryScale)
 {
     Scene scene;  // a V along y, 2 degrees wide; both flanks face inwards
