@@ -40,6 +40,13 @@ bool is_gltf(FileType type)
     return type == FileType::gltf || type == FileType::glb;
 }
 
+std::string unknown_type(const fs::path& path, const std::string& known)
+{
+    const std::string extension = path.extension().string();
+    return (extension.empty() ? "a file without extension" : "the extension " + extension) +
+           " is not known, only " + known;
+}
+
 Scene read_any(const fs::path& path)
 {
     const std::string name = path.string();
@@ -56,8 +63,7 @@ Scene read_any(const fs::path& path)
         case FileType::glb:
             return read_gltf(path, read_contents(path, name));
         default:
-            throw InputError(name + ": the extension " + path.extension().string() +
-                             " is not known, only .obj .ply .off .stl .gltf .glb");
+            throw InputError(name + ": " + unknown_type(path, ".obj .ply .off .stl .gltf .glb"));
     }
 }
 
@@ -79,8 +85,7 @@ void check_output(const fs::path& input, const fs::path& output)
     if (type == FileType::stl)
         refuse("STL has no place for occlusion, use .ply");
     if (type == FileType::unknown)
-        refuse("the extension " + output.extension().string() +
-               " is not known, only .ply .obj .off .gltf .glb");
+        refuse(unknown_type(output, ".ply .obj .off .gltf .glb"));
     if (is_gltf(type) && !is_gltf(type_of(input)))
         refuse("only a scene that was read from glTF can be written as glTF, use .ply or .obj");
     check_writable(output);

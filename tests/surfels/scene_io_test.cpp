@@ -312,7 +312,7 @@ TEST(SceneIo, OutputsThatCannotBeAreRefusedBeforehand)
     EXPECT_EQ(sentence("a.obj", "b.fbx"),
               ": the extension .fbx is not known, only .ply .obj .off .gltf .glb");
     EXPECT_EQ(sentence("a.obj", "b"),
-              ": the extension  is not known, only .ply .obj .off .gltf .glb");
+              ": a file without extension is not known, only .ply .obj .off .gltf .glb");
     EXPECT_EQ(sentence("a.obj", "b.glb"),
               ": only a scene that was read from glTF can be written as glTF, use .ply or .obj");
     EXPECT_NE(sentence("a.obj", "missing/b.ply").find("does not exist"), std::string::npos);
