@@ -9,8 +9,9 @@
 
 namespace surfelao {
 
-/// Told the share of the work that is done, 0 to 1, never going back, by one thread at a time and
-/// up to a thousand times per job. Returns false to stop the work. Empty = nobody is listening.
+/// Told the share of the work that is done, 0 to 1, never going back, by one thread at a time, at
+/// most fifty times a second and once at the end. Returns false to stop the work. Empty = nobody is
+/// listening.
 using Progress = std::function<bool(double done)>;
 
 /// Thrown out of any long function whose Progress returned false. Its results are lost, its inputs
@@ -33,7 +34,7 @@ private:
     Progress progress_;
     std::uint64_t total_;
     std::atomic<std::uint64_t> done_{0};
-    std::atomic<std::uint64_t> next_report_{0};
+    std::atomic<std::int64_t> next_report_{0};  ///< ticks of the steady clock
     std::atomic<bool> stopped_{false};
     std::mutex mutex_;
     double reported_ = 0.0;
