@@ -225,6 +225,7 @@ private:
         const char* const inputs[] = {"u_share", "u_bent", "u_bent_filled", "u_bent_closed"};
         for (std::size_t i = 0; i < std::size(inputs); ++i)
             answer.set(inputs[i], batch.sums.color(i));
+        answer.set("u_close", settings_.close);
         answer.set("u_slot_count", grid.slot_count());
         answer.set("u_blocks_per_row", grid.blocks_per_row());
         draw_fullscreen(batch.rows, answer, empty_);

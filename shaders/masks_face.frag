@@ -156,7 +156,7 @@ void main()
         grown[1 + y]      = grown_across(filled, y);
         wide_loose[1 + y] = l | (l << 1) | (l >> 1);
     }
-    Sums filling = kNothing;
+    Sums cracks  = kNothing;
     Sums closing = kNothing;
     for (int y = 0; y < 16; ++y) {
         uint m       = filled[1 + y];
@@ -165,14 +165,18 @@ void main()
         uint low     = grown[y];
         uint high    = grown[2 + y];
         uint columns = grown[1 + y] & low & beside(low, y - 1, y) & high & beside(high, y + 1, y);
-        add(filling, y, m & ~closed[1 + y]);
-        add(closing, y, (rows | columns) & grown_across(wide_loose, y) & ~m);
+        // a notch in the rim of what filling leaves open is most likely part of it
+        uint left    = ~m;
+        uint rim     = left | (left << 1) | (left >> 1) | (y > 0 ? ~filled[y] : 0u) |
+                   (y < 15 ? ~filled[2 + y] : 0u);
+        add(cracks, y, ~closed[1 + y] & ~rim);
+        add(closing, y, (m | ((rows | columns) & grown_across(wide_loose, y))) & ~closed[1 + y]);
     }
-    Sums left     = Sums(open.first - filling.first, open.second - filling.second,
-                         open.rest - filling.rest);
-    out_share.z     = along(left, n);
-    out_bent_filled = bent(left, n);
-    left = Sums(left.first - closing.first, left.second - closing.second, left.rest - closing.rest);
-    out_share.w     = along(left, n);
-    out_bent_closed = bent(left, n);
+    Sums rest = Sums(open.first - cracks.first, open.second - cracks.second,
+                     open.rest - cracks.rest);
+    out_share.z     = along(rest, n);
+    out_bent_filled = bent(rest, n);
+    rest = Sums(open.first - closing.first, open.second - closing.second, open.rest - closing.rest);
+    out_share.w     = along(rest, n);
+    out_bent_closed = bent(rest, n);
 }

@@ -8,6 +8,7 @@
 // Drawn by   gpu/gpu_masks.cpp
 // Reads      u_share, u_bent, u_bent_filled, u_bent_closed
 //                              outputs of masks_face.frag, summed over the faces
+//            u_close           how much cracks of two bits count as closed
 //            u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
 // Writes     out_result      RGBA32F: bent normal, mask frame, any length, zero where all is closed |
 //                            occlusion (surfels/occlusion.h)
@@ -16,6 +17,7 @@ uniform sampler2D u_share;
 uniform sampler2D u_bent;
 uniform sampler2D u_bent_filled;
 uniform sampler2D u_bent_closed;
+uniform float u_close;
 uniform int u_slot_count;
 uniform int u_blocks_per_row;
 
@@ -23,6 +25,7 @@ out vec4 out_result;
 
 const float kFillFrom   = 0.6;
 const float kFillRange  = 0.3;
+const float kFillShare  = 1.3;
 const float kCloseFrom  = 0.95;
 const float kCloseRange = 0.04;
 
@@ -40,11 +43,11 @@ void main()
 
     float fill = (1.0 - openness - kFillFrom) / kFillRange;
     if (fill > 0.0 && openness > 0.0) {
-        openness += min(fill, 1.0) * (shares.y - openness);
+        openness -= min(fill, 1.0) * kFillShare * (shares.x - shares.y);
         out_result.xyz = texelFetch(u_bent_filled, pixel, 0).xyz;
         float close = (1.0 - openness - kCloseFrom) / kCloseRange;
-        if (close > 0.0 && openness > 0.0) {
-            openness += min(close, 1.0) * (shares.z - openness);
+        if (u_close > 0.0 && close > 0.0 && openness > 0.0) {
+            openness += min(close, 1.0) * u_close * min(shares.z - openness, 0.0);
             out_result.xyz = texelFetch(u_bent_closed, pixel, 0).xyz;
         }
     }

@@ -26,6 +26,7 @@ struct MaskSettings {
                          ///< the receiver's tangent plane are not drawn
     bool one_sided;      ///< of small closed bodies only what faces away is drawn
     bool fill;           ///< close single-bit cracks where much is covered
+    float close;         ///< how much cracks of two bits count as closed where all else is
 };
 
 /// Throws std::invalid_argument for options out of their range.

@@ -14,6 +14,7 @@ namespace {
 constexpr float kImportanceFloor = 0.1f;  ///< directions weigh at least this in the opening tests
 constexpr float kFillFrom = 0.6f;         ///< no filling below this occlusion ...
 constexpr float kFillRange = 0.3f;        ///< ... and full weight this much above
+constexpr float kFillShare = 1.3f;        ///< cracks of one bit stand for the wider ones too
 constexpr float kCloseFrom = 0.95f;       ///< the same for cracks of two bits
 constexpr float kCloseRange = 0.04f;
 constexpr float kHollowGrowth =
@@ -619,6 +620,15 @@ SURFELAO_MASK_INLINE Int16 fill(const MaskRaster& raster, Int16 m, Int16 loose)
     return m | (sides & loose_sides) | (stacked & loose_stacked);
 }
 
+/// Of the open bits those that are no cracks: what filling has left open and what touches it. A
+/// notch in the rim of an opening is most likely part of it.
+SURFELAO_MASK_INLINE Int16 openings(Int16 open, Int16 filled)
+{
+    const Int16 left = ~filled;
+    return open & (left | shift_left<1>(left) | shift_right<1>(left) | from_below(left) |
+                   from_above(left));
+}
+
 /// Closes cracks of two bits too, for places where nearly all is covered: what is set is grown by
 /// one bit along the rows, then across them, and shrunk again. Only beside bits that clusters set.
 SURFELAO_MASK_INLINE Int16 close(const MaskRaster& raster, Int16 m, Int16 loose)
@@ -754,20 +764,24 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
         float openness = openness_of(raster, open, above, n);
         const float fill_weight = (1.0f - openness - kFillFrom) / kFillRange;
         if (world.settings.fill && fill_weight > 0.0f && openness > 0.0f) {
+            alignas(64) std::uint32_t filled[kMaskWords];
             for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
                 // what lies below the horizon is no opening
                 const Int16 closed = load(mask + w) | ~load(above + w);
-                store(open + w, ~fill(raster, closed, load(mask + kMaskWords + w)));
+                store(filled + w, fill(raster, closed, load(mask + kMaskWords + w)));
+                store(open + w, openings(~closed, load(filled + w)));
             }
-            const float filled = openness_of(raster, open, above, n);
-            openness += (fill_weight < 1.0f ? fill_weight : 1.0f) * (filled - openness);
+            const float cracks = openness - openness_of(raster, open, above, n);
+            openness -= (fill_weight < 1.0f ? fill_weight : 1.0f) * kFillShare * cracks;
 
             const float close_weight = (1.0f - openness - kCloseFrom) / kCloseRange;
-            if (close_weight > 0.0f && openness > 0.0f) {
+            if (world.settings.close > 0.0f && close_weight > 0.0f && openness > 0.0f) {
                 for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
-                    store(open + w, ~close(raster, ~load(open + w), load(mask + kMaskWords + w)));
+                    store(open + w, ~close(raster, load(filled + w), load(mask + kMaskWords + w)));
                 const float sealed = openness_of(raster, open, above, n);
-                openness += (close_weight < 1.0f ? close_weight : 1.0f) * (sealed - openness);
+                if (sealed < openness)
+                    openness += (close_weight < 1.0f ? close_weight : 1.0f) * world.settings.close *
+                                (sealed - openness);
             }
         }
         openness = openness < 0.0f ? 0.0f : openness > 1.0f ? 1.0f : openness;

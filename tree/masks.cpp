@@ -102,6 +102,8 @@ constexpr FamilyPoint kFamily[] = {{0.9f, 0.3f, 0.2f, 0.18f},
                                    {0.2f, 0.015f, 0.015f, 0.03f},
                                    {0.1f, 0.007f, 0.007f, 0.015f}};
 constexpr float kRelaxedCluster = 0.9f;  ///< a larger rectangle could swallow its receiver
+/// Cracks shrink with the clusters: up to this s none is two bits wide, from twice that many are.
+constexpr float kNarrowCracks = 0.35f;
 
 float between(float a, float b, float t)
 {
@@ -132,6 +134,7 @@ MaskSettings mask_settings(const MaskOptions& options)
     settings.share_leaf = between(a.share_leaf, b.share_leaf, t);
     settings.share_inner = between(a.share_inner, b.share_inner, t);
     settings.graze = between(a.graze, b.graze, t);
+    settings.close = std::clamp(settings.cluster / kNarrowCracks - 1.0f, 0.0f, 1.0f);
     return settings;
 }
 

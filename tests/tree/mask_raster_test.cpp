@@ -247,6 +247,27 @@ TEST(MaskRaster, FillingKeepsHalfPlanes)
     EXPECT_EQ(filled[7], hole[7]) << "no cluster beside it";
 }
 
+// Two cracks of one bit that filling closes: one by itself, one that ends in an opening.
+TEST(MaskRaster, ANotchInTheRimOfAnOpeningIsNoCrack)
+{
+    const MaskRaster& raster = mask_raster();
+    alignas(64) std::uint32_t mask[kLanes];
+    std::fill(mask, mask + kLanes, ~0u);
+    mask[3] = ~(1u << 20);
+    for (int y = 8; y < 12; ++y)
+        mask[y] = ~(0xffu << 4);
+    mask[12] = ~(1u << 8);
+    alignas(64) std::uint32_t filled[kLanes];
+    store(filled, fill(raster, load(mask), all(~0u)));
+    EXPECT_EQ(filled[3], ~0u);
+    EXPECT_EQ(filled[12], ~0u);
+
+    alignas(64) std::uint32_t open[kLanes];
+    store(open, openings(~load(mask), load(filled)));
+    for (int y = 0; y < kLanes; ++y)
+        EXPECT_EQ(open[y], y == 3 ? 0u : ~mask[y]) << "row " << y;
+}
+
 // A fan right above, off by one rounding: edges through a face's centre, all but upright.
 TEST(MaskRaster, SlicesThatMeetOverhead)
 {
