@@ -98,9 +98,7 @@ std::vector<Engine> all_engines()
         masks("GPU m. draft", Where::gpu, MaskOptions::kDraft, kMasksDraft),
         masks("GPU m. good", Where::gpu, MaskOptions::kGood, kMasksGood),
         masks("GPU m. best", Where::gpu, MaskOptions::kBest, kMasksBest),
-        disks("GPU d. draft", Where::gpu, kDraftOpening, kDisksDraft),
         disks("GPU d. good", Where::gpu, kGoodOpening, kDisksGood),
-        disks("GPU d. best", Where::gpu, kBestOpening, kDisksBest),
     };
 }
 
