@@ -102,9 +102,12 @@ TEST(GpuDisks, LimitsFalloffKernelAndStrengthEqualTheCpu)
                  "Bunnell's kernel");
 }
 
-TEST(GpuDisks, OpeningZeroEqualsTheCpu)
+TEST(GpuDisks, EveryOpeningEqualsTheCpu)
 {
-    expect_twins(World(scenes::bumpy_sphere(12)), {.opening = 0.0f}, "every surfel");
+    const World world(scenes::bumpy_sphere(12));
+    for (const float opening : {kDraftOpening, kGoodOpening, kBestOpening})
+        expect_twins(world, {.opening = opening}, "a quality's opening");
+    expect_twins(world, {.opening = 0.0f}, "every surfel");
 }
 
 // llvmpipe ends loops after 65,535 rounds, so a longer list must be cut and gone on with. Inside a
