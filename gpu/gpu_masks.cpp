@@ -33,8 +33,7 @@ constexpr int kStepLimit = 8192;
 constexpr int kHalves = 2;
 constexpr std::array<const char*, 4> kHalfOutputs = {"words0", "words1", "loose0", "loose1"};
 
-/// The tree in preorder, kMaskFirstChild replaced by the node after the subtree; open_radius
-/// -0 tells a triangle from an exact rectangle.
+/// The tree in preorder, kMaskFirstChild replaced by the node after the subtree.
 std::vector<MaskNode> in_preorder(const MaskTree& tree)
 {
     std::vector<MaskNode> nodes;
@@ -56,12 +55,10 @@ std::vector<MaskNode> in_preorder(const MaskTree& tree)
             continue;
         }
         const auto written = static_cast<std::uint32_t>(nodes.size());
-        MaskNode& node = nodes.emplace_back(tree.nodes[visit.node]);
+        const MaskNode& node = nodes.emplace_back(tree.nodes[visit.node]);
         stack.push_back({visit.node, written, true});
         const std::uint32_t first_child = node.links & kMaskFirstChild;
-        if (first_child == 0) {
-            node.open_radius = -0.0f;
-        } else {
+        if (first_child != 0) {
             stack.push_back({first_child + 1, 0, false});
             stack.push_back({first_child, 0, false});
         }

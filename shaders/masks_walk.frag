@@ -8,7 +8,7 @@
 // Drawn by   gpu/gpu_masks.cpp, in pieces, once per half face
 // Reads      u_nodes           RGBA32UI, 4 texels a node: MaskNode of tree/mask_tree.h in preorder,
 //                              the last word the flags of tree/mask_kernel.h and the node after
-//                              its subtree; open_radius -0: a triangle
+//                              its subtree
 //            u_node_count
 //            u_receivers       RGBA32F, 2 texels a slot, mask frame: position.xyz 0 | normal.xyz 0
 //            u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
@@ -17,7 +17,7 @@
 //            u_groups          RGBA32F, 3 texels a group of 16 slots (disks_gather.frag)
 //            u_cluster, u_cluster_limit, u_share, u_graze, u_one_sided, u_max_distance  MaskSettings of
 //                              tree/mask_kernel.h; u_share is share_leaf; no limit: the largest float
-//            u_exact_radius    nodes with no larger open_radius are drawn as they are
+//            u_exact_radius    nodes with no larger open_radius are drawn as they are; -1: leaves alone
 //            u_words0, u_words1, u_loose0, u_loose1, u_at  the outputs of the draw before
 //            u_continued       0: there was none
 //            u_step_limit      nodes looked at in one draw; each may go round two loops
@@ -56,11 +56,11 @@ layout(location = 2) out uvec4 out_loose0;
 layout(location = 3) out uvec4 out_loose1;
 layout(location = 4) out uint out_at;
 
-const uint  kTriangle        = 0x80000000u;  // open_radius -0
-const uint  kSheet           = 0x80000000u;  // these four as in tree/mask_kernel.h
+const uint  kSheet           = 0x80000000u;  // these five as in tree/mask_kernel.h
 const uint  kSolid           = 0x40000000u;
 const uint  kHollow          = 0x20000000u;
-const uint  kNext            = 0x1FFFFFFFu;
+const uint  kTriangle        = 0x10000000u;
+const uint  kNext            = 0x0FFFFFFFu;
 const float kHollowGrowth    = 1.1;
 const float kImportanceFloor = 0.1;
 const float kFaceReach       = 1.4143;  // a ball's radius to the planes that bound it, sqrt(2)
@@ -71,6 +71,13 @@ vec4 within_half(vec3 p)
 {
     float v = u_half == 0 ? -p.z : p.z;
     return vec4(p.x - p.y, p.x + p.y, p.x - v, v);
+}
+
+// Of a node, unit; zero where there is no area.
+vec3 normal_of(vec3 axis_a, vec3 axis_b)
+{
+    vec3 n = cross(axis_a, axis_b);
+    return n * inversesqrt(max(dot(n, n), kTinyLength2));
 }
 
 void main()
@@ -116,9 +123,10 @@ void main()
         do {
             ++steps;
             vec4  ball  = uintBitsToFloat(texelFetch(u_nodes, at * 4));
-            vec4  plane = uintBitsToFloat(texelFetch(u_nodes, at * 4 + 1));
-            uint  opening     = texelFetch(u_nodes, at * 4 + 2).w;
-            float open_radius = uintBitsToFloat(opening);
+            float thickness = uintBitsToFloat(texelFetch(u_nodes, at * 4 + 1).w);
+            vec4  axis_a    = uintBitsToFloat(texelFetch(u_nodes, at * 4 + 2));
+            uvec4 axis_b    = texelFetch(u_nodes, at * 4 + 3);
+            float open_radius = axis_a.w;
             // how high above any of the group's horizons it may reach, and so how much it may weigh
             vec3  to_node   = ball.xyz - group.xyz;
             float distance2 = max(dot(to_node, to_node), 1e-30);
@@ -128,9 +136,9 @@ void main()
             float aside     = sqrt(max(distance2 - height * height, 0.0));
             float base      = height < cone.w * distance ? height * cone.w + aside * cone_sin
                                                          : distance;
-            float facing    = dot(plane.xyz, cone.xyz);
+            float facing    = dot(normal_of(axis_a.xyz, uintBitsToFloat(axis_b.xyz)), cone.xyz);
             float tilt      = sqrt(max(1.0 - facing * facing, 0.0)) + cone_sin;
-            float top       = base + min(ball.w, ball.w * tilt + plane.w) + sag;
+            float top       = base + min(ball.w, ball.w * tilt + thickness) + sag;
             float nearest   = distance - ball.w;
             vec4  within    = within_half(u_face * (ball.xyz - position));
             bool  before    = all(greaterThan(within, vec4(-kFaceReach * ball.w)));
@@ -140,10 +148,9 @@ void main()
             float cluster   = min(u_cluster * relax, u_cluster_limit);
             shared = group.w < u_share * relax * nearest;
             float from_all = shared ? distance : distance - group.w;
-            found = alive && (opening == kTriangle || open_radius <= u_exact_radius ||
-                              open_radius < cluster * from_all);
+            found = alive && (open_radius <= u_exact_radius || open_radius < cluster * from_all);
             if (!alive)
-                at = int(texelFetch(u_nodes, at * 4 + 3).w & kNext);
+                at = int(axis_b.w & kNext);
             else if (!found)
                 ++at;
         } while (!found && at < u_node_count && steps < u_step_limit);
@@ -152,27 +159,30 @@ void main()
 
         uvec4 third    = texelFetch(u_nodes, at * 4 + 2);
         uvec4 last     = texelFetch(u_nodes, at * 4 + 3);
-        bool  triangle = third.w == kTriangle;
-        bool  exact    = triangle || uintBitsToFloat(third.w) <= u_exact_radius;
+        bool  triangle = (last.w & kTriangle) != 0u;
+        bool  exact    = uintBitsToFloat(third.w) <= u_exact_radius;
         bool  loose    = !exact && (last.w & kSheet) != 0u;
         vec4  ball     = uintBitsToFloat(texelFetch(u_nodes, at * 4));
         vec3  center   = u_face * (ball.xyz - position);
         float radius   = ball.w;
         // which side is seen: shared polygons from the group's centre
-        vec3  plane_normal = uintBitsToFloat(texelFetch(u_nodes, at * 4 + 1).xyz);
-        float away         = dot(plane_normal, ball.xyz - group.xyz);
-        float own_away     = shared ? away : dot(plane_normal, ball.xyz - position);
+        vec3  axis_a   = uintBitsToFloat(third.xyz);
+        vec3  axis_b   = uintBitsToFloat(last.xyz);
+        vec3  normal   = normal_of(axis_a, axis_b);
+        float away     = dot(normal, ball.xyz - group.xyz);
+        float own_away = shared ? away : dot(normal, ball.xyz - position);
         bool  dropped = u_one_sided != 0 && (last.w & kSolid) != 0u && own_away < 0.0;
         float grow    = loose && (last.w & kHollow) != 0u && away < 0.0 ? kHollowGrowth : 1.0;
-        vec3  axis_u  = u_face * (grow * uintBitsToFloat(third.xyz));
-        vec3  axis_v  = u_face * (grow * uintBitsToFloat(last.xyz));
+        vec3  skew = u_face * uintBitsToFloat(texelFetch(u_nodes, at * 4 + 1).xyz);
+        axis_a     = u_face * (grow * axis_a);
+        axis_b     = u_face * (grow * axis_b);
         at = int(last.w & kNext);
 
         // planes through the receiver and each edge, turned inward; a triangle's first counts twice
-        vec3 c0 = triangle ? center + axis_u : center + axis_u + axis_v;
-        vec3 c1 = triangle ? center + axis_v : center - axis_u + axis_v;
-        vec3 c2 = center - axis_u - axis_v;
-        vec3 c3 = triangle ? c0 : center + axis_u - axis_v;
+        vec3 c0 = center + skew + axis_a;
+        vec3 c1 = center - skew + axis_b;
+        vec3 c2 = center + skew - axis_a;
+        vec3 c3 = triangle ? c0 : center - skew - axis_b;
         vec3 n0 = cross(c0, c1 - c0);
         vec3 n3 = triangle ? n0 : cross(c3, c0 - c3);
         float volume = dot(n0, c2 - c1);
@@ -186,7 +196,7 @@ void main()
                         bits_of(side3, q + 1);
 
         // planes beyond the limit are dropped, polygons that cross it cut to a cone
-        vec3  normal = cross(c1 - c0, c2 - c0);
+        normal = cross(c1 - c0, c2 - c0);
         normal *= inversesqrt(max(dot(normal, normal), kTinyLength2));
         float height = dot(normal, c0);
         if (height < 0.0) {

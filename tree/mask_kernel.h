@@ -51,8 +51,10 @@ constexpr std::uint32_t kMaskSheet = 0x80000000u;
 constexpr std::uint32_t kMaskSolid = 0x40000000u;
 /// The patch is hollow on the side where its normal points.
 constexpr std::uint32_t kMaskHollow = 0x20000000u;
-/// The rest: the first of two children side by side; 0 = triangle.
-constexpr std::uint32_t kMaskFirstChild = 0x1fffffffu;
+/// The node has three corners only.
+constexpr std::uint32_t kMaskTriangle = 0x10000000u;
+/// The rest: the first of two children side by side; 0 = leaf.
+constexpr std::uint32_t kMaskFirstChild = 0x0fffffffu;
 
 /// A growing array of plain values.
 template <typename T>

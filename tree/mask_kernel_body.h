@@ -290,32 +290,30 @@ struct Node16 {
 
     Vector16 center() const { return {field[0], field[1], field[2]}; }
     Float16 radius() const { return field[3]; }
-    Vector16 normal() const { return {field[4], field[5], field[6]}; }
+    Vector16 skew() const { return {field[4], field[5], field[6]}; }
     Float16 thickness() const { return field[7]; }
-    Vector16 axis_u() const { return {field[8], field[9], field[10]}; }
+    Vector16 axis_a() const { return {field[8], field[9], field[10]}; }
     Float16 open_radius() const { return field[11]; }
-    Vector16 axis_v() const { return {field[12], field[13], field[14]}; }
+    Vector16 axis_b() const { return {field[12], field[13], field[14]}; }
     Int16 links() const { return as_int(field[15]); }
     Int16 first_child() const { return links() & all(kMaskFirstChild); }
 
-    SURFELAO_MASK_INLINE void quad(Vector16 origin, Float16 grow, Vector16* corner) const
+    /// Unit; zero where there is no area.
+    SURFELAO_MASK_INLINE Vector16 normal() const
     {
-        const Vector16 c = center() - origin;
-        const Vector16 u = axis_u() * grow;
-        const Vector16 v = axis_v() * grow;
-        const Vector16 sum = u + v;
-        const Vector16 difference = u - v;
-        corner[0] = c + sum;
-        corner[1] = c - difference;
-        corner[2] = c - sum;
-        corner[3] = c + difference;
+        const Vector16 n = cross(axis_a(), axis_b());
+        return n * inverse_sqrt(max(dot(n, n), all(kTinyComponent)));
     }
-    SURFELAO_MASK_INLINE void triangle(Vector16 origin, Vector16* corner) const
+    /// A triangle's are the first three.
+    SURFELAO_MASK_INLINE void corners(Vector16 origin, Float16 grow, Vector16* corner) const
     {
         const Vector16 c = center() - origin;
-        corner[0] = c + axis_u();
-        corner[1] = c + axis_v();
-        corner[2] = c - (axis_u() + axis_v());
+        const Vector16 a = axis_a() * grow;
+        const Vector16 b = axis_b() * grow;
+        corner[0] = c + skew() + a;
+        corner[1] = c - skew() + b;
+        corner[2] = c + skew() - a;
+        corner[3] = c - skew() - b;
     }
 };
 
@@ -388,12 +386,13 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         const Float16 aside = sqrt(max(fms(distance, distance, height * height), zero));
         const Float16 raised = fma(height, cone_cos, aside * cone_sin);
         const Float16 base = select(height < cone_cos * distance, raised, distance);
-        const Float16 facing = dot(node.normal(), axis);
+        const Vector16 normal = node.normal();
+        const Float16 facing = dot(normal, axis);
         const Float16 tilt = sqrt(max(all(1.0f) - facing * facing, zero)) + cone_sin;
         const Float16 slab = min(node.radius(), fma(node.radius(), tilt, node.thickness()));
         const Float16 top = base + slab + all(group.rise);
         const Float16 nearest = distance - node.radius();
-        const Float16 away = dot(to_node, node.normal());
+        const Float16 away = dot(to_node, normal);
         const Lanes one_sided = nonzero(node.links() & solid);
         const Lanes alive = active &
                             (top > max(all(settings.graze) * (nearest - group_radius), zero)) &
@@ -402,8 +401,8 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         const Float16 relax = inverse_sqrt(weight);
 
         const Float16 cluster = min(all(settings.cluster) * relax, all(settings.cluster_limit));
-        const Lanes is_triangle = without(active, nonzero(node.first_child()));
-        const Lanes exact = is_triangle | (node.open_radius() < exact_radius);
+        const Lanes is_triangle = nonzero(node.links() & all(kMaskTriangle));
+        const Lanes exact = node.open_radius() < exact_radius;
         const Lanes sheet = without(negative(node.links()), exact);
         // a front that is hollow goes on beyond its rim
         const Lanes hollow = nonzero(node.links() & all(kMaskHollow)) & (away < zero);
@@ -415,9 +414,8 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         const Lanes drawn = without(shared, one_sided & (away < zero));
         if (bits(drawn) != 0) {
             Vector16 corner[4];
-            node.triangle(origin, corner);
+            node.corners(origin, grow, corner);
             triangles.add(corner, 0, drawn & is_triangle);
-            node.quad(origin, grow, corner);
             rectangles.add(corner, 0, without(drawn, sheet | is_triangle));
             clusters.add(corner, 0, drawn & sheet);
         }
@@ -432,11 +430,9 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
                 const Float16 radius = select(one_sided, zero - node.radius(), node.radius());
                 const Vector16 world_origin = {zero, zero, zero};
                 Vector16 corner[4];
-                node.triangle(world_origin, corner);
+                node.corners(world_origin, grow, corner);
                 append<3>(scratch.triangles, corner, radius, listed & is_triangle);
-                node.quad(world_origin, grow, corner);
-                append<4>(scratch.rectangles, corner, node.radius(),
-                          without(listed, sheet | is_triangle));
+                append<4>(scratch.rectangles, corner, radius, without(listed, sheet | is_triangle));
                 append<4>(scratch.clusters, corner, radius, listed & sheet);
             }
         } else {

@@ -19,6 +19,12 @@ namespace {
 /// flatness.
 constexpr float kFlatnessPenalty = 5.0f;
 
+/// A flat node that is no exact quadrilateral has a rim that its rectangle misses, and what it is
+/// made of is exact and cheap: it is opened as if its radius were larger by this factor. Nothing
+/// from a flatness of 1 - 1/kFlatSlope down.
+constexpr float kFlatPenalty = 1.0f;
+constexpr float kFlatSlope = 1000.0f;
+
 /// Rectangles of flat nodes are drawn a little larger: their neighbours most likely continue the
 /// same plane, and the rim closes the cracks. None from a flatness of 1 - 1/kDilationSlope down.
 constexpr float kDilation = 0.08f;
@@ -125,8 +131,10 @@ void set_rectangles(Columns& of)
 
     const Lanes flatness = of.area > 0.0f ? least(one, of.seen_area / of.area) : zero;
     const Lanes cover = spread_area > 0.0f ? of.area / spread_area : one;
-    of.open_radius = of.radius * (1.0f + kFlatnessPenalty * (1.0f - flatness)) +
-                     of.radius * kGapPenalty * most(zero, kSheetCover - cover);
+    of.open_radius = of.radius *
+                     (1.0f + kFlatnessPenalty * (1.0f - flatness) +
+                      kGapPenalty * most(zero, kSheetCover - cover)) *
+                     (1.0f + kFlatPenalty * most(zero, 1.0f - kFlatSlope * (1.0f - flatness)));
     of.may_be_whole =
         (flatness > 1.0f - kWhole) & (absolute(spread_area - of.area) < 10.0f * kWhole * of.area);
 
@@ -152,7 +160,7 @@ bool make_whole_along(glm::vec3 axis, const MaskPatch& patch, const MaskCorners&
     glm::vec3 low(std::numeric_limits<float>::max());
     glm::vec3 high(-std::numeric_limits<float>::max());
     for (std::size_t i = 0; i < corners.count; ++i) {
-        for (std::size_t corner = 0; corner < 3; ++corner) {
+        for (std::size_t corner = 0; corner < 4; ++corner) {
             const glm::vec3 d = corners.at(corner, i) - patch.center;
             const glm::vec3 at(glm::dot(d, axis), glm::dot(d, across), glm::dot(d, patch.normal));
             low = glm::min(low, at);
@@ -173,72 +181,121 @@ bool make_whole_along(glm::vec3 axis, const MaskPatch& patch, const MaskCorners&
     node.center = patch.center + middle.x * axis + middle.y * across;
     node.radius = std::sqrt(half.x * half.x + half.y * half.y);
     node.open_radius = 0.0f;
-    node.axis_u = half.x * axis;
-    node.axis_v = half.y * across;
+    node.skew = glm::vec3(0.0f);
+    node.axis_a = half.x * axis + half.y * across;
+    node.axis_b = half.y * across - half.x * axis;
     node.links &= ~kMaskSheet;
     return true;
 }
 
 }  // namespace
 
-void set_triangles(std::span<const MaskPatchNode> nodes, const MaskCorners& corners)
+void set_tiles(std::span<const MaskPatchNode> nodes, const MaskCorners& corners)
 {
+    using Vector = std::array<Lanes, 3>;
     const Lanes zero = all_lanes(0.0f);
+    const auto minus = [](const Vector& u, const Vector& v) {
+        return Vector{u[0] - v[0], u[1] - v[1], u[2] - v[2]};
+    };
+    const auto plus = [](const Vector& u, const Vector& v) {
+        return Vector{u[0] + v[0], u[1] + v[1], u[2] + v[2]};
+    };
+    const auto times = [](const Vector& u, Lanes f) {
+        return Vector{u[0] * f, u[1] * f, u[2] * f};
+    };
+    const auto dot = [](const Vector& u, const Vector& v) {
+        return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+    };
+    const auto half_cross = [](const Vector& u, const Vector& v) {
+        return Vector{0.5f * (u[1] * v[2] - v[1] * u[2]), 0.5f * (u[2] * v[0] - v[2] * u[0]),
+                      0.5f * (u[0] * v[1] - v[0] * u[1])};
+    };
     for (std::size_t begin = 0; begin < nodes.size(); begin += kLaneCount) {
-        // as many triangles as lanes: [corner][axis]
-        std::array<std::array<Lanes, 3>, 3> p;
-        for (std::size_t corner = 0; corner < 3; ++corner) {
+        // as many tiles as lanes: [corner][axis]
+        std::array<Vector, 4> p;
+        for (std::size_t corner = 0; corner < 4; ++corner) {
             for (std::size_t axis = 0; axis < 3; ++axis)
                 p[corner][axis] = load_lanes(corners.column(corner, axis) + begin);
         }
-        const auto& [a, b, c] = p;
-        std::array<Lanes, 3> center, ab, ac, from_a, from_b, from_c;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            center[axis] = (a[axis] + b[axis] + c[axis]) * (1.0f / 3.0f);
-            ab[axis] = b[axis] - a[axis];
-            ac[axis] = c[axis] - a[axis];
-            from_a[axis] = a[axis] - center[axis];
-            from_b[axis] = b[axis] - center[axis];
-            from_c[axis] = c[axis] - center[axis];
-        }
-        const auto dot = [](const std::array<Lanes, 3>& u, const std::array<Lanes, 3>& v) {
-            return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-        };
-        const std::array<Lanes, 3> vector_area = {0.5f * (ab[1] * ac[2] - ac[1] * ab[2]),
-                                                  0.5f * (ab[2] * ac[0] - ac[2] * ab[0]),
-                                                  0.5f * (ab[0] * ac[1] - ac[0] * ab[1])};
-        const Lanes area = root(dot(vector_area, vector_area));
-        const std::array<Lanes, 3> normal = {area > 0.0f ? vector_area[0] / area : zero,
-                                             area > 0.0f ? vector_area[1] / area : zero,
-                                             area > 0.0f ? vector_area[2] / area : zero + 1.0f};
-        const Lanes radius =
-            root(most(most(dot(from_a, from_a), dot(from_b, from_b)), dot(from_c, from_c)));
-        const Lanes weight = area * (1.0f / 12.0f);
+        const auto& [a, b, c, d] = p;
+        // of the triangles (a, b, c) and (c, d, a); the second of a single one has no area
+        const Vector diagonal = minus(c, a);
+        const Vector first = half_cross(minus(b, a), diagonal);
+        const Vector second = half_cross(diagonal, minus(d, a));
+        const Vector vector_area = plus(first, second);
+        const Lanes first_area = root(dot(first, first)), second_area = root(dot(second, second));
+        const Lanes area = first_area + second_area;
+        const Lanes seen_area = root(dot(vector_area, vector_area));
+        const Lanes share = area > 0.0f ? second_area / area : zero;
+        const Vector first_center = times(plus(plus(a, b), c), all_lanes(1.0f / 3.0f));
+        const Vector apart = times(minus(d, b), all_lanes(1.0f / 3.0f));
+        const Vector center = plus(first_center, times(apart, share));
+        const Vector from_a = minus(a, center), from_b = minus(b, center),
+                     from_c = minus(c, center), from_d = minus(d, center);
+        const Vector to_first = times(apart, -share);
+        const Vector to_second = times(apart, 1.0f - share);
+        const Vector normal = {seen_area > 0.0f ? vector_area[0] / seen_area : zero,
+                               seen_area > 0.0f ? vector_area[1] / seen_area : zero,
+                               seen_area > 0.0f ? vector_area[2] / seen_area : zero + 1.0f};
+        const Lanes bulge = dot(first, to_first) + dot(second, to_second);
+        const Lanes radius = root(most(most(dot(from_a, from_a), dot(from_b, from_b)),
+                                       most(dot(from_c, from_c), dot(from_d, from_d))));
+        const Lanes thickness =
+            most(most(absolute(dot(from_a, normal)), absolute(dot(from_b, normal))),
+                 most(absolute(dot(from_c, normal)), absolute(dot(from_d, normal))));
+        // the integral of x x^T over a triangle is a twelfth of its area times the sum of those of
+        // its corners and nine times that of its centroid
+        const Lanes first_weight = first_area * (1.0f / 12.0f);
+        const Lanes second_weight = second_area * (1.0f / 12.0f);
         const auto spread = [&](std::size_t i, std::size_t k) {
-            return weight * (from_a[i] * from_a[k] + from_b[i] * from_b[k] + from_c[i] * from_c[k]);
+            const Lanes both = from_a[i] * from_a[k] + from_c[i] * from_c[k];
+            return first_weight *
+                       (both + from_b[i] * from_b[k] + 9.0f * to_first[i] * to_first[k]) +
+                   second_weight *
+                       (both + from_d[i] * from_d[k] + 9.0f * to_second[i] * to_second[k]);
         };
 
-        // from a column for each number to a row for each triangle
+        // the fourth corner of a triangle is its centroid
+        const LaneMask alone = (c[0] == d[0]) & (c[1] == d[1]) & (c[2] == d[2]);
+        Vector fourth;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            fourth[axis] = alone ? zero : from_d[axis];
+        const Vector even = times(plus(from_a, from_c), all_lanes(0.25f));
+        const Vector odd = times(plus(from_b, fourth), all_lanes(0.25f));
+        const Vector middle = plus(even, odd);
+        const Vector skew = minus(even, odd);
+        const Vector axis_a = times(minus(from_a, from_c), all_lanes(0.5f));
+        const Vector axis_b = times(minus(from_b, fourth), all_lanes(0.5f));
+        const auto beyond = [&](const Vector& corner) {
+            const Vector from = minus(corner, middle);
+            return dot(from, from);
+        };
+        const Lanes node_radius =
+            root(most(most(beyond(from_a), beyond(from_b)), most(beyond(from_c), beyond(fourth))));
+        const Vector node_center = plus(center, middle);
+        // from a column for each number to a row for each tile
         std::array<std::array<Lanes, kLaneCount>, 5> patch = {
             {{center[0], center[1], center[2], area},
-             {vector_area[0], vector_area[1], vector_area[2], area},
+             {vector_area[0], vector_area[1], vector_area[2], seen_area},
              {normal[0], normal[1], normal[2], radius},
-             {spread(0, 0), spread(0, 1), spread(0, 2), zero},
-             {spread(1, 1), spread(1, 2), spread(2, 2), zero}}};
+             {spread(0, 0), spread(0, 1), spread(0, 2), thickness},
+             {spread(1, 1), spread(1, 2), spread(2, 2), bulge}}};
         std::array<std::array<Lanes, kLaneCount>, 4> node = {
-            {{center[0], center[1], center[2], radius},
-             {normal[0], normal[1], normal[2], zero},
-             {from_a[0], from_a[1], from_a[2], zero},
-             {from_b[0], from_b[1], from_b[2], zero}}};
+            {{node_center[0], node_center[1], node_center[2], node_radius},
+             {skew[0], skew[1], skew[2], alone ? zero : absolute(dot(skew, normal))},
+             {axis_a[0], axis_a[1], axis_a[2], all_lanes(-1.0f)},
+             {axis_b[0], axis_b[1], axis_b[2], zero}}};
         for (auto& [x, y, z, w] : patch)
             transpose(x, y, z, w);
         for (auto& [x, y, z, w] : node)
             transpose(x, y, z, w);
         for (std::size_t i = 0; i < std::min(kLaneCount, nodes.size() - begin); ++i) {
-            *nodes[begin + i].patch = std::bit_cast<MaskPatch>(
+            const MaskPatchNode& out = nodes[begin + i];
+            *out.patch = std::bit_cast<MaskPatch>(
                 PatchRows{patch[0][i], patch[1][i], patch[2][i], patch[3][i], patch[4][i]});
-            *nodes[begin + i].node =
+            *out.node =
                 std::bit_cast<MaskNode>(NodeRows{node[0][i], node[1][i], node[2][i], node[3][i]});
+            out.node->links = alone[i] != 0 ? kMaskTriangle : 0;
         }
     }
 }
@@ -267,7 +324,7 @@ void join(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right,
     for (std::size_t i = 0; i < corners.count; i += kLaneCount) {
         const auto rest = static_cast<std::int32_t>(corners.count - i);
         const LaneMask inside = LaneMask{0, 1, 2, 3} < rest;
-        for (std::size_t corner = 0; corner < 3; ++corner) {
+        for (std::size_t corner = 0; corner < 4; ++corner) {
             const Lanes x = load_lanes(corners.column(corner, 0) + i) - c.x;
             const Lanes y = load_lanes(corners.column(corner, 1) + i) - c.y;
             const Lanes z = load_lanes(corners.column(corner, 2) + i) - c.z;
@@ -312,16 +369,16 @@ void show_patches(std::span<MaskPatchNode> nodes)
 
         // and back
         const Columns& of = columns;
-        const Lanes across_x = of.normal_y * of.axis_z - of.axis_y * of.normal_z;
-        const Lanes across_y = of.normal_z * of.axis_x - of.axis_z * of.normal_x;
-        const Lanes across_z = of.normal_x * of.axis_y - of.axis_x * of.normal_y;
+        const Lanes across_x = of.length_v * (of.normal_y * of.axis_z - of.axis_y * of.normal_z);
+        const Lanes across_y = of.length_v * (of.normal_z * of.axis_x - of.axis_z * of.normal_x);
+        const Lanes across_z = of.length_v * (of.normal_x * of.axis_y - of.axis_x * of.normal_y);
+        const Lanes along_x = of.length_u * of.axis_x, along_y = of.length_u * of.axis_y,
+                    along_z = of.length_u * of.axis_z, zero = all_lanes(0.0f);
         std::array<std::array<Lanes, kLaneCount>, 4> node = {
             {{patch[0][0], patch[0][1], patch[0][2], of.radius},
-             {of.normal_x, of.normal_y, of.normal_z, patch[3][3]},
-             {of.length_u * of.axis_x, of.length_u * of.axis_y, of.length_u * of.axis_z,
-              of.open_radius},
-             {of.length_v * across_x, of.length_v * across_y, of.length_v * across_z,
-              all_lanes(0.0f)}}};
+             {zero, zero, zero, patch[3][3]},
+             {along_x + across_x, along_y + across_y, along_z + across_z, of.open_radius},
+             {across_x - along_x, across_y - along_y, across_z - along_z, zero}}};
         for (auto& [x, y, z, w] : node)
             transpose(x, y, z, w);
         for (std::size_t i = 0; i < count; ++i) {
@@ -339,8 +396,9 @@ void show_patches(std::span<MaskPatchNode> nodes)
 
 void make_whole(const MaskPatch& patch, const MaskCorners& corners, MaskNode& node)
 {
-    const float u2 = glm::dot(node.axis_u, node.axis_u), v2 = glm::dot(node.axis_v, node.axis_v);
-    if (make_whole_along(glm::normalize(node.axis_u), patch, corners, node) || u2 > 1.2f * v2)
+    const glm::vec3 u = node.axis_a - node.axis_b, v = node.axis_a + node.axis_b;
+    if (make_whole_along(glm::normalize(u), patch, corners, node) ||
+        glm::dot(u, u) > 1.2f * glm::dot(v, v))
         return;
     // a square has no axes of its own: its triangles' edges lie along them
     const glm::vec3 a = corners.at(0, 0), b = corners.at(1, 0), c = corners.at(2, 0);

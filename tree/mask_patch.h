@@ -29,14 +29,14 @@ struct alignas(16) MaskPatch {
     float bulge;
 };
 
-/// Corners of triangles as nine columns of `stride` values: x, y and z of the first corners, then
-/// of the second and the third. Readable for kSlack values beyond the end, whatever stands there.
+/// Corners of tiles as twelve columns of `stride` values: x, y and z of the first corners, then of
+/// the second, third and fourth. Readable for kSlack values beyond the end, whatever stands there.
 struct MaskCorners {
     static constexpr std::size_t kSlack = 3;
 
     const float* values;
     std::size_t stride;
-    std::size_t count;  ///< of triangles
+    std::size_t count;  ///< of tiles
 
     [[nodiscard]] const float* column(std::size_t corner, std::size_t axis) const
     {
@@ -59,8 +59,8 @@ struct MaskPatchNode {
     bool may_be_whole;  ///< set by show_patches: make_whole is to be asked
 };
 
-/// The patches of single triangles and their nodes.
-void set_triangles(std::span<const MaskPatchNode> nodes, const MaskCorners& corners);
+/// The patches of tiles and their nodes.
+void set_tiles(std::span<const MaskPatchNode> nodes, const MaskCorners& corners);
 
 /// The patch of two patches. Radius and thickness are bounds that follow from the children's.
 void join(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right);

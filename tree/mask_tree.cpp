@@ -4,6 +4,7 @@
 #include "tree/mask_kernel.h"
 #include "tree/mask_patch.h"
 #include "tree/mask_solids.h"
+#include "tree/mask_tiles.h"
 #include "tree/mask_winding.h"
 #include "tree/masks.h"
 #include "tree/part.h"
@@ -38,7 +39,7 @@ constexpr std::size_t kParallelNode = 2048;  ///< smaller subtrees are built by 
 /// is built along them is cut along them.
 struct alignas(16) Key {
     std::array<float, 6> at;
-    std::uint32_t triangle;
+    std::uint32_t tile;
     std::uint32_t padding;
 };
 
@@ -126,7 +127,7 @@ struct Bundle {
     std::array<Node, kNodes> nodes;
     std::array<std::uint8_t, kBundle> leaf;   ///< the node of each triangle
     std::array<std::uint8_t, kBundle> inner;  ///< parents first
-    std::array<float, 9 * kStride> corners;   ///< columns, as in MaskCorners
+    std::array<float, 12 * kStride> corners;  ///< columns, as in MaskCorners
     std::array<MaskPatch, kNodes> patches;
     std::array<MaskPatchNode, kBundle> shown;
 };
@@ -139,9 +140,16 @@ public:
 
     RawVector<MaskNode> build()
     {
-        const std::size_t count = geometry_.triangles.size();
-        if (count == 0)
+        if (geometry_.triangles.empty())
             return {};
+        RawVector<glm::vec3> normals;
+        normals.resize(geometry_.triangles.size());
+        for_blocks(std::span(normals), [&](std::span<glm::vec3> block, std::size_t i) {
+            for (std::size_t t = 0; t < block.size(); ++t)
+                block[t] = normal_of(i * kPartBlock + t);
+        });
+        tiles_ = tiles_of(geometry_, normals);
+        const std::size_t count = tiles_.size();
         positions_.resize(geometry_.positions.size());
         for_blocks(std::span(positions_), [&](std::span<glm::vec3> block, std::size_t i) {
             for (std::size_t v = 0; v < block.size(); ++v)
@@ -151,7 +159,7 @@ public:
             side.resize(count);
         for_blocks(std::span(keys_[0]), [&](std::span<Key> block, std::size_t i) {
             for (std::size_t t = 0; t < block.size(); ++t)
-                block[t] = key_of(i * kPartBlock + t);
+                block[t] = key_of(i * kPartBlock + t, normals);
         });
         order_.resize(count);
         nodes_.resize(2 * count - 1);
@@ -160,17 +168,26 @@ public:
     }
 
 private:
-    Key key_of(std::size_t triangle) const
+    /// Zero where a triangle has no area.
+    glm::vec3 normal_of(std::size_t triangle) const
     {
         const glm::uvec3 t = geometry_.triangles[triangle];
-        const glm::vec3 a = geometry_.positions[t.x], b = geometry_.positions[t.y],
-                        c = geometry_.positions[t.z];
-        const glm::vec3 center = (a + b + c) * (1.0f / 3.0f);
-        const glm::vec3 cross = glm::cross(b - a, c - a);
+        const glm::vec3 a = geometry_.positions[t.x];
+        const glm::vec3 cross =
+            glm::cross(geometry_.positions[t.y] - a, geometry_.positions[t.z] - a);
         const float length = glm::length(cross);
-        const glm::vec3 normal = length > 0.0f ? cross / length : glm::vec3(0.0f);
+        return length > 0.0f ? cross / length : glm::vec3(0.0f);
+    }
+
+    Key key_of(std::size_t tile, std::span<const glm::vec3> normals) const
+    {
+        const auto& [t, triangles] = tiles_[tile];
+        const glm::vec3 a = geometry_.positions[t.x], b = geometry_.positions[t.y],
+                        c = geometry_.positions[t.z], d = geometry_.positions[t.w];
+        const glm::vec3 center = t.z != t.w ? (a + b + c + d) * 0.25f : (a + b + c) * (1.0f / 3.0f);
+        const glm::vec3 normal = normals[triangles[0]];
         return {{center.x, center.y, center.z, normal.x, normal.y, normal.z},
-                static_cast<std::uint32_t>(triangle),
+                static_cast<std::uint32_t>(tile),
                 0};
     }
 
@@ -206,7 +223,7 @@ private:
         show_patches({&shown, 1});
         if (shown.may_be_whole) {
             const std::size_t stride = count + MaskCorners::kSlack;
-            std::vector<float> columns(9 * stride);
+            std::vector<float> columns(12 * stride);
             for (std::size_t i = 0; i < count; ++i)
                 gather_corners(order_[begin + i], columns.data(), stride, i);
             make_whole(patch, {columns.data(), stride, count}, order_.data() + begin,
@@ -227,27 +244,35 @@ private:
         return begin + (parted ? below : keys.size() / 2);
     }
 
-    /// The corners of a triangle into row `i` of nine columns.
-    void gather_corners(std::uint32_t triangle, float* columns, std::size_t stride,
-                        std::size_t i) const
+    /// The corners of a tile into row `i` of twelve columns.
+    void gather_corners(std::uint32_t tile, float* columns, std::size_t stride, std::size_t i) const
     {
-        const glm::uvec3 t = geometry_.triangles[triangle];
-        for (int corner = 0; corner < 3; ++corner) {
+        gather_corners(tiles_[tile].corners, columns, stride, i);
+    }
+    void gather_corners(glm::uvec4 t, float* columns, std::size_t stride, std::size_t i) const
+    {
+        for (int corner = 0; corner < 4; ++corner) {
             const glm::vec3 p = positions_[t[corner]];
             for (int axis = 0; axis < 3; ++axis, columns += stride)
                 columns[i] = p[axis];
         }
     }
 
-    /// Of the triangles order[0 ...].
+    /// Of the tiles order[0 ...].
     void make_whole(const MaskPatch& patch, const MaskCorners& corners, const std::uint32_t* order,
                     MaskNode& node) const
     {
         surfelao::make_whole(patch, corners, node);
         const bool is_whole = node.open_radius == 0.0f;
-        if (is_whole && std::all_of(order, order + corners.count,
-                                    [&](std::uint32_t t) { return solid_[t] != 0; }))
+        if (is_whole &&
+            std::all_of(order, order + corners.count, [&](std::uint32_t t) { return is_solid(t); }))
             node.links |= kMaskSolid;
+    }
+
+    bool is_solid(std::uint32_t tile) const
+    {
+        const auto [first, second] = tiles_[tile].triangles;
+        return solid_[first] != 0 && solid_[second] != 0;
     }
 
     /// build_node for few triangles.
@@ -261,19 +286,19 @@ private:
             __builtin_prefetch(&nodes_[first + k], 1);
         for (std::size_t i = 0; i < count; ++i) {
             bundle.keys[0][i] = keys_[side][begin + i];
-            __builtin_prefetch(&geometry_.triangles[bundle.keys[0][i].triangle]);
+            __builtin_prefetch(&tiles_[bundle.keys[0][i].tile]);
         }
         std::uint32_t* const order = order_.data() + begin;
         const std::size_t inner_count = split_bundle(bundle, count, order);
         for (std::size_t i = 0; i < count; ++i) {
-            const glm::uvec3 t = geometry_.triangles[order[i]];
-            for (int corner = 0; corner < 3; ++corner)
+            const glm::uvec4 t = tiles_[order[i]].corners;
+            for (int corner = 0; corner < 4; ++corner)
                 __builtin_prefetch(&positions_[t[corner]]);
         }
 
         for (std::size_t i = 0; i < count; ++i)
             gather_corners(order[i], bundle.corners.data(), Bundle::kStride, i);
-        for (std::size_t column = 0; column < 9; ++column)
+        for (std::size_t column = 0; column < 12; ++column)
             std::fill_n(bundle.corners.data() + column * Bundle::kStride + count,
                         MaskCorners::kSlack, 0.0f);
         const MaskCorners corners{bundle.corners.data(), Bundle::kStride, count};
@@ -282,9 +307,9 @@ private:
             const std::size_t k = bundle.leaf[i];
             bundle.shown[i] = {&bundle.patches[k], &nodes_[place(k)], false};
         }
-        set_triangles({bundle.shown.data(), count}, corners);
+        set_tiles({bundle.shown.data(), count}, corners);
         for (std::size_t i = 0; i < count; ++i)
-            bundle.shown[i].node->links = solid_[order[i]] != 0 ? kMaskSolid : 0;
+            bundle.shown[i].node->links |= is_solid(order[i]) ? kMaskSolid : 0;
 
         // children before their parents
         for (std::size_t i = inner_count; i-- > 0;) {
@@ -319,7 +344,7 @@ private:
             const Key* const keys = bundle.keys[node.side].data() + node.begin;
             if (size == 1) {
                 bundle.leaf[node.begin] = static_cast<std::uint8_t>(k);
-                order[node.begin] = keys->triangle;
+                order[node.begin] = keys->tile;
                 continue;
             }
             std::uint8_t side = node.side;
@@ -340,6 +365,7 @@ private:
     }
 
     const Geometry& geometry_;
+    RawVector<MaskTile> tiles_;
     std::vector<std::uint8_t> solid_;     ///< one per triangle
     RawVector<glm::vec3> positions_;      ///< in the mask frame
     std::array<RawVector<Key>, 2> keys_;  ///< to and fro from level to level

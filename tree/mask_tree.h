@@ -1,8 +1,8 @@
 /// mask_tree.h: the scene's triangles as a binary tree in which every node is also one rectangle.
 ///
-/// Leaves are single triangles, exact. An inner node stands for its triangles as a rectangle in the
-/// plane of their vector area, with the area of that vector and the axes and aspect of their second
-/// moments: what is seen of the patch from straight ahead.
+/// Leaves are single triangles or flat pairs of them, exact. An inner node stands for its triangles
+/// as a rectangle in the plane of their vector area, with the area of that vector and the axes and
+/// aspect of their second moments: what is seen of the patch from straight ahead.
 ///
 /// Internal to the mask engine; masks.h is its door.
 #pragma once
@@ -26,17 +26,17 @@ inline const glm::mat3 kMaskFrame{-0.26100944f, 0.93067852f,  0.25634268f,
 
 /// 16 floats in the order in which the kernels load them.
 struct alignas(64) MaskNode {
-    glm::vec3 center;     ///< centroid of the triangles, by area
-    float radius;         ///< no point of the node is farther from `center`
-    glm::vec3 normal;     ///< unit; of the triangle, or of the vector area
-    float thickness;      ///< no point is farther from the plane (center, normal)
-    glm::vec3 axis_u;     ///< rectangle: corners at center +- axis_u +- axis_v
-    float open_radius;    ///< the radius as the opening test sees it: larger where not flat;
-                          ///< 0 where the node is exact: a triangle, or several that tile
-                          ///< the rectangle
-    glm::vec3 axis_v;     ///< triangle: corners at center + axis_u, center + axis_v, and
-                          ///< center - axis_u - axis_v
-    std::uint32_t links;  ///< kMaskFirstChild, kMaskSheet and kMaskSolid of mask_kernel.h
+    glm::vec3 center;  ///< centroid of the triangles, by area
+    float radius;      ///< no point of the node is farther from `center`
+    glm::vec3 skew;    ///< corners: center + skew +- axis_a, center - skew +- axis_b; of a
+                       ///< triangle center + skew + axis_a, - skew + axis_b, + skew - axis_a
+    float thickness;   ///< no point is farther from the plane (center, axis_a x axis_b)
+    glm::vec3 axis_a;
+    float open_radius;  ///< the radius as the opening test sees it: larger where not flat; 0
+                        ///< where the node is exact: its triangles tile the quadrilateral;
+                        ///< -1 where it is a leaf, which is exact too
+    glm::vec3 axis_b;
+    std::uint32_t links;  ///< kMaskFirstChild and the flags of mask_kernel.h
 };
 static_assert(sizeof(MaskNode) == 64);
 
