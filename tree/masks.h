@@ -24,8 +24,9 @@ namespace surfelao {
 
 struct MaskTree;  ///< opaque; immutable once built, read by any number of threads
 
-/// The scene's triangles as a tree of oriented rectangles. O(n log n), all cores, 128 bytes a
-/// triangle, 210 while it is built; equal input gives equal bytes for any number of threads.
+/// The scene's triangles as a tree of oriented rectangles. O(n log n), all cores, at most 128 bytes
+/// a triangle (half where all are in flat pairs), 250 while it is built; equal input gives equal
+/// bytes for any number of threads.
 [[nodiscard]] std::shared_ptr<const MaskTree> build_mask_tree(const Geometry& geometry);
 
 /// Instruction sets of the inner loops. The same answers but for single bits at edges that pass
