@@ -23,7 +23,7 @@ constexpr float kFlatnessPenalty = 5.0f;
 /// made of is exact and cheap: it is opened as if its radius were larger by this factor. Nothing
 /// from a flatness of 1 - 1/kFlatSlope down.
 constexpr float kFlatPenalty = 1.0f;
-constexpr float kFlatSlope = 1000.0f;
+constexpr float kFlatSlope = 1e4f;
 
 /// Rectangles of flat nodes are drawn a little larger: their neighbours most likely continue the
 /// same plane, and the rim closes the cracks. None from a flatness of 1 - 1/kDilationSlope down.
