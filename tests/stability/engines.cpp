@@ -64,7 +64,8 @@ Engine disks(const char* name, Where where, float opening, Bound bound)
 
 /// One bit per direction. The bounds are the measured RMS of the worst cases plus a fifth; the
 /// worst receiver has about four times that. Worst cases: draft a square pit along the raster's
-/// axes (0.024), good and best a soup of triangles (0.013, 0.011).
+/// axes (0.024) and a sphere from inside (0.030, a thirtieth of it allowed: cracks that are not
+/// filled), good and best a soup of triangles (0.013, 0.011).
 Engine masks(const char* name, Where where, float quality, Bound bound)
 {
     return {name, bound, false, where == Where::gpu,
@@ -84,7 +85,7 @@ Engine masks(const char* name, Where where, float quality, Bound bound)
 
 std::vector<Engine> all_engines()
 {
-    constexpr Bound kMasksDraft{0.029, 0.115}, kMasksGood{0.016, 0.07}, kMasksBest{0.0135, 0.055};
+    constexpr Bound kMasksDraft{0.031, 0.115}, kMasksGood{0.016, 0.07}, kMasksBest{0.0135, 0.055};
     constexpr Bound kDisksDraft{0.05, 0.25}, kDisksGood{0.03, 0.15}, kDisksBest{0.024, 0.15};
     return {
         rays("rays 4096", RayScene::Build::robust, 4096),
