@@ -75,7 +75,6 @@ TEST(MaskTiles, AnyConvexFlatQuadrilateralIsOne)
     EXPECT_EQ(pair_count(two({0, 0, 0}, {3, 0, 0}, {4, 1, 0}, {0.1, 0.5, 0})), 1u);
     EXPECT_EQ(pair_count(two({0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0})), 0u);  // no area
     // two halves of a triangle
-    EXPECT_EQ(pair_count(two({0, 0, 0}, {1, -1, 0}, {0, 1, 0}, {-1, -1, 0})), 0u);
     EXPECT_EQ(pair_count(two({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0})), 1u);
 }
 
@@ -83,7 +82,9 @@ TEST(MaskTiles, BentHollowAndUnlikePairsStayApart)
 {
     EXPECT_EQ(pair_count(two({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.01})), 0u);
     EXPECT_EQ(pair_count(two({0, 0, 0}, {2, -1, 0}, {0.5, 0, 0}, {2, 1, 0})), 0u);   // folded over
-    EXPECT_EQ(pair_count(two({0, 0, 0}, {2, 0, 0}, {0.5, 0.5, 0}, {0, 2, 0})), 0u);  // a dart
+    // darts
+    EXPECT_EQ(pair_count(two({0, 0, 0}, {2, 0, 0}, {0.5, 0.5, 0}, {0, 2, 0})), 0u);
+    EXPECT_EQ(pair_count(two({0, 0, 0}, {1, -1, 0}, {0, 1, 0}, {-1, -1, 0})), 0u);
     const Scene half = scenes::triangle({0, 0, 0}, {1, 0, 0}, {1, 1, 0});
     EXPECT_EQ(pair_count(half + scenes::triangle({0, 0, 0}, {0, 1, 0}, {1, 1, 0})), 0u);
     EXPECT_EQ(pair_count(half + scenes::triangle({0, 0, 0.1}, {1, 1, 0.1}, {0, 1, 0.1})), 0u);
