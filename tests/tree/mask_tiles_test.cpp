@@ -81,7 +81,7 @@ TEST(MaskTiles, AnyConvexFlatQuadrilateralIsOne)
 TEST(MaskTiles, BentHollowAndUnlikePairsStayApart)
 {
     EXPECT_EQ(pair_count(two({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.01})), 0u);
-    EXPECT_EQ(pair_count(two({0, 0, 0}, {2, -1, 0}, {0.5, 0, 0}, {2, 1, 0})), 0u);   // folded over
+    EXPECT_EQ(pair_count(two({0, 0, 0}, {2, -1, 0}, {0.5, 0, 0}, {2, 1, 0})), 0u);  // folded over
     // darts
     EXPECT_EQ(pair_count(two({0, 0, 0}, {2, 0, 0}, {0.5, 0.5, 0}, {0, 2, 0})), 0u);
     EXPECT_EQ(pair_count(two({0, 0, 0}, {1, -1, 0}, {0, 1, 0}, {-1, -1, 0})), 0u);
