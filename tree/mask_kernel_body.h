@@ -17,6 +17,8 @@ constexpr float kFillRange = 0.3f;        ///< ... and full weight this much abo
 constexpr float kFillShare = 1.3f;        ///< cracks of one bit stand for the wider ones too
 constexpr float kCloseFrom = 0.95f;       ///< the same for cracks of two bits
 constexpr float kCloseRange = 0.04f;
+constexpr int kOpenBits = 4;  ///< a place with no more of them open is closed: 0.003 of the weight
+constexpr std::size_t kDrawnBetweenChecks = 64;  ///< polygons
 constexpr float kHollowGrowth =
     1.1f;  ///< of a hollow front, whose clusters tilt away from each other
 constexpr float kTinyComponent =
@@ -666,16 +668,45 @@ void horizon(const MaskRaster& raster, const float* n, std::uint32_t* above)
     }
 }
 
+/// Whether next to nothing is open, once cracks are filled and closed. closed: what lies below the
+/// horizon is set.
+bool is_closed(const MaskRaster& raster, const std::uint32_t* closed, const float* n)
+{
+    // the face right ahead tells most others apart
+    const float x = n[0] < 0.0f ? -n[0] : n[0];
+    const float y = n[1] < 0.0f ? -n[1] : n[1];
+    const float z = n[2] < 0.0f ? -n[2] : n[2];
+    const int axis = x > y && x > z ? 0 : y > z ? 1 : 2;
+    const int ahead = 2 * axis + (n[axis] < 0.0f ? 1 : 0);
+    const Int16 holes = ~load(closed + kMaskFaceWords * ahead);
+    if (__builtin_popcount(bits(nonzero(holes))) > kOpenBits)
+        return false;
+    int open = 0;
+    for (int face = 0; face < kMaskFaces; ++face) {
+        const int w = kMaskFaceWords * face;
+        const Int16 loose = load(closed + kMaskWords + w);
+        const Int16 filled = fill(raster, load(closed + w), loose);
+        alignas(64) std::uint32_t rows[kLanes];
+        store(rows, ~close(raster, filled, loose));
+        for (const std::uint32_t row : rows)
+            open += __builtin_popcount(row);
+        if (open > kOpenBits)
+            return false;
+    }
+    return true;
+}
+
 // --- one group ---
 
-/// Draws the listed polygons that reach above the receiver's horizon.
+/// Draws those of the listed polygons from `begin` to `end` that reach above the receiver's
+/// horizon.
 template <int kCorners, bool kLoose>
 SURFELAO_MASK_INLINE void draw_near(const MaskColumns& list, Vector16 position, Vector16 normal,
-                                    Float16 graze2, std::uint32_t target,
-                                    Stream<kCorners, kLoose>& stream)
+                                    Float16 graze2, std::size_t begin, std::size_t end,
+                                    std::uint32_t target, Stream<kCorners, kLoose>& stream)
 {
     const Float16 zero = all(0.0f);
-    for (std::size_t first = 0; first < list.count; first += kLanes) {
+    for (std::size_t first = begin; first < end; first += kLanes) {
         const float* at = list.data + first;
         const Float16 radius = load(at + 3 * kCorners * list.stride);
         Vector16 c[kCorners];
@@ -697,7 +728,7 @@ SURFELAO_MASK_INLINE void draw_near(const MaskColumns& list, Vector16 position, 
             const Float16 away = dot(cross(c[1] - c[0], c[2] - c[0]), c[0]);
             above = without(above, one_sided & (away < zero));
         }
-        const std::size_t left = list.count - first;
+        const std::size_t left = end - first;
         above = above & first_lanes(left < kLanes ? static_cast<unsigned>(left) : kLanes);
         if (bits(above) == 0)
             continue;
@@ -728,6 +759,7 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
     walk<true>(world, group, nullptr, far_mask, scratch);
 
     alignas(64) std::uint32_t masks[kLanes * kMaskPairWords];
+    alignas(64) std::uint32_t horizons[kLanes * kMaskWords];
     {
         Stream<4, true> clusters(world, masks);
         Stream<4, false> rectangles(world, masks);
@@ -735,14 +767,32 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
         const Float16 graze2 = all(world.settings.graze * world.settings.graze);
         for (unsigned i = 0; i < receivers.count; ++i) {
             const std::uint32_t target = i * kMaskPairWords;
-            std::memcpy(masks + target, far_mask, sizeof far_mask);
+            std::uint32_t* closed = masks + target;
+            std::memcpy(closed, far_mask, sizeof far_mask);
+            const float n[3] = {receivers.normal[0][i], receivers.normal[1][i],
+                                receivers.normal[2][i]};
+            std::uint32_t* above = horizons + i * kMaskWords;
+            horizon(raster, n, above);
+            for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
+                store(closed + w, load(closed + w) | ~load(above + w));
             const Vector16 position = {all(receivers.position[0][i]), all(receivers.position[1][i]),
                                        all(receivers.position[2][i])};
             const Vector16 normal = {all(receivers.normal[0][i]), all(receivers.normal[1][i]),
                                      all(receivers.normal[2][i])};
-            draw_near(scratch.clusters, position, normal, graze2, target, clusters);
-            draw_near(scratch.rectangles, position, normal, graze2, target, rectangles);
-            draw_near(scratch.triangles, position, normal, graze2, target, triangles);
+            // nearly closed places are finished before all is drawn
+            const auto draw_until_closed = [&](const MaskColumns& list, auto& stream) {
+                for (std::size_t begin = 0; begin < list.count; begin += kDrawnBetweenChecks) {
+                    if (world.settings.fill && is_closed(raster, closed, n))
+                        return true;
+                    const std::size_t end = begin + kDrawnBetweenChecks;
+                    draw_near(list, position, normal, graze2, begin,
+                              end < list.count ? end : list.count, target, stream);
+                }
+                return false;
+            };
+            (void)(draw_until_closed(scratch.rectangles, rectangles) ||
+                   draw_until_closed(scratch.clusters, clusters) ||
+                   draw_until_closed(scratch.triangles, triangles));
         }
         clusters.finish();
         rectangles.finish();
@@ -752,9 +802,8 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
     for (unsigned i = 0; i < receivers.count; ++i) {
         const float n[3] = {receivers.normal[0][i], receivers.normal[1][i], receivers.normal[2][i]};
         std::uint32_t* mask = masks + i * kMaskPairWords;
-        alignas(64) std::uint32_t above[kMaskWords];
+        const std::uint32_t* above = horizons + i * kMaskWords;
         alignas(64) std::uint32_t open[kMaskWords];
-        horizon(raster, n, above);
         for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
             store(open + w, load(above + w) & ~load(mask + w));
         float openness = openness_of(raster, open, above, n);

@@ -268,6 +268,30 @@ TEST(MaskRaster, ANotchInTheRimOfAnOpeningIsNoCrack)
         EXPECT_EQ(open[y], y == 3 ? 0u : ~mask[y]) << "row " << y;
 }
 
+TEST(MaskRaster, APlaceIsClosedWithoutOpenBitsOrWithVeryFew)
+{
+    const MaskRaster& raster = mask_raster();
+    for (int face = 0; face < kMaskFaces; ++face) {
+        float n[3] = {0.1f, 0.2f, 0.3f};
+        n[face / 2] = face % 2 == 0 ? 1.0f : -1.0f;
+        for (int open_face = 0; open_face < kMaskFaces; ++open_face) {
+            alignas(64) std::uint32_t pair[kMaskPairWords];
+            std::fill(pair, pair + kMaskWords, ~0u);
+            std::fill(pair + kMaskWords, pair + kMaskPairWords, 0u);
+            std::uint32_t* row = pair + kMaskFaceWords * open_face;
+            EXPECT_TRUE(is_closed(raster, pair, n));
+            row[5] = row[9] = ~0x00010010u;
+            EXPECT_TRUE(is_closed(raster, pair, n)) << "four bits of face " << open_face;
+            row[12] = ~0x00000400u;
+            EXPECT_FALSE(is_closed(raster, pair, n)) << "five bits of face " << open_face;
+            std::fill(pair + kMaskWords, pair + kMaskPairWords, ~0u);
+            EXPECT_TRUE(is_closed(raster, pair, n)) << "cracks between clusters";
+            row[5] = row[6] = row[7] = row[8] = ~0x000ff000u;
+            EXPECT_FALSE(is_closed(raster, pair, n)) << "a hole between clusters";
+        }
+    }
+}
+
 // A fan right above, off by one rounding: edges through a face's centre, all but upright.
 TEST(MaskRaster, SlicesThatMeetOverhead)
 {
