@@ -1,7 +1,8 @@
 /// compare.h: one scene by several engines and by rays: how long, how wrong.
 ///
 /// All engines run in one process on the same threads, one after the other in rounds, and the
-/// median of the rounds counts: a busy machine then slows all of them alike. The opponent is Embree
+/// median of the rounds counts: a busy machine then slows all of them alike. What takes less than
+/// 50 ms is repeated within a round, for threads need a millisecond to wake. The opponent is Embree
 /// in its strongest mode (reference/rays.h).
 ///
 /// Errors are taken over the vertices that have a normal and a well-defined answer
