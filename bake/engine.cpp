@@ -145,11 +145,16 @@ std::string name_of(Engine engine)
     std::abort();
 }
 
+float least_quality(Engine engine)
+{
+    return engine == Engine::masks ? MaskOptions::kCoarsest : kDraft;
+}
+
 float most_quality(Engine engine)
 {
     switch (engine) {
         case Engine::masks:
-            return 4.0f;
+            return MaskOptions::kFinest;
         case Engine::disks:
             return kBest;
         case Engine::rays:

@@ -41,7 +41,7 @@ struct EngineSettings {
     Engine engine = Engine::masks;
     Device device = Device::cpu;  ///< gpu: masks and disks
     Definition definition = {};
-    float quality = kGood;     ///< masks, disks: 0 to most_quality
+    float quality = kGood;     ///< masks, disks: least_quality to most_quality
     int passes = 2;            ///< disks: >= 1 (tree/disks.h)
     float strength = 1.0f;     ///< disks: >= 0
     std::uint32_t rays = 256;  ///< rays: 1 to kMostRays
@@ -69,7 +69,8 @@ struct EngineResult {
 
 /// "masks", "disks", "rays"
 [[nodiscard]] std::string name_of(Engine engine);
-/// The upper end of `quality`; 0 for rays, which have none.
+/// The ends of `quality`; both 0 for rays, which have none.
+[[nodiscard]] float least_quality(Engine engine);
 [[nodiscard]] float most_quality(Engine engine);
 /// Whether the engine can weigh directions so.
 [[nodiscard]] bool knows_kernel(Engine engine, Kernel kernel);

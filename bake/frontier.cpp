@@ -19,8 +19,10 @@ constexpr int kPictureWidth = 400, kPictureHeight = 300;
 std::vector<float> qualities_of(Engine engine)
 {
     std::vector<float> qualities = {0.0f, 0.5f, 1.0f, 1.5f, 2.0f};
-    if (engine == Engine::masks)
+    if (engine == Engine::masks) {
+        qualities.insert(qualities.begin(), least_quality(engine));
         qualities.push_back(3.0f);
+    }
     return qualities;
 }
 

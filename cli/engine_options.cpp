@@ -135,10 +135,11 @@ float quality_of(const std::string& text, Engine engine)
     if (text == "best")
         return kBest;
     const std::optional<double> number = number_of(text);
+    const float least = least_quality(engine);
     const float most = most_quality(engine);
-    if (!number || *number < kDraft || *number > most) {
-        throw UsageError("--quality: \"" + text +
-                         "\" is not draft, good, best or a number from 0 to " + exact(most) + ".");
+    if (!number || *number < least || *number > most) {
+        throw UsageError("--quality: \"" + text + "\" is not draft, good, best or a number from " +
+                         exact(least) + " to " + exact(most) + ".");
     }
     return static_cast<float>(*number);
 }

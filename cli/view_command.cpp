@@ -67,6 +67,7 @@ Services services()
     for (const Choice& choice : choices())
         all.engines.push_back(
             {.name = name_of(choice.engine) + (choice.device == Device::gpu ? " on GPU" : ""),
+             .least_quality = least_quality(choice.engine),
              .most_quality = most_quality(choice.engine),
              .has_disk_options = choice.engine == Engine::disks,
              .has_rays = choice.engine == Engine::rays});
@@ -100,7 +101,8 @@ int run(const ViewCommandOptions& options)
     while (known[settings.engine].engine != engine.engine ||
            known[settings.engine].device != engine.device)
         ++settings.engine;
-    settings.quality = std::min(engine.quality, most_quality(engine.engine));
+    settings.quality =
+        std::clamp(engine.quality, least_quality(engine.engine), most_quality(engine.engine));
     settings.passes = engine.passes;
     settings.strength = engine.strength;
     settings.rays = static_cast<int>(engine.rays);

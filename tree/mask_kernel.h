@@ -92,6 +92,16 @@ struct MaskWorld {
     MaskSettings settings;
 };
 
+/// What far nodes cover, as seen from `center`, and how that changes with the place: a receiver at
+/// p with normal n sees n.(change + slope (p - center)) more of them, had each the sky to itself.
+struct MaskShared {
+    alignas(64) std::uint32_t mask[256];  ///< kMaskPairWords
+    float center[3];
+    float change[3];      ///< from where they were drawn to `center`
+    float slope[3][3];    ///< derivatives of their vector irradiance, by rows
+    float irradiance[3];  ///< the sum of r (A.r) / (pi r^4) over them, A: area vectors
+};
+
 /// Up to 16 receivers as columns.
 struct MaskReceivers {
     unsigned count;
@@ -106,16 +116,16 @@ struct MaskAnswers {
 
 struct MaskKernel {
     const char* name;
-    /// Draws the nodes of `in` that are far from the whole group into `mask` (kMaskPairWords),
-    /// drops those below all horizons or beyond the limit, and hands the others, opened to about
-    /// the group's size, to `out`.
+    /// Draws the nodes of `in` that are far from the whole group into `shared`, drops those below
+    /// all horizons or beyond the limit, and hands the others, opened to about the group's size, to
+    /// `out`.
     void (*descend)(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* in,
-                    std::size_t in_count, MaskBuffer<std::uint32_t>& out, std::uint32_t* mask,
+                    std::size_t in_count, MaskBuffer<std::uint32_t>& out, MaskShared& shared,
                     MaskScratch& scratch);
     /// Finishes a leaf group: the rest of `in` is opened for the group and drawn for each receiver.
     void (*solve)(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* in,
-                  std::size_t in_count, const std::uint32_t* mask, const MaskReceivers& receivers,
-                  MaskAnswers& answers, MaskScratch& scratch);
+                  std::size_t in_count, const MaskShared& from_above,
+                  const MaskReceivers& receivers, MaskAnswers& answers, MaskScratch& scratch);
 };
 
 extern const MaskKernel kMaskKernelPortable;

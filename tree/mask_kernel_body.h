@@ -21,6 +21,7 @@ constexpr int kOpenBits = 4;  ///< a place with no more of them open is closed: 
 constexpr std::size_t kDrawnBetweenChecks = 64;  ///< polygons
 constexpr float kHollowGrowth =
     1.1f;  ///< of a hollow front, whose clusters tilt away from each other
+constexpr float kLargestMove = 0.03f;  ///< what the change of the shared part tends to at most
 constexpr float kTinyComponent =
     1e-30f;  ///< stands for 0 in divisions; edge normals are above 1e-20
 
@@ -238,12 +239,98 @@ void draw(const MaskRaster& raster, float max_distance, const float* corner,
     }
 }
 
+SURFELAO_MASK_INLINE float sum_of(Float16 a)
+{
+    alignas(64) float lanes[kLanes];
+    store(lanes, a);
+    float sum = 0.0f;
+    for (const float lane : lanes)
+        sum += lane;
+    return sum;
+}
+
+/// How the vector irradiance of what is drawn for a group changes with the place. A small emitter
+/// at r with area vector A, r.A > 0, sends f = r (A.r) / (pi r^4); with a receiver that moves by p,
+/// r moves by -p: df/dp = (4 r r^T (A.r) / r^2 - (A.r) I - r A^T) / (pi r^4).
+class Slope {
+public:
+    Slope(const MaskGroup& group, float max_distance)
+        : axis_(broadcast(group.axis)), max_distance_(max_distance)
+    {
+    }
+
+    /// The first `count` of 16 polygons; corners as draw takes them, from the group's centre.
+    template <int kCorners, int kStride>
+    void add(const float* corner, unsigned count)
+    {
+        Vector16 c[kCorners];
+        for (int i = 0; i < kCorners; ++i) {
+            c[i] = {load(corner + (3 * i) * kStride), load(corner + (3 * i + 1) * kStride),
+                    load(corner + (3 * i + 2) * kStride)};
+        }
+        const Float16 zero = all(0.0f);
+        Vector16 r =
+            kCorners == 3 ? (c[0] + c[1] + c[2]) * all(1.0f / 3.0f) : (c[0] + c[2]) * all(0.5f);
+        Vector16 area =
+            cross(c[2] - c[0], kCorners == 3 ? c[1] - c[0] : c[kCorners - 1] - c[1]) * all(0.5f);
+        // beyond the count stands anything
+        const Lanes counts = first_lanes(count) & (zero < dot(r, axis_)) &
+                             (dot(r, r) < all(max_distance_ * max_distance_));
+        const auto choose = [&](Vector16 v) {
+            return Vector16{select(counts, v.x, zero), select(counts, v.y, zero),
+                            select(counts, v.z, zero)};
+        };
+        r = choose(r);
+        const Float16 inverse = inverse_sqrt(max(dot(r, r), all(kTinyComponent)));
+        r = r * inverse;
+        area = choose(area) * (inverse * inverse * all(0.31830989f));
+        const Int16 away = sign_of(dot(area, r));
+        const Float16 along = flip(dot(area, r), away);
+        const Float16 direction[3] = {r.x, r.y, r.z};
+        const Float16 facing[3] = {flip(area.x, away), flip(area.y, away), flip(area.z, away)};
+        for (int i = 0; i < 3; ++i) {
+            irradiance_[i] = fma(along, direction[i], irradiance_[i]);
+            const Float16 by_distance = direction[i] * inverse;
+            for (int j = 0; j < 3; ++j) {
+                slope_[i][j] =
+                    fma(by_distance, fms(all(4.0f) * along, direction[j], facing[j]), slope_[i][j]);
+            }
+            slope_[i][i] = slope_[i][i] - along * inverse;
+        }
+        any_ = true;
+    }
+
+    void finish(MaskShared& shared) const
+    {
+        if (!any_)
+            return;
+        for (int i = 0; i < 3; ++i) {
+            shared.irradiance[i] += sum_of(irradiance_[i]);
+            for (int j = 0; j < 3; ++j)
+                shared.slope[i][j] += sum_of(slope_[i][j]);
+        }
+    }
+
+private:
+    Vector16 axis_;
+    float max_distance_;
+    bool any_ = false;
+    Float16 irradiance_[3] = {all(0.0f), all(0.0f), all(0.0f)};
+    Float16 slope_[3][3] = {{all(0.0f), all(0.0f), all(0.0f)},
+                            {all(0.0f), all(0.0f), all(0.0f)},
+                            {all(0.0f), all(0.0f), all(0.0f)}};
+};
+
 /// Collects polygons of any receivers until 16 can be drawn at once.
 template <int kCorners, bool kLoose>
 class Stream {
 public:
-    Stream(const MaskWorld& world, std::uint32_t* masks)
-        : raster_(*world.raster), max_distance_(world.settings.max_distance), masks_(masks)
+    /// slope: where all is drawn for a group.
+    Stream(const MaskWorld& world, std::uint32_t* masks, Slope* slope = nullptr)
+        : raster_(*world.raster),
+          max_distance_(world.settings.max_distance),
+          masks_(masks),
+          slope_(slope)
     {
     }
 
@@ -258,8 +345,7 @@ public:
         store(target_ + count_, all(target));
         count_ += static_cast<unsigned>(__builtin_popcount(bits(chosen)));
         if (count_ >= kLanes) {
-            draw<kCorners, 2 * kLanes, kLoose>(raster_, max_distance_, corner_[0], target_, kLanes,
-                                               masks_);
+            draw_first(kLanes);
             for (int i = 0; i < 3 * kCorners; ++i)
                 store(corner_[i], load(corner_[i] + kLanes));
             store(target_, load(target_ + kLanes));
@@ -270,15 +356,23 @@ public:
     void finish()
     {
         if (count_ > 0)
-            draw<kCorners, 2 * kLanes, kLoose>(raster_, max_distance_, corner_[0], target_, count_,
-                                               masks_);
+            draw_first(count_);
         count_ = 0;
     }
 
 private:
+    void draw_first(unsigned count)
+    {
+        draw<kCorners, 2 * kLanes, kLoose>(raster_, max_distance_, corner_[0], target_, count,
+                                           masks_);
+        if (slope_ != nullptr)
+            slope_->template add<kCorners, 2 * kLanes>(corner_[0], count);
+    }
+
     const MaskRaster& raster_;
     float max_distance_;
     std::uint32_t* masks_;
+    Slope* slope_;
     unsigned count_ = 0;
     alignas(64) float corner_[3 * kCorners][2 * kLanes] = {};
     alignas(64) std::uint32_t target_[2 * kLanes] = {};
@@ -319,9 +413,21 @@ struct Node16 {
     }
 };
 
+/// A call clears all vector registers away: only where it is needed.
+SURFELAO_MASK_INLINE void make_room(MaskBuffer<std::uint32_t>& list, std::size_t count)
+{
+    if (count > list.capacity) [[unlikely]]
+        reserve(list, count);
+}
+SURFELAO_MASK_INLINE void make_room(MaskColumns& list, std::size_t members, std::size_t count)
+{
+    if (count > list.stride) [[unlikely]]
+        reserve(list, members, count);
+}
+
 SURFELAO_MASK_INLINE void append(MaskBuffer<std::uint32_t>& list, Int16 index, Lanes chosen)
 {
-    reserve(list, list.count + kLanes);
+    make_room(list, list.count + kLanes);
     store(list.data + list.count, pack(index, chosen));
     list.count += static_cast<unsigned>(__builtin_popcount(bits(chosen)));
 }
@@ -332,7 +438,7 @@ SURFELAO_MASK_INLINE void append(MaskColumns& list, const Vector16* corner, Floa
 {
     if (bits(chosen) == 0)
         return;
-    reserve(list, 3 * kCorners + 1, list.count + kLanes);
+    make_room(list, 3 * kCorners + 1, list.count + kLanes);
     float* at = list.data + list.count;
     store(at + 3 * kCorners * list.stride, pack(radius, chosen));
     for (int i = 0; i < kCorners; ++i) {
@@ -343,13 +449,25 @@ SURFELAO_MASK_INLINE void append(MaskColumns& list, const Vector16* corner, Floa
     list.count += static_cast<unsigned>(__builtin_popcount(bits(chosen)));
 }
 
+void move_to(MaskShared& shared, const float* center)
+{
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j)
+            shared.change[i] += shared.slope[i][j] * (center[j] - shared.center[j]);
+    }
+    for (int i = 0; i < 3; ++i)
+        shared.center[i] = center[i];
+}
+
 /// Through scratch.frontier, which grows meanwhile, to its end: far nodes are drawn into the
 /// group's mask; a leaf group lists the rest as polygons, an inner group hands it down.
 template <bool kLeaf>
 void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32_t>* out,
-          std::uint32_t* mask, MaskScratch& scratch)
+          MaskShared& shared_part, MaskScratch& scratch)
 {
     const MaskSettings& settings = world.settings;
+    move_to(shared_part, group.center);
+    Slope slope(group, settings.max_distance);
     const Vector16 origin = broadcast(group.center);
     const Vector16 axis = broadcast(group.axis);
     const Float16 group_radius = all(group.radius);
@@ -357,9 +475,9 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
     const Float16 cone_sin = all(group.cone_sin);
     const Float16 zero = all(0.0f);
     const Float16 share = all(kLeaf ? settings.share_leaf : settings.share_inner);
-    Stream<4, true> clusters(world, mask);
-    Stream<4, false> rectangles(world, mask);
-    Stream<3, false> triangles(world, mask);
+    Stream<4, true> clusters(world, shared_part.mask, &slope);
+    Stream<4, false> rectangles(world, shared_part.mask, &slope);
+    Stream<3, false> triangles(world, shared_part.mask, &slope);
     const Float16 exact_radius = all(settings.exact_radius);
     const Int16 solid = all(settings.one_sided ? kMaskSolid : 0u);
     MaskBuffer<std::uint32_t>& frontier = scratch.frontier;
@@ -444,7 +562,7 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
                 append(*out, load(index), handed);
         }
         if (bits(opened) != 0) {
-            reserve(frontier, frontier.count + 2 * kLanes + kLanes);
+            make_room(frontier, frontier.count + 2 * kLanes + kLanes);
             append(frontier, node.first_child(), opened);
             const auto added = static_cast<unsigned>(__builtin_popcount(bits(opened)));
             std::uint32_t* child = frontier.data + frontier.count - added;
@@ -459,6 +577,7 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
     clusters.finish();
     rectangles.finish();
     triangles.finish();
+    slope.finish(shared_part);
 }
 
 void start_frontier(MaskScratch& scratch, const std::uint32_t* in, std::size_t in_count)
@@ -698,6 +817,41 @@ bool is_closed(const MaskRaster& raster, const std::uint32_t* closed, const floa
 
 // --- one group ---
 
+/// Of what a group shares.
+struct Visible {
+    float openness;  ///< of the sky above the group's axis
+    float share;     ///< covered sky over the sum of what covers it: nodes hide behind each other
+};
+
+/// n.(change + slope (p - center))
+SURFELAO_MASK_INLINE Float16 changes_at(const MaskShared& shared, const MaskReceivers& receivers)
+{
+    const Vector16 p = Vector16{load(receivers.position[0]), load(receivers.position[1]),
+                                load(receivers.position[2])} -
+                       broadcast(shared.center);
+    const Vector16 change = broadcast(shared.change) + Vector16{dot(broadcast(shared.slope[0]), p),
+                                                                dot(broadcast(shared.slope[1]), p),
+                                                                dot(broadcast(shared.slope[2]), p)};
+    return dot(change,
+               {load(receivers.normal[0]), load(receivers.normal[1]), load(receivers.normal[2])});
+}
+
+Visible visible_of(const MaskRaster& raster, const MaskShared& shared, const float* axis)
+{
+    const float sum = shared.irradiance[0] * axis[0] + shared.irradiance[1] * axis[1] +
+                      shared.irradiance[2] * axis[2];
+    if (!(sum > 0.0f))
+        return {1.0f, 0.0f};
+    alignas(64) std::uint32_t above[kMaskWords];
+    alignas(64) std::uint32_t open[kMaskWords];
+    horizon(raster, axis, above);
+    for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
+        store(open + w, load(above + w) & ~load(shared.mask + w));
+    const float openness = openness_of(raster, open, above, axis);
+    const float share = (1.0f - openness) / sum;
+    return {openness, share < 1.0f ? share : 1.0f};
+}
+
 /// Draws those of the listed polygons from `begin` to `end` that reach above the receiver's
 /// horizon.
 template <int kCorners, bool kLoose>
@@ -737,26 +891,25 @@ SURFELAO_MASK_INLINE void draw_near(const MaskColumns& list, Vector16 position, 
 }
 
 void descend(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* in,
-             std::size_t in_count, MaskBuffer<std::uint32_t>& out, std::uint32_t* mask,
+             std::size_t in_count, MaskBuffer<std::uint32_t>& out, MaskShared& shared,
              MaskScratch& scratch)
 {
     out.count = 0;
     start_frontier(scratch, in, in_count);
-    walk<false>(world, group, &out, mask, scratch);
+    walk<false>(world, group, &out, shared, scratch);
 }
 
 void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* in,
-           std::size_t in_count, const std::uint32_t* shared, const MaskReceivers& receivers,
+           std::size_t in_count, const MaskShared& from_above, const MaskReceivers& receivers,
            MaskAnswers& answers, MaskScratch& scratch)
 {
     const MaskRaster& raster = *world.raster;
-    alignas(64) std::uint32_t far_mask[kMaskPairWords];
-    std::memcpy(far_mask, shared, sizeof far_mask);
+    MaskShared shared = from_above;
     scratch.clusters.count = 0;
     scratch.rectangles.count = 0;
     scratch.triangles.count = 0;
     start_frontier(scratch, in, in_count);
-    walk<true>(world, group, nullptr, far_mask, scratch);
+    walk<true>(world, group, nullptr, shared, scratch);
 
     alignas(64) std::uint32_t masks[kLanes * kMaskPairWords];
     alignas(64) std::uint32_t horizons[kLanes * kMaskWords];
@@ -768,7 +921,7 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
         for (unsigned i = 0; i < receivers.count; ++i) {
             const std::uint32_t target = i * kMaskPairWords;
             std::uint32_t* closed = masks + target;
-            std::memcpy(closed, far_mask, sizeof far_mask);
+            std::memcpy(closed, shared.mask, sizeof shared.mask);
             const float n[3] = {receivers.normal[0][i], receivers.normal[1][i],
                                 receivers.normal[2][i]};
             std::uint32_t* above = horizons + i * kMaskWords;
@@ -799,6 +952,9 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
         triangles.finish();
     }
 
+    const Visible visible = visible_of(raster, shared, group.axis);
+    alignas(64) float changes[kLanes];
+    store(changes, changes_at(shared, receivers));
     for (unsigned i = 0; i < receivers.count; ++i) {
         const float n[3] = {receivers.normal[0][i], receivers.normal[1][i], receivers.normal[2][i]};
         std::uint32_t* mask = masks + i * kMaskPairWords;
@@ -829,6 +985,11 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
                                 (sealed - openness);
             }
         }
+        // near polygons cover what is far as they cover the open sky
+        const float bare = openness < visible.openness ? openness / visible.openness : 1.0f;
+        const float change = bare * visible.share * changes[i];
+        const float size = change < 0.0f ? -change : change;
+        openness -= change / (1.0f + size / kLargestMove);
         openness = openness < 0.0f ? 0.0f : openness > 1.0f ? 1.0f : openness;
         answers.occlusion[i] = 1.0f - openness;
         const Second second = second_moments(raster, open);

@@ -92,15 +92,13 @@ const MaskKernel* kernel_of(MaskKernelSet set)
     }
 }
 
-/// The family at draft, good and best, and one step beyond each way of the scale.
+/// The family at whole qualities, from MaskOptions::kCoarsest on.
 struct FamilyPoint {
     float cluster, share_leaf, share_inner, graze;
 };
-constexpr FamilyPoint kFamily[] = {{0.9f, 0.3f, 0.2f, 0.18f},
-                                   {0.7f, 0.1f, 0.07f, 0.13f},
-                                   {0.35f, 0.03f, 0.03f, 0.09f},
-                                   {0.2f, 0.015f, 0.015f, 0.03f},
-                                   {0.1f, 0.007f, 0.007f, 0.015f}};
+constexpr FamilyPoint kFamily[] = {{0.9f, 0.6f, 0.32f, 0.24f},    {0.9f, 0.3f, 0.2f, 0.18f},
+                                   {0.7f, 0.1f, 0.07f, 0.13f},    {0.35f, 0.03f, 0.03f, 0.09f},
+                                   {0.2f, 0.015f, 0.015f, 0.03f}, {0.1f, 0.007f, 0.007f, 0.015f}};
 constexpr float kRelaxedCluster = 0.9f;  ///< a larger rectangle could swallow its receiver
 /// Cracks shrink with the clusters: up to this s none is two bits wide, from twice that many are.
 constexpr float kNarrowCracks = 0.35f;
@@ -114,9 +112,8 @@ float between(float a, float b, float t)
 
 MaskSettings mask_settings(const MaskOptions& options)
 {
-    const float last = static_cast<float>(std::size(kFamily) - 1);
-    if (!(options.quality >= 0.0f && options.quality <= last))
-        throw std::invalid_argument("MaskOptions: quality must be between 0 and 4");
+    if (!(options.quality >= MaskOptions::kCoarsest && options.quality <= MaskOptions::kFinest))
+        throw std::invalid_argument("MaskOptions: quality must be between -1 and 4");
     if (options.definition.kernel != Kernel::cosine)
         throw std::invalid_argument("MaskOptions: masks know the cosine kernel only");
     MaskSettings settings{};
@@ -126,8 +123,9 @@ MaskSettings mask_settings(const MaskOptions& options)
     if (options.exact)
         return settings;
     settings.exact_radius = std::numeric_limits<float>::min();
-    const auto i = static_cast<std::size_t>(std::min(options.quality, last - 1.0f));
-    const float t = options.quality - static_cast<float>(i);
+    const float place = options.quality - MaskOptions::kCoarsest;
+    const auto i = std::min(static_cast<std::size_t>(place), std::size(kFamily) - 2);
+    const float t = place - static_cast<float>(i);
     const FamilyPoint &a = kFamily[i], &b = kFamily[i + 1];
     settings.cluster = between(a.cluster, b.cluster, t);
     settings.cluster_limit = std::max(settings.cluster, kRelaxedCluster);
@@ -204,9 +202,8 @@ public:
         if (!groups_.groups.empty()) {
             for (const float limit : limits_) {
                 world_.settings.max_distance = limit;
-                alignas(64) const std::uint32_t empty[kMaskPairWords] = {};
                 const std::uint32_t root = 0;
-                visit(0, &root, has_triangles_ ? 1 : 0, empty, 0);
+                visit(0, &root, has_triangles_ ? 1 : 0, MaskShared{}, 0);
             }
         }
         const float weight = 1.0f / static_cast<float>(limits_.size());
@@ -224,24 +221,23 @@ private:
     static constexpr std::uint32_t kParallelReceivers = 64;  ///< smaller groups stay on one thread
 
     void visit(std::uint32_t index, const std::uint32_t* in, std::size_t in_count,
-               const std::uint32_t* mask, std::size_t level)
+               const MaskShared& from_above, std::size_t level)
     {
         const MaskGroup& group = groups_.groups[index];
         if (group.first_child == 0) {
-            solve_leaf(group, in, in_count, mask);
+            solve_leaf(group, in, in_count, from_above);
             return;
         }
-        alignas(64) std::uint32_t own_mask[kMaskPairWords];
-        std::memcpy(own_mask, mask, sizeof own_mask);
+        MaskShared shared = from_above;
         const auto visit_child = [&](std::uint32_t child, const std::uint32_t* list,
                                      std::size_t count) {
-            visit(group.first_child + child, list, count, own_mask, level + 1);
+            visit(group.first_child + child, list, count, shared, level + 1);
         };
         Workspace& workspace = workspaces_.local();
         if (group.end - group.begin > kParallelReceivers) {
             // a thread that waits may take up other groups meanwhile: this list is nobody else's
             MaskBuffer<std::uint32_t> list;
-            kernel_.descend(world_, group, in, in_count, list, own_mask, workspace.scratch);
+            kernel_.descend(world_, group, in, in_count, list, shared, workspace.scratch);
             const std::vector<std::uint32_t> kept(list.data, list.data + list.count);
             release(list);
             tbb::parallel_invoke([&] { visit_child(0, kept.data(), kept.size()); },
@@ -249,7 +245,7 @@ private:
         } else {
             if (workspace.lists.size() <= level)
                 workspace.lists.resize(level + 1);
-            kernel_.descend(world_, group, in, in_count, workspace.lists[level], own_mask,
+            kernel_.descend(world_, group, in, in_count, workspace.lists[level], shared,
                             workspace.scratch);
             const MaskBuffer<std::uint32_t> list = workspace.lists[level];
             visit_child(0, list.data, list.count);
@@ -258,7 +254,7 @@ private:
     }
 
     void solve_leaf(const MaskGroup& group, const std::uint32_t* in, std::size_t in_count,
-                    const std::uint32_t* mask)
+                    const MaskShared& from_above)
     {
         MaskReceivers columns{};
         columns.count = group.end - group.begin;
@@ -267,7 +263,7 @@ private:
             std::copy_n(&groups_.normal[k][group.begin], columns.count, columns.normal[k]);
         }
         MaskAnswers found{};
-        kernel_.solve(world_, group, in, in_count, mask, columns, found,
+        kernel_.solve(world_, group, in, in_count, from_above, columns, found,
                       workspaces_.local().scratch);
         for (std::uint32_t i = 0; i < columns.count; ++i) {
             const std::uint32_t index = groups_.order[group.begin + i];

@@ -45,14 +45,16 @@ enum class MaskKernelSet {
 /// One parameter family for every mesh. `quality` is the one control: larger is slower and nearer
 /// to the truth.
 struct MaskOptions {
+    static constexpr float kCoarsest = -1.0f;
     static constexpr float kDraft = 0.0f;
     static constexpr float kGood = 1.0f;
     static constexpr float kBest = 2.0f;
+    static constexpr float kFinest = 4.0f;
 
     Definition definition = {};
 
-    /// In [0, 4]; 0, 1 and 2 are `draft`, `good` and `best`. Between them the sizes of clusters and
-    /// of shared groups are interpolated geometrically.
+    /// In [-1, 4]; 0, 1 and 2 are `draft`, `good` and `best`. Between whole numbers the sizes of
+    /// clusters and of shared groups are interpolated geometrically.
     float quality = kGood;
 
     /// The oracle: every triangle drawn for every receiver, nothing shared, nothing filled. O(n)

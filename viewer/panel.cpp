@@ -89,8 +89,8 @@ void solver_widgets(SolveSettings& edited, SolveSettings& next, const Session& s
     }
     const EngineTraits& traits = engines[edited.engine];
     if (traits.most_quality > 0.0f) {
-        ImGui::SliderFloat("quality", &edited.quality, 0.0f, traits.most_quality, "%.2f",
-                           ImGuiSliderFlags_AlwaysClamp);
+        ImGui::SliderFloat("quality", &edited.quality, traits.least_quality, traits.most_quality,
+                           "%.2f", ImGuiSliderFlags_AlwaysClamp);
         apply |= was_set();
     }
     if (traits.has_disk_options) {

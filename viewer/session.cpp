@@ -22,7 +22,7 @@ double seconds_since(std::chrono::steady_clock::time_point start)
 SolveSettings draft_of(SolveSettings settings, const EngineTraits& traits)
 {
     if (traits.most_quality > 0.0f)
-        settings.quality = 0.0f;
+        settings.quality = std::min(settings.quality, 0.0f);
     if (traits.has_rays)
         settings.rays = std::max(1, settings.rays / kDraftShare);
     return settings;

@@ -23,7 +23,8 @@ namespace surfelao {
 /// What an engine can be told, for the widgets.
 struct EngineTraits {
     std::string name;
-    float most_quality = 0.0f;      ///< quality runs from 0 to this; 0 = it has none
+    float least_quality = 0.0f;     ///< quality runs from this ...
+    float most_quality = 0.0f;      ///< ... to this; 0 = it has none
     bool has_disk_options = false;  ///< passes and strength
     bool has_rays = false;          ///< rays per receiver
 };
