@@ -50,7 +50,7 @@ void add_engine_options(CLI::App& command, EngineOptions& options)
     command
         .add_option("--quality", options.quality,
                     "Exactness against time, for masks and disks: draft, good, best, or a number "
-                    "(0 = draft, 1 = good, 2 = best)")
+                    "(0 = draft, 1 = good, 2 = best; masks: -1 to 4, disks: 0 to 2)")
         ->type_name("draft|good|best|Q")
         ->default_str("good")
         ->group("Engine");
