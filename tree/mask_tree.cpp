@@ -28,6 +28,10 @@ namespace {
 /// A unit of normal counts as this many diagonals of the node when it is split: neighbours that
 /// look elsewhere are parted before they become one rectangle.
 constexpr float kNormalExtent = 0.5f;
+/// Walls that meet in an edge: normals at the ends, to within this share, of an extent of at least
+/// so much. They are parted whatever the diagonal is: a rectangle for two of them fills no edge.
+constexpr float kEndShare = 0.1f;
+constexpr float kSharpExtent = 0.5f;
 
 /// Subtrees of up to this many triangles are built as one, in the cache, their radius and thickness
 /// measured at the corners; above, these follow from the children's.
@@ -93,8 +97,18 @@ struct Plane {
     bool operator()(const Key& key) const { return key.at[axis] < at; }
 };
 
-/// The middle of the longest of the six extents.
-Plane plane_of(const Extent& extent)
+/// Whether all keys lie at the one or the other end of an extent. Smooth surfaces are told after a
+/// few keys.
+bool at_ends(std::span<const Key> keys, std::size_t axis, float low, float high)
+{
+    const float margin = kEndShare * (high - low);
+    return std::all_of(keys.begin(), keys.end(), [=](const Key& key) {
+        return key.at[axis] < low + margin || key.at[axis] > high - margin;
+    });
+}
+
+/// The middle of the longest of the six extents; walls that meet in an edge are parted first.
+Plane plane_of(const Extent& extent, std::span<const Key> keys)
 {
     const auto low = std::bit_cast<std::array<float, 8>>(extent.low);
     const auto high = std::bit_cast<std::array<float, 8>>(extent.high);
@@ -108,6 +122,14 @@ Plane plane_of(const Extent& extent)
         const float here = i < 3 ? square[i] : unit * square[i];
         axis = here > longest ? i : axis;
         longest = here > longest ? here : longest;
+    }
+    if (axis < 3) {
+        std::size_t turned = 3;
+        for (std::size_t i = 4; i < 6; ++i)
+            turned = square[i] > square[turned] ? i : turned;
+        if (square[turned] > kSharpExtent * kSharpExtent &&
+            at_ends(keys, turned, low[turned], high[turned]))
+            axis = turned;
     }
     return {axis, 0.5f * (low[axis] + high[axis])};
 }
@@ -238,7 +260,7 @@ private:
     std::size_t split(std::size_t begin, std::size_t end, int side)
     {
         const std::span<const Key> keys(keys_[side].data() + begin, end - begin);
-        const Plane plane = plane_of(extent_of(keys));
+        const Plane plane = plane_of(extent_of(keys), keys);
         const std::size_t below = part(keys, plane, keys_[1 - side].data() + begin);
         const bool parted = below != 0 && below != keys.size();
         return begin + (parted ? below : keys.size() / 2);
@@ -352,7 +374,8 @@ private:
             if (size > 2) {
                 side = 1 - side;
                 Key* const out = bundle.keys[side].data() + node.begin;
-                below = part<Key>({keys, size}, plane_of(Extent({keys, size})), out, 0, size);
+                below = part<Key>({keys, size}, plane_of(Extent({keys, size}), {keys, size}), out,
+                                  0, size);
                 below = below != 0 && below != size ? below : size / 2;
             }
             const auto middle = static_cast<std::uint8_t>(node.begin + below);
