@@ -11,6 +11,8 @@
 namespace surfelao::SURFELAO_MASK_ISA {
 namespace {
 
+static_assert(sizeof(MaskShared::mask) == kMaskPairWords * sizeof(std::uint32_t));
+
 constexpr float kImportanceFloor = 0.1f;  ///< directions weigh at least this in the opening tests
 constexpr float kFillFrom = 0.6f;         ///< no filling below this occlusion ...
 constexpr float kFillRange = 0.3f;        ///< ... and full weight this much above
@@ -989,7 +991,8 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
         const float bare = openness < visible.openness ? openness / visible.openness : 1.0f;
         const float change = bare * visible.share * changes[i];
         const float size = change < 0.0f ? -change : change;
-        openness -= change / (1.0f + size / kLargestMove);
+        if (size < __builtin_inff())
+            openness -= change / (1.0f + size / kLargestMove);
         openness = openness < 0.0f ? 0.0f : openness > 1.0f ? 1.0f : openness;
         answers.occlusion[i] = 1.0f - openness;
         const Second second = second_moments(raster, open);
