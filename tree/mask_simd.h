@@ -12,7 +12,17 @@
 #include <immintrin.h>
 #endif
 
+// All in one function, and checked at each step, would take a compiler minutes.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define SURFELAO_MASK_INLINE inline
+#endif
+#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SURFELAO_MASK_INLINE inline
+#endif
+#if !defined(SURFELAO_MASK_INLINE)
 #define SURFELAO_MASK_INLINE [[gnu::always_inline]] inline
+#endif
 
 namespace surfelao::SURFELAO_MASK_ISA {
 
