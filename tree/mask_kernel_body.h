@@ -110,6 +110,16 @@ SURFELAO_MASK_INLINE Int16 cone_bits(const MaskRaster& raster, float na, float n
     return nu > 0.0f ? bits_from(first) : ~bits_from(second);
 }
 
+/// Of 16 polygons: corner i stands in rows 3 i to 3 i + 2 of `kStride` floats.
+template <int kCorners, int kStride>
+SURFELAO_MASK_INLINE void load_corners(const float* rows, Vector16* corner)
+{
+    for (int i = 0; i < kCorners; ++i) {
+        corner[i] = {load(rows + (3 * i) * kStride), load(rows + (3 * i + 1) * kStride),
+                     load(rows + (3 * i + 2) * kStride)};
+    }
+}
+
 /// Sixteen polygons at once up to the edges, then each by itself, 16 rows at a time.
 /// corner: 3 kCorners rows of `kStride` floats, relative to the receiver; target: word offset of
 /// the receiver's mask in `masks`.
@@ -118,10 +128,7 @@ void draw(const MaskRaster& raster, float max_distance, const float* corner,
           const std::uint32_t* target, unsigned count, std::uint32_t* masks)
 {
     Vector16 c[kCorners];
-    for (int i = 0; i < kCorners; ++i) {
-        c[i] = {load(corner + (3 * i) * kStride), load(corner + (3 * i + 1) * kStride),
-                load(corner + (3 * i + 2) * kStride)};
-    }
+    load_corners<kCorners, kStride>(corner, c);
 
     // planes through the receiver and each edge, turned inward; from the edges, not from pairs of
     // corners, whose product is mere rounding where they are next to each other
@@ -266,10 +273,7 @@ public:
     void add(const float* corner, unsigned count)
     {
         Vector16 c[kCorners];
-        for (int i = 0; i < kCorners; ++i) {
-            c[i] = {load(corner + (3 * i) * kStride), load(corner + (3 * i + 1) * kStride),
-                    load(corner + (3 * i + 2) * kStride)};
-        }
+        load_corners<kCorners, kStride>(corner, c);
         const Float16 zero = all(0.0f);
         Vector16 r =
             kCorners == 3 ? (c[0] + c[1] + c[2]) * all(1.0f / 3.0f) : (c[0] + c[2]) * all(0.5f);
@@ -709,6 +713,14 @@ SURFELAO_MASK_INLINE Second second_moments(const MaskRaster& raster, const std::
     return second;
 }
 
+/// Above the horizon and not covered.
+SURFELAO_MASK_INLINE void open_bits(const std::uint32_t* above, const std::uint32_t* mask,
+                                    std::uint32_t* open)
+{
+    for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
+        store(open + w, load(above + w) & ~load(mask + w));
+}
+
 /// Share of the weight above the horizon that the bits of `open` have.
 SURFELAO_MASK_INLINE float openness_of(const MaskRaster& raster, const std::uint32_t* open,
                                        const std::uint32_t* above, const float* n)
@@ -847,8 +859,7 @@ Visible visible_of(const MaskRaster& raster, const MaskShared& shared, const flo
     alignas(64) std::uint32_t above[kMaskWords];
     alignas(64) std::uint32_t open[kMaskWords];
     horizon(raster, axis, above);
-    for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
-        store(open + w, load(above + w) & ~load(shared.mask + w));
+    open_bits(above, shared.mask, open);
     const float openness = openness_of(raster, open, above, axis);
     const float share = (1.0f - openness) / sum;
     return {openness, share < 1.0f ? share : 1.0f};
@@ -962,8 +973,7 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
         std::uint32_t* mask = masks + i * kMaskPairWords;
         const std::uint32_t* above = horizons + i * kMaskWords;
         alignas(64) std::uint32_t open[kMaskWords];
-        for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
-            store(open + w, load(above + w) & ~load(mask + w));
+        open_bits(above, mask, open);
         float openness = openness_of(raster, open, above, n);
         const float fill_weight = (1.0f - openness - kFillFrom) / kFillRange;
         if (world.settings.fill && fill_weight > 0.0f && openness > 0.0f) {
