@@ -115,7 +115,8 @@ Engine engine_of(Bytes& bytes)
         }
         default: {
             MaskOptions options;
-            options.quality = 4.0f * bytes.share();
+            options.quality = MaskOptions::kCoarsest +
+                              (MaskOptions::kFinest - MaskOptions::kCoarsest) * bytes.share();
             const std::vector<MaskKernelSet> kernels = available_mask_kernels();
             options.kernel = kernels[bytes.byte() % kernels.size()];
             options.exact = bytes.byte() >= 224;
