@@ -25,10 +25,22 @@ constexpr float kFlatnessPenalty = 5.0f;
 constexpr float kFlatPenalty = 1.0f;
 constexpr float kFlatSlope = 1e4f;
 
-/// Rectangles of flat nodes are drawn a little larger: their neighbours most likely continue the
-/// same plane, and the rim closes the cracks. None from a flatness of 1 - 1/kDilationSlope down.
-constexpr float kDilation = 0.08f;
+/// Rectangles of flat nodes are drawn a little larger on the sides where the tree was cut: there
+/// the neighbours continue the same plane, and the rim closes the cracks. Elsewhere the surface
+/// ends. None from a flatness of 1 - 1/kDilationSlope down.
+constexpr float kDilation = 0.12f;
 constexpr float kDilationSlope = 40.0f;
+/// A side is cut where a cut is no farther from the middle than so many times the side is.
+constexpr float kCutReach = 1.5f;
+
+/// The rectangle of a bulging patch lies deeper than the centroid by this share of the mean of n.(x
+/// - center): so the outline of a body made of rectangles has the body's own mean width. With an
+/// arc of half-angle f on a circle of radius 1, n arcs around it and plates as long as the chords
+/// at depth d, the hull's perimeter is n (2 sin f + 2 ((1 - d) sin f - sin f cos f)) for small f;
+/// it is 2 pi (Cauchy: perimeter over pi is the mean width) at d = f^2 / 3. The centroid is at f^2
+/// / 6, the mean of n.(x - center) is f^2 / 3: one half of it for a cylinder; where the surface
+/// bends both ways alike each has its mean, and one quarter remains.
+constexpr float kBulgeDepth = 0.35f;
 
 /// A rectangle's area follows from its second moments; a disk's is 1.05 times as large as that, and
 /// no convex shape's is larger. What is above this factor overlaps itself.
@@ -83,10 +95,35 @@ void set_sums(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right)
     patch.zz = left.zz + right.zz + weighted.z * apart.z;
 }
 
+using Vector = std::array<Lanes, 3>;
+
+Vector operator+(const Vector& u, const Vector& v)
+{
+    return {u[0] + v[0], u[1] + v[1], u[2] + v[2]};
+}
+Vector operator-(const Vector& u, const Vector& v)
+{
+    return {u[0] - v[0], u[1] - v[1], u[2] - v[2]};
+}
+Vector operator*(const Vector& u, Lanes f)
+{
+    return {u[0] * f, u[1] * f, u[2] * f};
+}
+Lanes dot(const Vector& u, const Vector& v)
+{
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+Vector half_cross(const Vector& u, const Vector& v)
+{
+    return {0.5f * (u[1] * v[2] - v[1] * u[2]), 0.5f * (u[2] * v[0] - v[2] * u[0]),
+            0.5f * (u[0] * v[1] - v[0] * u[1])};
+}
+
 /// What set_rectangles reads and what it finds, for as many patches as there are lanes.
 struct Columns {
     Lanes normal_x, normal_y, normal_z, xx, xy, xz, yy, yz, zz, area, seen_area, radius;
     Lanes axis_x, axis_y, axis_z, length_u, length_v, open_radius;
+    Lanes rim;  ///< how much larger a side is drawn where it is cut
     LaneMask sheet, may_be_whole;
 };
 
@@ -146,10 +183,58 @@ void set_rectangles(Columns& of)
     const Lanes diagonal = root(length_u * length_u + length_v * length_v);
     const Lanes shrink = least(one, of.radius / diagonal);
     of.sheet = (flatness > kSheetFlatness) & (of.area > kSheetCover * spread_area) & any;
-    const Lanes rim = most(zero, 1.0f - kDilationSlope * (1.0f - flatness));
-    const Lanes size = shrink * (of.sheet ? 1.0f + kDilation * rim : one);
-    of.length_u = any ? length_u * size : zero;
-    of.length_v = any ? length_v * size : zero;
+    of.rim = of.sheet ? kDilation * most(zero, 1.0f - kDilationSlope * (1.0f - flatness)) : zero;
+    of.length_u = any ? length_u * shrink : zero;
+    of.length_v = any ? length_v * shrink : zero;
+}
+
+/// Room between the middle and the cuts on both sides of each axis of the scene.
+struct Room {
+    Vector below, above;
+};
+
+/// Of up to as many nodes as there are lanes.
+Room room_of(std::span<const MaskPatchNode> nodes, const Vector& center)
+{
+    Vector low, high;
+    for (std::size_t i = 0; i < kLaneCount; ++i) {
+        const MaskCuts& cuts = *nodes[std::min(i, nodes.size() - 1)].cuts;
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k][i] = cuts.low[static_cast<int>(k)];
+            high[k][i] = cuts.high[static_cast<int>(k)];
+        }
+    }
+    Room room;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const glm::vec3 scene_axis = kMaskFrame[static_cast<int>(k)];
+        const Lanes at =
+            scene_axis.x * center[0] + scene_axis.y * center[1] + scene_axis.z * center[2];
+        room.below[k] = at - low[k];
+        room.above[k] = high[k] - at;
+    }
+    return room;
+}
+
+/// Lengthens a half axis of a rectangle by `rim` at the ends that are cut. Returns how far the
+/// middle moves.
+Vector grow_to_cuts(Vector& axis, const Room& room, Lanes rim)
+{
+    LaneMask ahead{}, behind{};
+    for (int k = 0; k < 3; ++k) {
+        const glm::vec3 scene_axis = kMaskFrame[k];
+        const Lanes along =
+            scene_axis.x * axis[0] + scene_axis.y * axis[1] + scene_axis.z * axis[2];
+        const Lanes reach = kCutReach * absolute(along);
+        const auto i = static_cast<std::size_t>(k);
+        ahead |= (along > 0.0f ? room.above[i] : room.below[i]) < reach;
+        behind |= (along > 0.0f ? room.below[i] : room.above[i]) < reach;
+    }
+    const Lanes half = 0.5f * rim;
+    const Lanes zero = all_lanes(0.0f);
+    const Lanes forward = ahead ? half : zero, backward = behind ? half : zero;
+    const Vector move = axis * (forward - backward);
+    axis = axis * (1.0f + forward + backward);
+    return move;
 }
 
 /// Whether the triangles tile a rectangle with sides along and across `axis`; if so, shows it.
@@ -192,24 +277,7 @@ bool make_whole_along(glm::vec3 axis, const MaskPatch& patch, const MaskCorners&
 
 void set_tiles(std::span<const MaskPatchNode> nodes, const MaskCorners& corners)
 {
-    using Vector = std::array<Lanes, 3>;
     const Lanes zero = all_lanes(0.0f);
-    const auto minus = [](const Vector& u, const Vector& v) {
-        return Vector{u[0] - v[0], u[1] - v[1], u[2] - v[2]};
-    };
-    const auto plus = [](const Vector& u, const Vector& v) {
-        return Vector{u[0] + v[0], u[1] + v[1], u[2] + v[2]};
-    };
-    const auto times = [](const Vector& u, Lanes f) {
-        return Vector{u[0] * f, u[1] * f, u[2] * f};
-    };
-    const auto dot = [](const Vector& u, const Vector& v) {
-        return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-    };
-    const auto half_cross = [](const Vector& u, const Vector& v) {
-        return Vector{0.5f * (u[1] * v[2] - v[1] * u[2]), 0.5f * (u[2] * v[0] - v[2] * u[0]),
-                      0.5f * (u[0] * v[1] - v[0] * u[1])};
-    };
     for (std::size_t begin = 0; begin < nodes.size(); begin += kLaneCount) {
         // as many tiles as lanes: [corner][axis]
         std::array<Vector, 4> p;
@@ -219,21 +287,21 @@ void set_tiles(std::span<const MaskPatchNode> nodes, const MaskCorners& corners)
         }
         const auto& [a, b, c, d] = p;
         // of the triangles (a, b, c) and (c, d, a); the second of a single one has no area
-        const Vector diagonal = minus(c, a);
-        const Vector first = half_cross(minus(b, a), diagonal);
-        const Vector second = half_cross(diagonal, minus(d, a));
-        const Vector vector_area = plus(first, second);
+        const Vector diagonal = c - a;
+        const Vector first = half_cross(b - a, diagonal);
+        const Vector second = half_cross(diagonal, d - a);
+        const Vector vector_area = first + second;
         const Lanes first_area = root(dot(first, first)), second_area = root(dot(second, second));
         const Lanes area = first_area + second_area;
         const Lanes seen_area = root(dot(vector_area, vector_area));
         const Lanes share = area > 0.0f ? second_area / area : zero;
-        const Vector first_center = times(plus(plus(a, b), c), all_lanes(1.0f / 3.0f));
-        const Vector apart = times(minus(d, b), all_lanes(1.0f / 3.0f));
-        const Vector center = plus(first_center, times(apart, share));
-        const Vector from_a = minus(a, center), from_b = minus(b, center),
-                     from_c = minus(c, center), from_d = minus(d, center);
-        const Vector to_first = times(apart, -share);
-        const Vector to_second = times(apart, 1.0f - share);
+        const Vector first_center = (a + b + c) * all_lanes(1.0f / 3.0f);
+        const Vector apart = (d - b) * all_lanes(1.0f / 3.0f);
+        const Vector center = first_center + apart * share;
+        const Vector from_a = a - center, from_b = b - center, from_c = c - center,
+                     from_d = d - center;
+        const Vector to_first = apart * -share;
+        const Vector to_second = apart * (1.0f - share);
         const Vector normal = {seen_area > 0.0f ? vector_area[0] / seen_area : zero,
                                seen_area > 0.0f ? vector_area[1] / seen_area : zero,
                                seen_area > 0.0f ? vector_area[2] / seen_area : zero + 1.0f};
@@ -260,19 +328,19 @@ void set_tiles(std::span<const MaskPatchNode> nodes, const MaskCorners& corners)
         Vector fourth;
         for (std::size_t axis = 0; axis < 3; ++axis)
             fourth[axis] = alone ? zero : from_d[axis];
-        const Vector even = times(plus(from_a, from_c), all_lanes(0.25f));
-        const Vector odd = times(plus(from_b, fourth), all_lanes(0.25f));
-        const Vector middle = plus(even, odd);
-        const Vector skew = minus(even, odd);
-        const Vector axis_a = times(minus(from_a, from_c), all_lanes(0.5f));
-        const Vector axis_b = times(minus(from_b, fourth), all_lanes(0.5f));
+        const Vector even = (from_a + from_c) * all_lanes(0.25f);
+        const Vector odd = (from_b + fourth) * all_lanes(0.25f);
+        const Vector middle = even + odd;
+        const Vector skew = even - odd;
+        const Vector axis_a = (from_a - from_c) * all_lanes(0.5f);
+        const Vector axis_b = (from_b - fourth) * all_lanes(0.5f);
         const auto beyond = [&](const Vector& corner) {
-            const Vector from = minus(corner, middle);
+            const Vector from = corner - middle;
             return dot(from, from);
         };
         const Lanes node_radius =
             root(most(most(beyond(from_a), beyond(from_b)), most(beyond(from_c), beyond(fourth))));
-        const Vector node_center = plus(center, middle);
+        const Vector node_center = center + middle;
         // from a column for each number to a row for each tile
         std::array<std::array<Lanes, kLaneCount>, 5> patch = {
             {{center[0], center[1], center[2], area},
@@ -340,6 +408,7 @@ void join(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right,
 
 void show_patches(std::span<MaskPatchNode> nodes)
 {
+    const Lanes zero = all_lanes(0.0f);
     for (std::size_t begin = 0; begin < nodes.size(); begin += kLaneCount) {
         const std::size_t count = std::min(kLaneCount, nodes.size() - begin);
         // from a row for each patch to a column for each number
@@ -367,18 +436,25 @@ void show_patches(std::span<MaskPatchNode> nodes)
         columns.zz = patch[4][2];
         set_rectangles(columns);
 
-        // and back
         const Columns& of = columns;
-        const Lanes across_x = of.length_v * (of.normal_y * of.axis_z - of.axis_y * of.normal_z);
-        const Lanes across_y = of.length_v * (of.normal_z * of.axis_x - of.axis_z * of.normal_x);
-        const Lanes across_z = of.length_v * (of.normal_x * of.axis_y - of.axis_x * of.normal_y);
-        const Lanes along_x = of.length_u * of.axis_x, along_y = of.length_u * of.axis_y,
-                    along_z = of.length_u * of.axis_z, zero = all_lanes(0.0f);
+        const Vector center = {patch[0][0], patch[0][1], patch[0][2]};
+        const Vector normal = {of.normal_x, of.normal_y, of.normal_z};
+        const Vector axis = {of.axis_x, of.axis_y, of.axis_z};
+        Vector along = axis * of.length_u;
+        Vector across = half_cross(normal, axis) * (2.0f * of.length_v);
+        const Room room = room_of(nodes.subspan(begin, count), center);
+        const Lanes depth = of.area > 0.0f ? kBulgeDepth * most(zero, patch[4][3]) / of.area : zero;
+        const Vector move =
+            grow_to_cuts(along, room, of.rim) + grow_to_cuts(across, room, of.rim) - normal * depth;
+        const Vector middle = center + move;
+        const Vector axis_a = along + across, axis_b = across - along;
+
+        // and back
         std::array<std::array<Lanes, kLaneCount>, 4> node = {
-            {{patch[0][0], patch[0][1], patch[0][2], of.radius},
-             {zero, zero, zero, patch[3][3]},
-             {along_x + across_x, along_y + across_y, along_z + across_z, of.open_radius},
-             {across_x - along_x, across_y - along_y, across_z - along_z, zero}}};
+            {{middle[0], middle[1], middle[2], of.radius + root(dot(move, move))},
+             {zero, zero, zero, patch[3][3] + depth},
+             {axis_a[0], axis_a[1], axis_a[2], of.open_radius},
+             {axis_b[0], axis_b[1], axis_b[2], zero}}};
         for (auto& [x, y, z, w] : node)
             transpose(x, y, z, w);
         for (std::size_t i = 0; i < count; ++i) {

@@ -9,6 +9,7 @@
 #include "tree/mask_tree.h"
 
 #include <cstddef>
+#include <limits>
 #include <span>
 
 namespace surfelao {
@@ -52,11 +53,18 @@ struct MaskCorners {
     }
 };
 
+/// Where the tree was cut about a node: planes across the scene's own axes.
+struct MaskCuts {
+    glm::vec3 low{-std::numeric_limits<float>::infinity()};
+    glm::vec3 high{std::numeric_limits<float>::infinity()};
+};
+
 /// A patch and the node that shows it.
 struct MaskPatchNode {
     MaskPatch* patch;
     MaskNode* node;
-    bool may_be_whole;  ///< set by show_patches: make_whole is to be asked
+    const MaskCuts* cuts;  ///< of inner nodes
+    bool may_be_whole;     ///< set by show_patches: make_whole is to be asked
 };
 
 /// The patches of tiles and their nodes.
@@ -69,7 +77,7 @@ void join(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right);
 void join(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right,
           const MaskCorners& corners);
 
-/// Sets inner nodes from their patches; the children are left out of `links`.
+/// Sets inner nodes from their patches and cuts; the children are left out of `links`.
 void show_patches(std::span<MaskPatchNode> nodes);
 
 /// Where triangles tile a rectangle, the node is that rectangle, no approximation, and need not

@@ -151,8 +151,18 @@ struct Bundle {
     std::array<std::uint8_t, kBundle> inner;  ///< parents first
     std::array<float, 12 * kStride> corners;  ///< columns, as in MaskCorners
     std::array<MaskPatch, kNodes> patches;
+    std::array<MaskCuts, kNodes> cuts;
     std::array<MaskPatchNode, kBundle> shown;
 };
+
+/// What looks elsewhere need not be beside what it was parted from.
+void cut(const Plane& plane, MaskCuts& left, MaskCuts& right)
+{
+    if (plane.axis < 3) {
+        left.high[static_cast<int>(plane.axis)] = plane.at;
+        right.low[static_cast<int>(plane.axis)] = plane.at;
+    }
+}
 
 class Builder {
 public:
@@ -185,7 +195,7 @@ public:
         });
         order_.resize(count);
         nodes_.resize(2 * count - 1);
-        build_node(0, 1, 0, count, 0);
+        build_node(0, 1, 0, count, 0, {});
         return std::move(nodes_);
     }
 
@@ -216,21 +226,22 @@ private:
     /// Node `index` over keys [begin, end) of one side; its descendants stand in nodes [first,
     /// first + 2 (n-1)).
     MaskPatch build_node(std::size_t index, std::size_t first, std::size_t begin, std::size_t end,
-                         int side)
+                         int side, const MaskCuts& cuts)
     {
         const std::size_t count = end - begin;
         if (count <= kBundle)
-            return build_bundle(index, first, begin, end, side);
+            return build_bundle(index, first, begin, end, side, cuts);
 
-        const std::size_t middle = split(begin, end, side);
+        MaskCuts left_cuts = cuts, right_cuts = cuts;
+        const std::size_t middle = split(begin, end, side, left_cuts, right_cuts);
         const std::size_t left_first = first + 2;
         const std::size_t right_first = left_first + 2 * (middle - begin - 1);
         MaskPatch left, right;
         const auto build_left = [&] {
-            left = build_node(first, left_first, begin, middle, 1 - side);
+            left = build_node(first, left_first, begin, middle, 1 - side, left_cuts);
         };
         const auto build_right = [&] {
-            right = build_node(first + 1, right_first, middle, end, 1 - side);
+            right = build_node(first + 1, right_first, middle, end, 1 - side, right_cuts);
         };
         if (count > kParallelNode) {
             tbb::parallel_invoke(build_left, build_right);
@@ -241,7 +252,7 @@ private:
 
         MaskPatch patch;
         join(patch, left, right);
-        MaskPatchNode shown{&patch, &nodes_[index], false};
+        MaskPatchNode shown{&patch, &nodes_[index], &cuts, false};
         show_patches({&shown, 1});
         if (shown.may_be_whole) {
             const std::size_t stride = count + MaskCorners::kSlack;
@@ -257,13 +268,16 @@ private:
 
     /// Parts keys [begin, end) of one side into the other side. Returns where the second part
     /// begins. What the plane does not part is cut in two halves.
-    std::size_t split(std::size_t begin, std::size_t end, int side)
+    std::size_t split(std::size_t begin, std::size_t end, int side, MaskCuts& left_cuts,
+                      MaskCuts& right_cuts)
     {
         const std::span<const Key> keys(keys_[side].data() + begin, end - begin);
         const Plane plane = plane_of(extent_of(keys), keys);
         const std::size_t below = part(keys, plane, keys_[1 - side].data() + begin);
-        const bool parted = below != 0 && below != keys.size();
-        return begin + (parted ? below : keys.size() / 2);
+        if (below == 0 || below == keys.size())
+            return begin + keys.size() / 2;
+        cut(plane, left_cuts, right_cuts);
+        return begin + below;
     }
 
     /// The corners of a tile into row `i` of twelve columns.
@@ -299,9 +313,10 @@ private:
 
     /// build_node for few triangles.
     MaskPatch build_bundle(std::size_t index, std::size_t first, std::size_t begin, std::size_t end,
-                           int side)
+                           int side, const MaskCuts& cuts)
     {
         Bundle bundle;
+        bundle.cuts[0] = cuts;
         const std::size_t count = end - begin;
         // memory is asked for long before it is needed: triangles stand anywhere
         for (std::size_t k = 0; k < 2 * (count - 1); ++k)
@@ -327,7 +342,7 @@ private:
         const auto place = [&](std::size_t k) { return k == 0 ? index : first + k - 1; };
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t k = bundle.leaf[i];
-            bundle.shown[i] = {&bundle.patches[k], &nodes_[place(k)], false};
+            bundle.shown[i] = {&bundle.patches[k], &nodes_[place(k)], nullptr, false};
         }
         set_tiles({bundle.shown.data(), count}, corners);
         for (std::size_t i = 0; i < count; ++i)
@@ -339,7 +354,7 @@ private:
             const Bundle::Node node = bundle.nodes[k];
             join(bundle.patches[k], bundle.patches[node.first_child],
                  bundle.patches[node.first_child + 1], corners.part(node.begin, node.end));
-            bundle.shown[i] = {&bundle.patches[k], &nodes_[place(k)], false};
+            bundle.shown[i] = {&bundle.patches[k], &nodes_[place(k)], &bundle.cuts[k], false};
         }
         show_patches({bundle.shown.data(), inner_count});
         for (std::size_t i = 0; i < inner_count; ++i) {
@@ -371,12 +386,17 @@ private:
             }
             std::uint8_t side = node.side;
             std::size_t below = 1;
+            MaskCuts* const cuts = &bundle.cuts[node_count];
+            cuts[0] = cuts[1] = bundle.cuts[k];
             if (size > 2) {
                 side = 1 - side;
+                const Plane plane = plane_of(Extent({keys, size}), {keys, size});
                 Key* const out = bundle.keys[side].data() + node.begin;
-                below = part<Key>({keys, size}, plane_of(Extent({keys, size}), {keys, size}), out,
-                                  0, size);
-                below = below != 0 && below != size ? below : size / 2;
+                below = part<Key>({keys, size}, plane, out, 0, size);
+                if (below != 0 && below != size)
+                    cut(plane, cuts[0], cuts[1]);
+                else
+                    below = size / 2;
             }
             const auto middle = static_cast<std::uint8_t>(node.begin + below);
             node.first_child = static_cast<std::uint8_t>(node_count);

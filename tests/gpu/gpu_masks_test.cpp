@@ -31,7 +31,8 @@ struct World {
 
 struct Difference {
     double rms = 0.0, mean = 0.0, largest = 0.0;
-    double bent_normal = 0.0;  ///< RMS length of the difference
+    /// RMS length of the difference times what is open: where only one bit is, it may be another.
+    double bent_normal = 0.0;
 };
 
 /// Of the GPU from the CPU, over all receivers.
@@ -43,7 +44,8 @@ Difference difference(const World& world, const MaskOptions& options)
     Difference result;
     for (std::size_t i = 0; i < cpu.size(); ++i) {
         const double d = double{gpu[i].occlusion} - double{cpu[i].occlusion};
-        const double bent = double{glm::distance(gpu[i].bent_normal, cpu[i].bent_normal)};
+        const double bent = double{glm::distance(gpu[i].bent_normal, cpu[i].bent_normal)} *
+                            (1.0 - double{cpu[i].occlusion});
         result.mean += d;
         result.rms += d * d;
         result.bent_normal += bent * bent;
@@ -150,7 +152,7 @@ TEST(GpuMasks, CracksBetweenClustersAreFilledLikeOnTheCpu)
                 {.definition = {.max_distance = limit}, .quality = MaskOptions::kDraft});
             EXPECT_LT(d.rms, 3e-4) << world.receivers.size() << " receivers, limit " << limit;
             EXPECT_LT(d.largest, 3e-3) << world.receivers.size() << " receivers, limit " << limit;
-            EXPECT_LT(d.bent_normal, 0.02) << world.receivers.size() << " receivers";
+            EXPECT_LT(d.bent_normal, 1e-3) << world.receivers.size() << " receivers";
         }
     }
 }
