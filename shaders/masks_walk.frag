@@ -174,8 +174,15 @@ void main()
         bool  dropped = u_one_sided != 0 && (last.w & kSolid) != 0u && own_away < 0.0;
         float grow    = loose && (last.w & kHollow) != 0u && away < 0.0 ? kHollowGrowth : 1.0;
         vec3  skew = u_face * uintBitsToFloat(texelFetch(u_nodes, at * 4 + 1).xyz);
-        axis_a     = u_face * (grow * axis_a);
-        axis_b     = u_face * (grow * axis_b);
+        axis_a     = u_face * axis_a;
+        axis_b     = u_face * axis_b;
+        // how high the highest corner is, and how high it must be as far away as the centre
+        float odd = dot(axis_b, up);
+        float top = dot(center, up) + max(dot(skew, up) + abs(dot(axis_a, up)),
+                                          (triangle ? odd : abs(odd)) - dot(skew, up));
+        float least = u_graze * u_graze * (dot(center, center) - radius * radius);
+        axis_a *= grow;
+        axis_b *= grow;
         at = int(last.w & kNext);
 
         // planes through the receiver and each edge, turned inward; a triangle's first counts twice
@@ -210,14 +217,12 @@ void main()
             inside1 &= cone_bits(normal, height / u_max_distance, q + 1);
         }
 
-        // not where it lies wholly below the horizon, or so little above that it weighs nothing, unless
-        // the receiver is next to it. Nor beside the half: seen edge-on, its planes are rounding noise
+        // not where it lies wholly below the horizon, or so little above that it weighs nothing.
+        // Nor beside the half: seen edge-on, its planes are rounding noise
         // and may enclose directions anywhere
         vec4 beside = max(max(within_half(c0), within_half(c1)),
                           max(within_half(c2), within_half(c3)));
-        vec4 heights = max(vec4(dot(c0, up), dot(c1, up), dot(c2, up), dot(c3, up)), 0.0);
-        float sine = shared || dot(center, center) < radius * radius ? 0.0 : u_graze;
-        bool seen = !dropped && volume != 0.0 && any(greaterThan(heights * heights, sine * sine * squares)) &&
+        bool seen = !dropped && volume != 0.0 && top > 0.0 && (shared || top * top > least) &&
                     all(greaterThanEqual(beside, vec4(0.0))) && height < u_max_distance;
         uvec4 drawn       = uvec4(seen ? 0xFFFFFFFFu : 0u);
         uvec4 drawn_loose = uvec4(seen && loose ? 0xFFFFFFFFu : 0u);

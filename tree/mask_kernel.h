@@ -67,22 +67,12 @@ struct MaskBuffer {
 void reserve(MaskBuffer<std::uint32_t>& buffer, std::size_t count);
 void release(MaskBuffer<std::uint32_t>& buffer);
 
-/// Records as columns: member r of number i stands at data[r * stride + i].
-struct MaskColumns {
-    float* data = nullptr;
-    std::size_t count = 0;
-    std::size_t stride = 0;
-};
-/// Makes room for `count` records of `members` floats, keeps the contents. Throws std::bad_alloc.
-void reserve(MaskColumns& columns, std::size_t members, std::size_t count);
-void release(MaskColumns& columns);
-
 /// Working memory of one thread.
 struct MaskScratch {
     MaskBuffer<std::uint32_t> frontier;
-    MaskColumns clusters;    ///< members: four corners x 3 coordinates
-    MaskColumns rectangles;  ///< the same, of nodes whose rims are where the surface ends
-    MaskColumns triangles;   ///< three corners x 3 coordinates
+    MaskBuffer<std::uint32_t> clusters;    ///< nodes to be drawn for each receiver of a group
+    MaskBuffer<std::uint32_t> rectangles;  ///< the same, whose rims are where the surface ends
+    MaskBuffer<std::uint32_t> triangles;   ///< and with three corners
 };
 
 /// What all calls share.

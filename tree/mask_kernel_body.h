@@ -23,6 +23,7 @@ constexpr int kOpenBits = 4;  ///< a place with no more of them open is closed: 
 constexpr std::size_t kDrawnBetweenChecks = 64;  ///< polygons
 constexpr float kHollowGrowth =
     1.1f;  ///< of a hollow front, whose clusters tilt away from each other
+constexpr std::uint32_t kGrown = 0x80000000u;  ///< in a list: the polygon's rim is larger
 constexpr float kLargestMove = 0.03f;  ///< what the change of the shared part tends to at most
 constexpr float kTinyComponent =
     1e-30f;  ///< stands for 0 in divisions; edge normals are above 1e-20
@@ -54,6 +55,18 @@ SURFELAO_MASK_INLINE Vector16 cross(Vector16 a, Vector16 b)
 SURFELAO_MASK_INLINE Vector16 broadcast(const float* v)
 {
     return {all(v[0]), all(v[1]), all(v[2])};
+}
+SURFELAO_MASK_INLINE Vector16 pack(Vector16 a, Lanes chosen)
+{
+    return {pack(a.x, chosen), pack(a.y, chosen), pack(a.z, chosen)};
+}
+SURFELAO_MASK_INLINE Lanes first_lanes(unsigned count)
+{
+    return lanes_of((1u << count) - 1u);
+}
+SURFELAO_MASK_INLINE unsigned count_of(Lanes a)
+{
+    return static_cast<unsigned>(__builtin_popcount(bits(a)));
 }
 SURFELAO_MASK_INLINE Int16 sign_of(Float16 a)
 {
@@ -187,63 +200,56 @@ void draw(const MaskRaster& raster, float max_distance, const float* corner,
                    without(drawn, negative(all_dzx | all_szx | ~any_dyz | all_syz)),
                    without(drawn, negative(~any_dzx | ~any_szx | all_dyz | ~any_syz))};
 
-    alignas(64) float slope[kCorners][kLanes];
-    alignas(64) float start[kCorners][kLanes];
-    alignas(64) std::uint32_t below[kCorners][kLanes];
-    alignas(64) std::uint32_t words[kLanes];
+    // the two faces of an axis see the same slopes
+    alignas(64) float slope[3][kCorners][kLanes];
+    alignas(64) float start[kMaskFaces][kCorners][kLanes];
+    alignas(64) std::uint32_t below[3][kCorners][kLanes];
+    std::uint64_t faces[2] = {};  // a bit for each face and lane
+    const auto set_axis = [&]<int kAxis>() {
+        constexpr int kU = (kAxis + 1) % 3, kV = (kAxis + 2) % 3;
+        const std::uint64_t both = bits(in[2 * kAxis]) | bits(in[2 * kAxis + 1]) << kLanes;
+        if (both == 0)
+            return;
+        faces[kAxis / 2] |= both << (kAxis % 2 * 2 * kLanes);
+        for (int i = 0; i < kCorners; ++i) {
+            const Float16 normal[3] = {n[i].x, n[i].y, n[i].z};
+            const Int16 sign = sign_of(normal[kU]);
+            const Float16 size = max(flip(normal[kU], sign), all(kTinyComponent));
+            const Float16 scale = flip(reciprocal(size) * all(-16.0f), sign);
+            store(slope[kAxis][i], normal[kV] * scale);
+            store(start[2 * kAxis][i], fma(normal[kAxis], scale, all(16.0f)));
+            store(start[2 * kAxis + 1][i], all(16.0f) - normal[kAxis] * scale);
+            store(below[kAxis][i], select(nonzero(sign), all(~0u), all(0u)));
+        }
+    };
+    set_axis.template operator()<0>();
+    set_axis.template operator()<1>();
+    set_axis.template operator()<2>();
+
     const Float16 row_v = load(raster.row_v);
     const Float16 row_shift = load(raster.row_shift);
-
-    // each round takes one face of every lane that has one left
-    for (;;) {
-        Lanes take[6];
-        Lanes left = drawn;
-        for (int f = 0; f < 6; ++f) {
-            take[f] = in[f] & left;
-            left = without(left, take[f]);
-            in[f] = without(in[f], take[f]);
-        }
-        unsigned lanes = bits(without(drawn, left));
-        if (lanes == 0)
-            break;
-        const Lanes on_x = take[0] | take[1];
-        const Lanes on_y = take[2] | take[3];
-        const Int16 backward = select(take[1] | take[3] | take[5], all(0x80000000u), all(0u));
-        Int16 face_word = select(on_x, all(0u), select(on_y, all(32u), all(64u)));
-        face_word = face_word | shift_right<27>(backward);
-        store(words, load(target) | face_word);
-        for (int i = 0; i < kCorners; ++i) {
-            const Float16 na = flip(select(on_x, n[i].x, select(on_y, n[i].y, n[i].z)), backward);
-            const Float16 nu = select(on_x, n[i].y, select(on_y, n[i].z, n[i].x));
-            const Float16 nv = select(on_x, n[i].z, select(on_y, n[i].x, n[i].y));
-            const Int16 sign = sign_of(nu);
-            const Float16 size = max(flip(nu, sign), all(kTinyComponent));
-            const Float16 scale = flip(reciprocal(size) * all(-16.0f), sign);
-            store(slope[i], nv * scale);
-            store(start[i], fma(na, scale, all(16.0f)));
-            store(below[i], select(nonzero(sign), all(~0u), all(0u)));
-        }
-        while (lanes != 0) {
-            const int lane = __builtin_ctz(lanes);
-            lanes &= lanes - 1;
+    for (unsigned half = 0; half < 2; ++half) {
+        for (std::uint64_t left = faces[half]; left != 0; left &= left - 1) {
+            const auto place = static_cast<unsigned>(__builtin_ctzll(left));
+            const unsigned lane = place % kLanes;
+            const unsigned face = 4 * half + place / kLanes;
+            const unsigned axis = face / 2;
             Int16 inside = all(~0u);
             for (int i = 0; i < kCorners; ++i) {
-                const Int16 from =
-                    bits_from(fma(all(slope[i][lane]), row_v, all(start[i][lane])) - row_shift);
-                inside = and_xor(inside, from, all(below[i][lane]));
+                const Int16 from = bits_from(
+                    fma(all(slope[axis][i][lane]), row_v, all(start[face][i][lane])) - row_shift);
+                inside = and_xor(inside, from, all(below[axis][i][lane]));
             }
             if (cut >> lane & 1u) {
-                const std::uint32_t face = words[lane] / kMaskFaceWords % 8u;
-                const std::uint32_t a = face / 2;
-                const float na = plane[a][lane];
-                inside =
-                    inside & cone_bits(raster, face % 2 == 0 ? na : -na, plane[(a + 1) % 3][lane],
-                                       plane[(a + 2) % 3][lane], plane[3][lane]);
+                const float na = plane[axis][lane];
+                inside = inside & cone_bits(raster, face % 2 == 0 ? na : -na,
+                                            plane[(axis + 1) % 3][lane],
+                                            plane[(axis + 2) % 3][lane], plane[3][lane]);
             }
-            std::uint32_t* face = masks + words[lane];
-            store(face, load(face) | inside);
+            std::uint32_t* mask = masks + target[lane] + kMaskFaceWords * face;
+            store(mask, load(mask) | inside);
             if constexpr (kLoose)
-                store(face + kMaskWords, load(face + kMaskWords) | inside);
+                store(mask + kMaskWords, load(mask + kMaskWords) | inside);
         }
     }
 }
@@ -340,16 +346,16 @@ public:
     {
     }
 
-    /// corner: relative to the receiver whose mask begins at masks[target].
-    SURFELAO_MASK_INLINE void add(const Vector16* corner, std::uint32_t target, Lanes chosen)
+    /// corner: relative to the receivers whose masks begin at masks[target].
+    SURFELAO_MASK_INLINE void add(const Vector16* corner, Int16 target, unsigned count)
     {
         for (int i = 0; i < kCorners; ++i) {
-            store(corner_[3 * i] + count_, pack(corner[i].x, chosen));
-            store(corner_[3 * i + 1] + count_, pack(corner[i].y, chosen));
-            store(corner_[3 * i + 2] + count_, pack(corner[i].z, chosen));
+            store(corner_[3 * i] + count_, corner[i].x);
+            store(corner_[3 * i + 1] + count_, corner[i].y);
+            store(corner_[3 * i + 2] + count_, corner[i].z);
         }
-        store(target_ + count_, all(target));
-        count_ += static_cast<unsigned>(__builtin_popcount(bits(chosen)));
+        store(target_ + count_, target);
+        count_ += count;
         if (count_ >= kLanes) {
             draw_first(kLanes);
             for (int i = 0; i < 3 * kCorners; ++i)
@@ -406,18 +412,31 @@ struct Node16 {
         const Vector16 n = cross(axis_a(), axis_b());
         return n * inverse_sqrt(max(dot(n, n), all(kTinyComponent)));
     }
-    /// A triangle's are the first three.
-    SURFELAO_MASK_INLINE void corners(Vector16 origin, Float16 grow, Vector16* corner) const
-    {
-        const Vector16 c = center() - origin;
-        const Vector16 a = axis_a() * grow;
-        const Vector16 b = axis_b() * grow;
-        corner[0] = c + skew() + a;
-        corner[1] = c - skew() + b;
-        corner[2] = c + skew() - a;
-        corner[3] = c - skew() - b;
-    }
 };
+
+/// One node for all lanes.
+SURFELAO_MASK_INLINE Node16 broadcast_node(const float* fields)
+{
+    Node16 node;
+    for (int k = 0; k < kLanes; ++k)
+        node.field[k] = all(fields[k]);
+    return node;
+}
+
+/// A triangle's are the first three.
+template <int kCorners>
+SURFELAO_MASK_INLINE void corners_of(const Node16& node, Vector16 origin, Float16 grow,
+                                     Vector16* corner)
+{
+    const Vector16 center = node.center() - origin;
+    const Vector16 even = center + node.skew(), odd = center - node.skew();
+    const Vector16 a = node.axis_a() * grow, b = node.axis_b() * grow;
+    corner[0] = even + a;
+    corner[1] = odd + b;
+    corner[2] = even - a;
+    if constexpr (kCorners == 4)
+        corner[3] = odd - b;
+}
 
 /// A call clears all vector registers away: only where it is needed.
 SURFELAO_MASK_INLINE void make_room(MaskBuffer<std::uint32_t>& list, std::size_t count)
@@ -425,34 +444,11 @@ SURFELAO_MASK_INLINE void make_room(MaskBuffer<std::uint32_t>& list, std::size_t
     if (count > list.capacity) [[unlikely]]
         reserve(list, count);
 }
-SURFELAO_MASK_INLINE void make_room(MaskColumns& list, std::size_t members, std::size_t count)
-{
-    if (count > list.stride) [[unlikely]]
-        reserve(list, members, count);
-}
-
 SURFELAO_MASK_INLINE void append(MaskBuffer<std::uint32_t>& list, Int16 index, Lanes chosen)
 {
     make_room(list, list.count + kLanes);
     store(list.data + list.count, pack(index, chosen));
-    list.count += static_cast<unsigned>(__builtin_popcount(bits(chosen)));
-}
-
-template <int kCorners>
-SURFELAO_MASK_INLINE void append(MaskColumns& list, const Vector16* corner, Float16 radius,
-                                 Lanes chosen)
-{
-    if (bits(chosen) == 0)
-        return;
-    make_room(list, 3 * kCorners + 1, list.count + kLanes);
-    float* at = list.data + list.count;
-    store(at + 3 * kCorners * list.stride, pack(radius, chosen));
-    for (int i = 0; i < kCorners; ++i) {
-        store(at + (3 * i) * list.stride, pack(corner[i].x, chosen));
-        store(at + (3 * i + 1) * list.stride, pack(corner[i].y, chosen));
-        store(at + (3 * i + 2) * list.stride, pack(corner[i].z, chosen));
-    }
-    list.count += static_cast<unsigned>(__builtin_popcount(bits(chosen)));
+    list.count += count_of(chosen);
 }
 
 void move_to(MaskShared& shared, const float* center)
@@ -540,10 +536,17 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         const Lanes drawn = without(shared, one_sided & (away < zero));
         if (bits(drawn) != 0) {
             Vector16 corner[4];
-            node.corners(origin, grow, corner);
-            triangles.add(corner, 0, drawn & is_triangle);
-            rectangles.add(corner, 0, without(drawn, sheet | is_triangle));
-            clusters.add(corner, 0, drawn & sheet);
+            corners_of<4>(node, origin, grow, corner);
+            const auto add = [&]<int kCorners, bool kLoose>(Stream<kCorners, kLoose>& stream,
+                                                            Lanes chosen) {
+                Vector16 packed[kCorners];
+                for (int i = 0; i < kCorners; ++i)
+                    packed[i] = pack(corner[i], chosen);
+                stream.add(packed, all(0u), count_of(chosen));
+            };
+            add(triangles, drawn & is_triangle);
+            add(rectangles, without(drawn, sheet | is_triangle));
+            add(clusters, drawn & sheet);
         }
 
         Lanes opened;
@@ -552,14 +555,10 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
                 rest & (exact | (node.open_radius() < cluster * (distance - group_radius)));
             opened = without(rest, listed);
             if (bits(listed) != 0) {
-                // a negative radius tells that only one side counts
-                const Float16 radius = select(one_sided, zero - node.radius(), node.radius());
-                const Vector16 world_origin = {zero, zero, zero};
-                Vector16 corner[4];
-                node.corners(world_origin, grow, corner);
-                append<3>(scratch.triangles, corner, radius, listed & is_triangle);
-                append<4>(scratch.rectangles, corner, radius, without(listed, sheet | is_triangle));
-                append<4>(scratch.clusters, corner, radius, listed & sheet);
+                const Int16 found = load(index) | select(hollow, all(kGrown), all(0u));
+                append(scratch.triangles, found, listed & is_triangle);
+                append(scratch.rectangles, found, without(listed, sheet | is_triangle));
+                append(scratch.clusters, found, listed & sheet);
             }
         } else {
             opened = without(rest, small) & (group_radius < node.radius());
@@ -570,7 +569,7 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         if (bits(opened) != 0) {
             make_room(frontier, frontier.count + 2 * kLanes + kLanes);
             append(frontier, node.first_child(), opened);
-            const auto added = static_cast<unsigned>(__builtin_popcount(bits(opened)));
+            const unsigned added = count_of(opened);
             std::uint32_t* child = frontier.data + frontier.count - added;
             for (unsigned i = 0; i < added; ++i) {
                 child[added + i] = child[i] + 1;
@@ -630,8 +629,9 @@ struct FacePair {
     template <int kBits, int kPart>
     SURFELAO_MASK_INLINE static FacePair of(Int16 front, Int16 back)
     {
-        const Bytes ahead = counts<kBits, kPart>(front);
-        return {ahead + counts<kBits, kPart>(back), ahead + counts<kBits, kPart>(~back)};
+        constexpr std::uint32_t full = 0x01010101u * kBits;
+        const Bytes ahead = counts<kBits, kPart>(front), behind = counts<kBits, kPart>(back);
+        return {ahead + behind, ahead + (bytes_of(all(full)) - behind)};
     }
 };
 
@@ -656,6 +656,25 @@ SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, const std::uint32_
     add_first<kAxis, 3>(raster, front, back, sum);
 }
 
+SURFELAO_MASK_INLINE First first_of(const MaskRaster& raster, const std::int32_t* totals)
+{
+    First first;
+    for (int k = 0; k < 3; ++k)
+        first.at[k] = totals[k] - 2 * raster.first_sum[0];
+    return first;
+}
+
+SURFELAO_MASK_INLINE First first_moments(const MaskRaster& raster, const std::uint32_t* mask)
+{
+    ByteSum sum[6] = {};
+    add_first<0>(raster, mask, sum);
+    add_first<1>(raster, mask, sum);
+    add_first<2>(raster, mask, sum);
+    std::int32_t totals[6];
+    total(sum, totals);
+    return first_of(raster, totals);
+}
+
 /// Of two masks.
 SURFELAO_MASK_INLINE void first_moments(const MaskRaster& raster, const std::uint32_t* a,
                                         const std::uint32_t* b, First& of_a, First& of_b)
@@ -669,10 +688,8 @@ SURFELAO_MASK_INLINE void first_moments(const MaskRaster& raster, const std::uin
     add_first<2>(raster, b, sum + 3);
     std::int32_t totals[6];
     total(sum, totals);
-    for (int k = 0; k < 3; ++k) {
-        of_a.at[k] = totals[k] - 2 * raster.first_sum[0];
-        of_b.at[k] = totals[3 + k] - 2 * raster.first_sum[0];
-    }
+    of_a = first_of(raster, totals);
+    of_b = first_of(raster, totals + 3);
 }
 
 /// Products of axes i and i + 1 stand at 3 + i.
@@ -719,15 +736,6 @@ SURFELAO_MASK_INLINE void open_bits(const std::uint32_t* above, const std::uint3
 {
     for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
         store(open + w, load(above + w) & ~load(mask + w));
-}
-
-/// Share of the weight above the horizon that the bits of `open` have.
-SURFELAO_MASK_INLINE float openness_of(const MaskRaster& raster, const std::uint32_t* open,
-                                       const std::uint32_t* above, const float* n)
-{
-    First of_open, of_above;
-    first_moments(raster, open, above, of_open, of_above);
-    return of_open.along(n) / of_above.along(n);
 }
 
 /// A clear bit is a crack between two patches where its neighbours left and right are set, or those
@@ -860,46 +868,70 @@ Visible visible_of(const MaskRaster& raster, const MaskShared& shared, const flo
     alignas(64) std::uint32_t open[kMaskWords];
     horizon(raster, axis, above);
     open_bits(above, shared.mask, open);
-    const float openness = openness_of(raster, open, above, axis);
+    First of_open, of_above;
+    first_moments(raster, open, above, of_open, of_above);
+    const float openness = of_open.along(axis) / of_above.along(axis);
     const float share = (1.0f - openness) / sum;
     return {openness, share < 1.0f ? share : 1.0f};
 }
 
-/// Draws those of the listed polygons from `begin` to `end` that reach above the receiver's
-/// horizon.
+/// The receivers of a group, and where their masks begin.
+struct Receivers16 {
+    Vector16 position, normal;
+    Int16 target;
+};
+
+/// Draws the listed polygons from `begin` to `end`, no more than kDrawnBetweenChecks, for those
+/// receivers in `active` above whose horizon they reach: where the highest corner, seen as far away
+/// as the centre is, or a little nearer, stands higher than the grazing strip.
 template <int kCorners, bool kLoose>
-SURFELAO_MASK_INLINE void draw_near(const MaskColumns& list, Vector16 position, Vector16 normal,
-                                    Float16 graze2, std::size_t begin, std::size_t end,
-                                    std::uint32_t target, Stream<kCorners, kLoose>& stream)
+SURFELAO_MASK_INLINE void draw_near(const MaskWorld& world, const MaskBuffer<std::uint32_t>& list,
+                                    std::size_t begin, std::size_t end,
+                                    const Receivers16& receivers, Lanes active,
+                                    Stream<kCorners, kLoose>& stream)
 {
+    if (bits(active) == 0)
+        return;
     const Float16 zero = all(0.0f);
-    for (std::size_t first = begin; first < end; first += kLanes) {
-        const float* at = list.data + first;
-        const Float16 radius = load(at + 3 * kCorners * list.stride);
-        Vector16 c[kCorners];
-        Lanes above = {};
-        for (int i = 0; i < kCorners; ++i) {
-            c[i] = Vector16{load(at + (3 * i) * list.stride), load(at + (3 * i + 1) * list.stride),
-                            load(at + (3 * i + 2) * list.stride)} -
-                   position;
-        }
-        const Vector16 sum = kCorners == 3 ? c[0] + c[1] + c[2] : c[0] + c[2];
-        const Float16 parts = all(kCorners == 3 ? 1.0f / 9.0f : 1.0f / 4.0f);
-        const Float16 sine2 = select(dot(sum, sum) * parts < radius * radius, zero, graze2);
-        for (int i = 0; i < kCorners; ++i) {
-            const Float16 height = max(dot(c[i], normal), zero);
-            above = above | (height * height > sine2 * dot(c[i], c[i]));
-        }
-        const Lanes one_sided = radius < zero;
-        if (bits(one_sided) != 0) {
-            const Float16 away = dot(cross(c[1] - c[0], c[2] - c[0]), c[0]);
-            above = without(above, one_sided & (away < zero));
-        }
-        const std::size_t left = end - first;
-        above = above & first_lanes(left < kLanes ? static_cast<unsigned>(left) : kLanes);
-        if (bits(above) == 0)
-            continue;
-        stream.add(c, target, above);
+    const float graze2 = world.settings.graze * world.settings.graze;
+    const Vector16 position = receivers.position, normal = receivers.normal;
+    const auto fields_of = [&](std::uint32_t listed) {
+        return world.nodes + kLanes * static_cast<std::size_t>(listed & ~kGrown);
+    };
+    // first which, then the drawing: what the one finds cannot be foreseen
+    std::uint32_t found[kDrawnBetweenChecks];
+    std::uint32_t seen[kDrawnBetweenChecks];
+    std::size_t count = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+        const float* const fields = fields_of(list.data[i]);
+        const Node16 node = broadcast_node(fields);
+        // how high the highest corner is
+        const Vector16 center = node.center() - position;
+        const Float16 skew = kLoose ? zero : dot(node.skew(), normal);
+        const Float16 a = dot(node.axis_a(), normal), b = dot(node.axis_b(), normal);
+        const Float16 even = skew + max(a, zero - a);
+        const Float16 odd = (kCorners == 3 ? b : max(b, zero - b)) - skew;
+        const Float16 top = dot(center, normal) + max(even, odd);
+        const Float16 least =
+            fms(all(graze2), dot(center, center), all(graze2 * fields[3] * fields[3]));
+        const Lanes above = active & (top > zero) & (top * top > least);
+        found[count] = list.data[i];
+        seen[count] = bits(above);
+        count += bits(above) != 0 ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const float* const fields = fields_of(found[i]);
+        const Node16 node = broadcast_node(fields);
+        Lanes above = lanes_of(seen[i]);
+        std::uint32_t links;
+        std::memcpy(&links, fields + 15, sizeof links);
+        if (!kLoose && world.settings.one_sided && (links & kMaskSolid) != 0)
+            above = without(
+                above, dot(cross(node.axis_a(), node.axis_b()), node.center() - position) < zero);
+        Vector16 corner[kCorners];
+        const float grow = kLoose && (found[i] & kGrown) != 0 ? kHollowGrowth : 1.0f;
+        corners_of<kCorners>(node, pack(position, above), all(grow), corner);
+        stream.add(corner, pack(receivers.target, above), count_of(above));
     }
 }
 
@@ -930,36 +962,54 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
         Stream<4, true> clusters(world, masks);
         Stream<4, false> rectangles(world, masks);
         Stream<3, false> triangles(world, masks);
-        const Float16 graze2 = all(world.settings.graze * world.settings.graze);
+        alignas(64) std::uint32_t target[kLanes];
+        for (unsigned i = 0; i < kLanes; ++i)
+            target[i] = i * kMaskPairWords;
         for (unsigned i = 0; i < receivers.count; ++i) {
-            const std::uint32_t target = i * kMaskPairWords;
-            std::uint32_t* closed = masks + target;
-            std::memcpy(closed, shared.mask, sizeof shared.mask);
             const float n[3] = {receivers.normal[0][i], receivers.normal[1][i],
                                 receivers.normal[2][i]};
             std::uint32_t* above = horizons + i * kMaskWords;
             horizon(raster, n, above);
-            for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
-                store(closed + w, load(closed + w) | ~load(above + w));
-            const Vector16 position = {all(receivers.position[0][i]), all(receivers.position[1][i]),
-                                       all(receivers.position[2][i])};
-            const Vector16 normal = {all(receivers.normal[0][i]), all(receivers.normal[1][i]),
-                                     all(receivers.normal[2][i])};
-            // nearly closed places are finished before all is drawn
-            const auto draw_until_closed = [&](const MaskColumns& list, auto& stream) {
-                for (std::size_t begin = 0; begin < list.count; begin += kDrawnBetweenChecks) {
-                    if (world.settings.fill && is_closed(raster, closed, n))
-                        return true;
-                    const std::size_t end = begin + kDrawnBetweenChecks;
-                    draw_near(list, position, normal, graze2, begin,
-                              end < list.count ? end : list.count, target, stream);
-                }
-                return false;
-            };
-            (void)(draw_until_closed(scratch.rectangles, rectangles) ||
-                   draw_until_closed(scratch.clusters, clusters) ||
-                   draw_until_closed(scratch.triangles, triangles));
+            std::uint32_t* closed = masks + target[i];
+            for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
+                store(closed + w, load(shared.mask + w) | ~load(above + w));
+                store(closed + kMaskWords + w, load(shared.mask + kMaskWords + w));
+            }
         }
+        const Receivers16 all_receivers = {
+            {load(receivers.position[0]), load(receivers.position[1]), load(receivers.position[2])},
+            {load(receivers.normal[0]), load(receivers.normal[1]), load(receivers.normal[2])},
+            load(target)};
+        // nearly closed places are finished before all is drawn
+        alignas(64) std::uint32_t active[kLanes] = {};
+        for (unsigned i = 0; i < receivers.count; ++i)
+            active[i] = 1;
+        const auto leave_out_closed = [&] {
+            for (unsigned i = 0; i < receivers.count; ++i) {
+                const float n[3] = {receivers.normal[0][i], receivers.normal[1][i],
+                                    receivers.normal[2][i]};
+                if (active[i] != 0 && is_closed(raster, masks + target[i], n))
+                    active[i] = 0;
+            }
+        };
+        std::size_t before_check = kDrawnBetweenChecks;
+        const auto draw_list = [&](const MaskBuffer<std::uint32_t>& list, auto& stream) {
+            for (std::size_t begin = 0; begin < list.count;) {
+                const std::size_t left = list.count - begin;
+                const std::size_t end = begin + (left < before_check ? left : before_check);
+                draw_near(world, list, begin, end, all_receivers, nonzero(load(active)), stream);
+                before_check -= end - begin;
+                begin = end;
+                if (before_check > 0)
+                    continue;
+                if (world.settings.fill)
+                    leave_out_closed();
+                before_check = kDrawnBetweenChecks;
+            }
+        };
+        draw_list(scratch.rectangles, rectangles);
+        draw_list(scratch.clusters, clusters);
+        draw_list(scratch.triangles, triangles);
         clusters.finish();
         rectangles.finish();
         triangles.finish();
@@ -974,7 +1024,10 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
         const std::uint32_t* above = horizons + i * kMaskWords;
         alignas(64) std::uint32_t open[kMaskWords];
         open_bits(above, mask, open);
-        float openness = openness_of(raster, open, above, n);
+        First of_open, of_above;
+        first_moments(raster, open, above, of_open, of_above);
+        const float weight = of_above.along(n);
+        float openness = of_open.along(n) / weight;
         const float fill_weight = (1.0f - openness - kFillFrom) / kFillRange;
         if (world.settings.fill && fill_weight > 0.0f && openness > 0.0f) {
             alignas(64) std::uint32_t filled[kMaskWords];
@@ -984,14 +1037,14 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
                 store(filled + w, fill(raster, closed, load(mask + kMaskWords + w)));
                 store(open + w, openings(~closed, load(filled + w)));
             }
-            const float cracks = openness - openness_of(raster, open, above, n);
+            const float cracks = openness - first_moments(raster, open).along(n) / weight;
             openness -= (fill_weight < 1.0f ? fill_weight : 1.0f) * kFillShare * cracks;
 
             const float close_weight = (1.0f - openness - kCloseFrom) / kCloseRange;
             if (world.settings.close > 0.0f && close_weight > 0.0f && openness > 0.0f) {
                 for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
                     store(open + w, ~close(raster, load(filled + w), load(mask + kMaskWords + w)));
-                const float sealed = openness_of(raster, open, above, n);
+                const float sealed = first_moments(raster, open).along(n) / weight;
                 if (sealed < openness)
                     openness += (close_weight < 1.0f ? close_weight : 1.0f) * world.settings.close *
                                 (sealed - openness);

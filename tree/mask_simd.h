@@ -135,9 +135,10 @@ SURFELAO_MASK_INLINE Lanes without(Lanes a, Lanes b)
 {
     return {static_cast<__mmask16>(a.v & ~b.v)};
 }
-SURFELAO_MASK_INLINE Lanes first_lanes(unsigned count)
+/// The lanes whose bits are set.
+SURFELAO_MASK_INLINE Lanes lanes_of(unsigned bits)
 {
-    return {static_cast<__mmask16>((1u << count) - 1u)};
+    return {static_cast<__mmask16>(bits)};
 }
 SURFELAO_MASK_INLINE unsigned bits(Lanes a)
 {
@@ -266,6 +267,15 @@ struct Bytes {
 SURFELAO_MASK_INLINE Bytes operator+(Bytes a, Bytes b)
 {
     return {_mm512_add_epi8(a.v, b.v)};
+}
+SURFELAO_MASK_INLINE Bytes operator-(Bytes a, Bytes b)
+{
+    return {_mm512_sub_epi8(a.v, b.v)};
+}
+/// Byte 4 i + k of the result stands at bits 8 k .. + 7 of lane i.
+SURFELAO_MASK_INLINE Bytes bytes_of(Int16 a)
+{
+    return {a.v};
 }
 /// Set bits of each byte; all are below 16.
 SURFELAO_MASK_INLINE Bytes nibble_counts(Int16 a)
@@ -412,13 +422,14 @@ SURFELAO_MASK_INLINE Lanes without(Lanes x, Lanes y)
 {
     return {_mm256_andnot_ps(y.a, x.a), _mm256_andnot_ps(y.b, x.b)};
 }
-SURFELAO_MASK_INLINE Lanes first_lanes(unsigned count)
+SURFELAO_MASK_INLINE Lanes lanes_of(unsigned bits)
 {
-    const __m256i lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
-    const __m256i n = _mm256_set1_epi32(static_cast<int>(count));
-    return {
-        _mm256_castsi256_ps(_mm256_cmpgt_epi32(n, lane)),
-        _mm256_castsi256_ps(_mm256_cmpgt_epi32(n, _mm256_add_epi32(lane, _mm256_set1_epi32(8))))};
+    const __m256i lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+    const auto half = [&](unsigned byte) {
+        const __m256i chosen = _mm256_and_si256(_mm256_set1_epi32(static_cast<int>(byte)), lane);
+        return _mm256_castsi256_ps(_mm256_cmpeq_epi32(chosen, lane));
+    };
+    return {half(bits & 255u), half(bits >> 8)};
 }
 SURFELAO_MASK_INLINE unsigned bits(Lanes x)
 {
@@ -578,6 +589,14 @@ SURFELAO_MASK_INLINE Bytes operator+(Bytes x, Bytes y)
 {
     return {_mm256_add_epi8(x.a, y.a), _mm256_add_epi8(x.b, y.b)};
 }
+SURFELAO_MASK_INLINE Bytes operator-(Bytes x, Bytes y)
+{
+    return {_mm256_sub_epi8(x.a, y.a), _mm256_sub_epi8(x.b, y.b)};
+}
+SURFELAO_MASK_INLINE Bytes bytes_of(Int16 x)
+{
+    return {x.a, x.b};
+}
 SURFELAO_MASK_INLINE Bytes nibble_counts(Int16 x)
 {
     const __m256i count =
@@ -719,9 +738,9 @@ SURFELAO_MASK_INLINE Lanes without(const Lanes& x, const Lanes& y)
 {
     return each<Lanes>([&](int i) { return x.v[i] & ~y.v[i]; });
 }
-SURFELAO_MASK_INLINE Lanes first_lanes(unsigned count)
+SURFELAO_MASK_INLINE Lanes lanes_of(unsigned bits)
 {
-    return each<Lanes>([&](int i) { return static_cast<unsigned>(i) < count ? ~0u : 0u; });
+    return each<Lanes>([&](int i) { return (bits >> i & 1u) != 0 ? ~0u : 0u; });
 }
 SURFELAO_MASK_INLINE unsigned bits(const Lanes& x)
 {
@@ -835,6 +854,20 @@ SURFELAO_MASK_INLINE Bytes operator+(const Bytes& x, const Bytes& y)
     Bytes out;
     for (int i = 0; i < 4 * kLanes; ++i)
         out.v[i] = static_cast<std::uint8_t>(x.v[i] + y.v[i]);
+    return out;
+}
+SURFELAO_MASK_INLINE Bytes operator-(const Bytes& x, const Bytes& y)
+{
+    Bytes out;
+    for (int i = 0; i < 4 * kLanes; ++i)
+        out.v[i] = static_cast<std::uint8_t>(x.v[i] - y.v[i]);
+    return out;
+}
+SURFELAO_MASK_INLINE Bytes bytes_of(const Int16& x)
+{
+    Bytes out;
+    for (int i = 0; i < 4 * kLanes; ++i)
+        out.v[i] = static_cast<std::uint8_t>(x.v[i / 4] >> 8 * (i % 4));
     return out;
 }
 [[gnu::noinline]] inline Bytes nibble_counts(const Int16& x)

@@ -55,25 +55,6 @@ void release(MaskBuffer<std::uint32_t>& buffer)
     buffer = {};
 }
 
-void reserve(MaskColumns& columns, std::size_t members, std::size_t count)
-{
-    if (count <= columns.stride)
-        return;
-    // an odd number of cache lines: powers of two would put all members into the same set
-    const std::size_t lines = std::max(2 * columns.stride, count + 512) / 16 | 1;
-    auto* data = allocate_zeros<float>(members * 16 * lines);
-    for (std::size_t r = 0; r < members; ++r)
-        std::copy_n(columns.data + r * columns.stride, columns.count, data + r * 16 * lines);
-    const std::size_t kept = columns.count;
-    release(columns);
-    columns = {data, kept, 16 * lines};
-}
-void release(MaskColumns& columns)
-{
-    std::free(columns.data);
-    columns = {};
-}
-
 namespace {
 
 const MaskKernel* kernel_of(MaskKernelSet set)
