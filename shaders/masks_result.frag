@@ -23,8 +23,8 @@ uniform int u_blocks_per_row;
 
 out vec4 out_result;
 
-const float kFillFrom   = 0.6;
-const float kFillRange  = 0.3;
+const float kFillFrom   = 0.3;
+const float kFillRange  = 0.6;
 const float kFillShare  = 1.3;
 const float kCloseFrom  = 0.95;
 const float kCloseRange = 0.04;

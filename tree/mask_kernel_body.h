@@ -14,8 +14,8 @@ namespace {
 static_assert(sizeof(MaskShared::mask) == kMaskPairWords * sizeof(std::uint32_t));
 
 constexpr float kImportanceFloor = 0.1f;  ///< directions weigh at least this in the opening tests
-constexpr float kFillFrom = 0.6f;         ///< no filling below this occlusion ...
-constexpr float kFillRange = 0.3f;        ///< ... and full weight this much above
+constexpr float kFillFrom = 0.3f;         ///< no filling below this occlusion ...
+constexpr float kFillRange = 0.6f;        ///< ... and full weight this much above
 constexpr float kFillShare = 1.3f;        ///< cracks of one bit stand for the wider ones too
 constexpr float kCloseFrom = 0.95f;       ///< the same for cracks of two bits
 constexpr float kCloseRange = 0.04f;

@@ -78,7 +78,7 @@ struct FamilyPoint {
     float cluster, share_leaf, share_inner, graze;
 };
 constexpr FamilyPoint kFamily[] = {{0.9f, 0.6f, 0.32f, 0.24f},     {0.9f, 0.3f, 0.2f, 0.18f},
-                                   {0.7f, 0.1f, 0.07f, 0.13f},     {0.25f, 0.03f, 0.03f, 0.09f},
+                                   {0.7f, 0.1f, 0.07f, 0.13f},     {0.25f, 0.045f, 0.04f, 0.09f},
                                    {0.17f, 0.015f, 0.015f, 0.03f}, {0.1f, 0.007f, 0.007f, 0.015f}};
 constexpr float kRelaxedCluster = 0.9f;  ///< a larger rectangle could swallow its receiver
 /// Cracks shrink with the clusters: up to this s none is two bits wide, from twice that many are.
