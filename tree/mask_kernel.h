@@ -22,7 +22,7 @@ struct MaskSettings {
     float share_leaf;  ///< r: the same for leaf groups
     float max_distance;
     float exact_radius;  ///< nodes with a smaller open_radius are never opened
-    float graze;         ///< polygons all of whose corners lie below this sine of elevation over
+    float graze;         ///< polygons whose highest corner lies below this sine of elevation over
                          ///< the receiver's tangent plane are not drawn
     bool one_sided;      ///< of small closed bodies only what faces away is drawn
     bool fill;           ///< close single-bit cracks where much is covered
