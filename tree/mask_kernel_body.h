@@ -839,6 +839,12 @@ bool is_closed(const MaskRaster& raster, const std::uint32_t* closed, const floa
 
 // --- one group ---
 
+/// The receivers of a group, and where their masks begin.
+struct Receivers16 {
+    Vector16 position, normal;
+    Int16 target;
+};
+
 /// Of what a group shares.
 struct Visible {
     float openness;  ///< of the sky above the group's axis
@@ -846,16 +852,13 @@ struct Visible {
 };
 
 /// n.(change + slope (p - center))
-SURFELAO_MASK_INLINE Float16 changes_at(const MaskShared& shared, const MaskReceivers& receivers)
+SURFELAO_MASK_INLINE Float16 changes_at(const MaskShared& shared, const Receivers16& receivers)
 {
-    const Vector16 p = Vector16{load(receivers.position[0]), load(receivers.position[1]),
-                                load(receivers.position[2])} -
-                       broadcast(shared.center);
+    const Vector16 p = receivers.position - broadcast(shared.center);
     const Vector16 change = broadcast(shared.change) + Vector16{dot(broadcast(shared.slope[0]), p),
                                                                 dot(broadcast(shared.slope[1]), p),
                                                                 dot(broadcast(shared.slope[2]), p)};
-    return dot(change,
-               {load(receivers.normal[0]), load(receivers.normal[1]), load(receivers.normal[2])});
+    return dot(change, receivers.normal);
 }
 
 Visible visible_of(const MaskRaster& raster, const MaskShared& shared, const float* axis)
@@ -874,12 +877,6 @@ Visible visible_of(const MaskRaster& raster, const MaskShared& shared, const flo
     const float share = (1.0f - openness) / sum;
     return {openness, share < 1.0f ? share : 1.0f};
 }
-
-/// The receivers of a group, and where their masks begin.
-struct Receivers16 {
-    Vector16 position, normal;
-    Int16 target;
-};
 
 /// Draws the listed polygons from `begin` to `end`, no more than kDrawnBetweenChecks, for those
 /// receivers in `active` above whose horizon they reach: where the highest corner, seen as far away
@@ -944,6 +941,46 @@ void descend(const MaskWorld& world, const MaskGroup& group, const std::uint32_t
     walk<false>(world, group, &out, shared, scratch);
 }
 
+/// Draws the lists into the masks of `count` receivers. Those in nearly closed places are finished
+/// before all is drawn.
+void draw_lists(const MaskWorld& world, const MaskScratch& scratch, const Receivers16& receivers,
+                const float (*normals)[3], unsigned count, std::uint32_t* masks)
+{
+    Stream<4, true> clusters(world, masks);
+    Stream<4, false> rectangles(world, masks);
+    Stream<3, false> triangles(world, masks);
+    alignas(64) std::uint32_t active[kLanes] = {};
+    for (unsigned i = 0; i < count; ++i)
+        active[i] = 1;
+    const auto leave_out_closed = [&] {
+        for (unsigned i = 0; i < count; ++i) {
+            if (active[i] != 0 && is_closed(*world.raster, masks + i * kMaskPairWords, normals[i]))
+                active[i] = 0;
+        }
+    };
+    std::size_t before_check = kDrawnBetweenChecks;
+    const auto draw_list = [&](const MaskBuffer<std::uint32_t>& list, auto& stream) {
+        for (std::size_t begin = 0; begin < list.count;) {
+            const std::size_t left = list.count - begin;
+            const std::size_t end = begin + (left < before_check ? left : before_check);
+            draw_near(world, list, begin, end, receivers, nonzero(load(active)), stream);
+            before_check -= end - begin;
+            begin = end;
+            if (before_check == 0) {
+                if (world.settings.fill)
+                    leave_out_closed();
+                before_check = kDrawnBetweenChecks;
+            }
+        }
+    };
+    draw_list(scratch.rectangles, rectangles);
+    draw_list(scratch.clusters, clusters);
+    draw_list(scratch.triangles, triangles);
+    clusters.finish();
+    rectangles.finish();
+    triangles.finish();
+}
+
 void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* in,
            std::size_t in_count, const MaskShared& from_above, const MaskReceivers& receivers,
            MaskAnswers& answers, MaskScratch& scratch)
@@ -958,68 +995,33 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
 
     alignas(64) std::uint32_t masks[kLanes * kMaskPairWords];
     alignas(64) std::uint32_t horizons[kLanes * kMaskWords];
-    {
-        Stream<4, true> clusters(world, masks);
-        Stream<4, false> rectangles(world, masks);
-        Stream<3, false> triangles(world, masks);
-        alignas(64) std::uint32_t target[kLanes];
-        for (unsigned i = 0; i < kLanes; ++i)
-            target[i] = i * kMaskPairWords;
-        for (unsigned i = 0; i < receivers.count; ++i) {
-            const float n[3] = {receivers.normal[0][i], receivers.normal[1][i],
-                                receivers.normal[2][i]};
-            std::uint32_t* above = horizons + i * kMaskWords;
-            horizon(raster, n, above);
-            std::uint32_t* closed = masks + target[i];
-            for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
-                store(closed + w, load(shared.mask + w) | ~load(above + w));
-                store(closed + kMaskWords + w, load(shared.mask + kMaskWords + w));
-            }
-        }
-        const Receivers16 all_receivers = {
-            {load(receivers.position[0]), load(receivers.position[1]), load(receivers.position[2])},
-            {load(receivers.normal[0]), load(receivers.normal[1]), load(receivers.normal[2])},
-            load(target)};
-        // nearly closed places are finished before all is drawn
-        alignas(64) std::uint32_t active[kLanes] = {};
-        for (unsigned i = 0; i < receivers.count; ++i)
-            active[i] = 1;
-        const auto leave_out_closed = [&] {
-            for (unsigned i = 0; i < receivers.count; ++i) {
-                const float n[3] = {receivers.normal[0][i], receivers.normal[1][i],
-                                    receivers.normal[2][i]};
-                if (active[i] != 0 && is_closed(raster, masks + target[i], n))
-                    active[i] = 0;
-            }
-        };
-        std::size_t before_check = kDrawnBetweenChecks;
-        const auto draw_list = [&](const MaskBuffer<std::uint32_t>& list, auto& stream) {
-            for (std::size_t begin = 0; begin < list.count;) {
-                const std::size_t left = list.count - begin;
-                const std::size_t end = begin + (left < before_check ? left : before_check);
-                draw_near(world, list, begin, end, all_receivers, nonzero(load(active)), stream);
-                before_check -= end - begin;
-                begin = end;
-                if (before_check > 0)
-                    continue;
-                if (world.settings.fill)
-                    leave_out_closed();
-                before_check = kDrawnBetweenChecks;
-            }
-        };
-        draw_list(scratch.rectangles, rectangles);
-        draw_list(scratch.clusters, clusters);
-        draw_list(scratch.triangles, triangles);
-        clusters.finish();
-        rectangles.finish();
-        triangles.finish();
+    alignas(64) std::uint32_t target[kLanes];
+    float normals[kLanes][3];
+    for (unsigned i = 0; i < kLanes; ++i) {
+        target[i] = i * kMaskPairWords;
+        for (int k = 0; k < 3; ++k)
+            normals[i][k] = receivers.normal[k][i];
     }
+    for (unsigned i = 0; i < receivers.count; ++i) {
+        std::uint32_t* above = horizons + i * kMaskWords;
+        horizon(raster, normals[i], above);
+        std::uint32_t* closed = masks + target[i];
+        for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
+            store(closed + w, load(shared.mask + w) | ~load(above + w));
+            store(closed + kMaskWords + w, load(shared.mask + kMaskWords + w));
+        }
+    }
+    const Receivers16 all_receivers = {
+        {load(receivers.position[0]), load(receivers.position[1]), load(receivers.position[2])},
+        {load(receivers.normal[0]), load(receivers.normal[1]), load(receivers.normal[2])},
+        load(target)};
+    draw_lists(world, scratch, all_receivers, normals, receivers.count, masks);
 
     const Visible visible = visible_of(raster, shared, group.axis);
     alignas(64) float changes[kLanes];
-    store(changes, changes_at(shared, receivers));
+    store(changes, changes_at(shared, all_receivers));
     for (unsigned i = 0; i < receivers.count; ++i) {
-        const float n[3] = {receivers.normal[0][i], receivers.normal[1][i], receivers.normal[2][i]};
+        const float* n = normals[i];
         std::uint32_t* mask = masks + i * kMaskPairWords;
         const std::uint32_t* above = horizons + i * kMaskWords;
         alignas(64) std::uint32_t open[kMaskWords];

@@ -193,6 +193,13 @@ struct Room {
     Vector below, above;
 };
 
+/// A vector of the mask frame along axis k of the scene.
+Lanes along_scene_axis(const Vector& v, std::size_t k)
+{
+    const glm::vec3 axis = kMaskFrame[static_cast<int>(k)];
+    return axis.x * v[0] + axis.y * v[1] + axis.z * v[2];
+}
+
 /// Of up to as many nodes as there are lanes.
 Room room_of(std::span<const MaskPatchNode> nodes, const Vector& center)
 {
@@ -206,9 +213,7 @@ Room room_of(std::span<const MaskPatchNode> nodes, const Vector& center)
     }
     Room room;
     for (std::size_t k = 0; k < 3; ++k) {
-        const glm::vec3 scene_axis = kMaskFrame[static_cast<int>(k)];
-        const Lanes at =
-            scene_axis.x * center[0] + scene_axis.y * center[1] + scene_axis.z * center[2];
+        const Lanes at = along_scene_axis(center, k);
         room.below[k] = at - low[k];
         room.above[k] = high[k] - at;
     }
@@ -220,14 +225,11 @@ Room room_of(std::span<const MaskPatchNode> nodes, const Vector& center)
 Vector grow_to_cuts(Vector& axis, const Room& room, Lanes rim)
 {
     LaneMask ahead{}, behind{};
-    for (int k = 0; k < 3; ++k) {
-        const glm::vec3 scene_axis = kMaskFrame[k];
-        const Lanes along =
-            scene_axis.x * axis[0] + scene_axis.y * axis[1] + scene_axis.z * axis[2];
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Lanes along = along_scene_axis(axis, k);
         const Lanes reach = kCutReach * absolute(along);
-        const auto i = static_cast<std::size_t>(k);
-        ahead |= (along > 0.0f ? room.above[i] : room.below[i]) < reach;
-        behind |= (along > 0.0f ? room.below[i] : room.above[i]) < reach;
+        ahead |= (along > 0.0f ? room.above[k] : room.below[k]) < reach;
+        behind |= (along > 0.0f ? room.below[k] : room.above[k]) < reach;
     }
     const Lanes half = 0.5f * rim;
     const Lanes zero = all_lanes(0.0f);

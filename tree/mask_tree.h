@@ -1,8 +1,9 @@
 /// mask_tree.h: the scene's triangles as a binary tree in which every node is also one rectangle.
 ///
 /// Leaves are single triangles or flat pairs of them, exact. An inner node stands for its triangles
-/// as a rectangle in the plane of their vector area, with the area of that vector and the axes and
-/// aspect of their second moments: what is seen of the patch from straight ahead.
+/// as a rectangle across their vector area, with the area of that vector and the axes and aspect of
+/// their second moments: what is seen of the patch from straight ahead. It stands about their
+/// centroid, deeper where they bulge, and reaches farther where the tree was cut (mask_patch.cpp).
 ///
 /// Internal to the mask engine; masks.h is its door.
 #pragma once
@@ -26,7 +27,7 @@ inline const glm::mat3 kMaskFrame{-0.26100944f, 0.93067852f,  0.25634268f,
 
 /// 16 floats in the order in which the kernels load them.
 struct alignas(64) MaskNode {
-    glm::vec3 center;  ///< centroid of the triangles, by area
+    glm::vec3 center;  ///< of the quadrilateral
     float radius;      ///< no point of the node is farther from `center`
     glm::vec3 skew;    ///< corners: center + skew +- axis_a, center - skew +- axis_b; of a
                        ///< triangle center + skew + axis_a, - skew + axis_b, + skew - axis_a
