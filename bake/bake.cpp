@@ -1,10 +1,11 @@
 #include "bake/bake.h"
 
 #include "bake/json.h"
-#include "bake/threads.h"
-#include "bake/timing.h"
+#include "bake/peak_memory.h"
+#include "engines/threads.h"
+#include "files/scene_io.h"
 #include "surfels/errors.h"
-#include "surfels/scene_io.h"
+#include "surfels/stopwatch.h"
 
 #include <glm/vec3.hpp>
 
@@ -97,11 +98,12 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
 
     enter(progress, "build");
     const Progress solving = [&](double done) { return !progress || progress("solve", done); };
-    const EngineResult result = run_engine(geometry, receivers, engine, solving);
+    const Prepared prepared = prepare(geometry, engine);
+    const Solution solution = solve(prepared, receivers, engine, solving);
 
     enter(progress, "write");
     stage.lap();
-    write_scene(settings.output, scene, result.occlusion, {.colors = settings.colors});
+    write_scene(settings.output, scene, solution.occlusion, {.colors = settings.colors});
     report.seconds.write = stage.lap();
 
     report.vertices = scene.positions.size();
@@ -109,12 +111,12 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     report.dropped_triangles = geometry.dropped_triangles;
     report.vertices_without_normal = static_cast<std::uint64_t>(
         std::count(geometry.normals.begin(), geometry.normals.end(), glm::vec3(0.0f)));
-    report.surfels = result.surfels;
-    report.residual = result.residual;
-    report.mean_occlusion = mean_occlusion_of(receivers, result.occlusion);
-    report.seconds.surfels = result.surfels_s;
-    report.seconds.tree = result.tree_s;
-    report.seconds.solve = result.solve_s;
+    report.surfels = prepared.surfel_count();
+    report.residual = solution.residual;
+    report.mean_occlusion = mean_occlusion_of(receivers, solution.occlusion);
+    report.seconds.surfels = prepared.seconds().surfels;
+    report.seconds.tree = prepared.seconds().tree;
+    report.seconds.solve = solution.seconds;
     report.seconds.total = whole.lap();
     report.peak_rss_bytes = peak_rss_bytes();
     return report;

@@ -1,7 +1,7 @@
 /// bake.h: the job: a mesh file in, the same mesh with occlusion at every vertex out.
 #pragma once
 
-#include "bake/engine.h"
+#include "engines/engine.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -19,7 +19,7 @@ struct BakeSettings {
     EngineSettings engine;  ///< its definition is made from the members below
     DistanceLimit max_distance;
     Kernel kernel = Kernel::cosine;
-    bool colors = false;  ///< glTF: COLOR_0 too (surfels/scene_io.h)
+    bool colors = false;  ///< glTF: COLOR_0 too (files/scene_io.h)
 };
 
 /// Wall-clock seconds of each stage.

@@ -1,11 +1,12 @@
 #include "bake/compare.h"
 
 #include "bake/sample.h"
-#include "bake/threads.h"
-#include "bake/timing.h"
+#include "engines/threads.h"
+#include "files/scene_io.h"
 #include "reference/reference_cache.h"
+#include "reference/smoothing.h"
 #include "surfels/errors.h"
-#include "surfels/scene_io.h"
+#include "surfels/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -104,7 +105,7 @@ CompareRow row_of_rays(const Definition& definition, std::uint32_t rays, bool sm
     row.settings.engine = Engine::rays;
     row.settings.definition = definition;
     row.settings.rays = rays;
-    row.settings.smoothed = smoothed;
+    row.smoothed = smoothed;
     return row;
 }
 
@@ -141,9 +142,14 @@ const CompareRow& shown_row(const Comparison& comparison)
     return comparison.rows.front();
 }
 
+std::string setting_of(const CompareRow& row)
+{
+    return setting_of(row.settings) + (row.smoothed ? ", smoothed" : "");
+}
+
 bool is_opponent(const CompareRow& row)
 {
-    return row.settings.engine == Engine::rays && !row.settings.smoothed;
+    return row.settings.engine == Engine::rays && !row.smoothed;
 }
 
 std::vector<CurvePoint> embree_curve(const Comparison& comparison, bool with_builds)
@@ -202,18 +208,23 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     std::vector<std::vector<double>> builds(rows.size()), solves(rows.size());
     const auto run = [&](std::size_t i) {
         CompareRow& row = rows[i];
-        const Progress running =
-            stage(name_of(row.settings.engine) + " " + setting_of(row.settings));
+        const Progress running = stage(name_of(row.settings.engine) + " " + setting_of(row));
         std::vector<double> build, solve;
         double spent = 0.0;
         do {
-            const EngineResult result =
-                run_engine(comparison.geometry, question.receivers, row.settings, running);
-            build.push_back(result.surfels_s + result.tree_s);
-            solve.push_back(result.solve_s);
+            const Prepared prepared = prepare(comparison.geometry, row.settings);
+            Solution solution =
+                surfelao::solve(prepared, question.receivers, row.settings, running);
+            if (row.smoothed) {
+                Stopwatch smoothing;
+                solution.occlusion = smooth_occlusion(comparison.geometry, solution.occlusion);
+                solution.seconds += smoothing.lap();
+            }
+            build.push_back(prepared.seconds().surfels + prepared.seconds().tree);
+            solve.push_back(solution.seconds);
             spent += build.back() + solve.back();
             if (row.worst.empty())
-                judge(question, comparison.scene, result.occlusion, row);
+                judge(question, comparison.scene, solution.occlusion, row);
         } while (spent < kLeastRound && solve.size() < kMostRepeats);
         builds[i].push_back(quantile(build, 0.5));
         solves[i].push_back(quantile(solve, 0.5));

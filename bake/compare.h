@@ -10,8 +10,8 @@
 #pragma once
 
 #include "bake/bake.h"
-#include "bake/engine.h"
 #include "bake/statistics.h"
+#include "engines/engine.h"
 #include "surfels/scene.h"
 
 #include <cstdint>
@@ -51,8 +51,9 @@ struct WorstVertex {
 
 struct CompareRow {
     EngineSettings settings;
-    int rounds = 0;        ///< times it ran
-    double build_s = 0.0;  ///< median seconds
+    bool smoothed = false;  ///< rays: one smoothing step afterwards (reference/smoothing.h)
+    int rounds = 0;         ///< times it ran
+    double build_s = 0.0;   ///< median seconds
     double solve_s = 0.0;
     double us_per_vertex = 0.0;  ///< of solving
     ErrorStatistics error;
@@ -91,6 +92,9 @@ struct Comparison {
 
 /// The row that pictures show: the first candidate at `good`, else the first row.
 [[nodiscard]] const CompareRow& shown_row(const Comparison& comparison);
+
+/// As for its engine: "good", "64 rays", and "64 rays, smoothed".
+[[nodiscard]] std::string setting_of(const CompareRow& row);
 
 /// Whether the row is plain ray tracing, the opponent.
 [[nodiscard]] bool is_opponent(const CompareRow& row);

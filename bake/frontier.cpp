@@ -3,8 +3,9 @@
 #include "bake/compare_text.h"
 #include "bake/json.h"
 #include "bake/picture.h"
-#include "bake/text.h"
+#include "bake/table.h"
 #include "surfels/errors.h"
+#include "surfels/number_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -59,7 +60,7 @@ std::vector<std::pair<std::string, std::string>> pictures_of(const Comparison& c
         colors.clear();
         for (const float error : row.errors)
             colors.push_back(color_of_error(error, kFullColorError));
-        add("error of " + name_of(row.settings.engine) + ", " + setting_of(row.settings), colors);
+        add("error of " + name_of(row.settings.engine) + ", " + setting_of(row), colors);
     }
     return pictures;
 }

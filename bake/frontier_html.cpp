@@ -1,6 +1,6 @@
 #include "bake/compare_text.h"
 #include "bake/frontier.h"
-#include "bake/text.h"
+#include "surfels/number_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,7 +73,7 @@ std::vector<Series> series_of(const Comparison& comparison)
     for (const CompareRow& row : comparison.rows) {
         std::string name = name_of(row.settings.engine);
         if (row.settings.engine == Engine::rays)
-            name = row.settings.smoothed ? "Embree, smoothed" : "Embree";
+            name = row.smoothed ? "Embree, smoothed" : "Embree";
         for (Series& one : series) {
             if (one.name == name && row.error.rmse > 0.0 && row.solve_s > 0.0)
                 one.rows.push_back(&row);
@@ -161,7 +161,7 @@ std::string plot_of(const Comparison& comparison)
         for (const CompareRow* row : one.rows) {
             svg += "<circle r=\"4\" fill=\"" + one.color + "\" cx=\"" + number(x.at(row->solve_s)) +
                    "\" cy=\"" + number(y.at(row->error.rmse)) + "\"><title>" +
-                   escaped(one.name + ", " + setting_of(row->settings) + ": RMSE " +
+                   escaped(one.name + ", " + setting_of(*row) + ": RMSE " +
                            fixed(row->error.rmse, 4) + ", " + fixed(row->solve_s, 4) + " s") +
                    "</title></circle>\n";
         }
@@ -189,7 +189,7 @@ std::string rows_html(const Comparison& comparison)
                          "th");
     for (const CompareRow& row : comparison.rows) {
         html += row_of_cells(
-            {name_of(row.settings.engine), setting_of(row.settings), fixed(row.build_s, 4),
+            {name_of(row.settings.engine), setting_of(row), fixed(row.build_s, 4),
              fixed(row.solve_s, 4), fixed(row.us_per_vertex, 3), fixed(row.error.rmse, 4),
              signed_fixed(row.error.bias, 4), fixed(row.error.p95, 4), fixed(row.error.max, 3),
              fixed(row.error.bent_mean_deg, 2), fixed(row.error.bent_p95_deg, 2),
@@ -210,7 +210,7 @@ std::string worst_html(const Comparison& comparison)
         for (const WorstVertex& vertex : row.worst) {
             const glm::dvec3 p = vertex.position;
             html += row_of_cells(
-                {name_of(row.settings.engine) + ", " + setting_of(row.settings),
+                {name_of(row.settings.engine) + ", " + setting_of(row),
                  std::to_string(vertex.vertex), exact(p.x) + ", " + exact(p.y) + ", " + exact(p.z),
                  fixed(vertex.occlusion, 3), fixed(vertex.reference, 3),
                  signed_fixed(vertex.occlusion - vertex.reference, 3)},

@@ -2,11 +2,12 @@
 
 #include "bake/json.h"
 #include "bake/sample.h"
-#include "bake/text.h"
+#include "bake/table.h"
+#include "files/scene_io.h"
 #include "reference/well_defined.h"
 #include "surfels/geometry.h"
+#include "surfels/number_text.h"
 #include "surfels/receiver.h"
-#include "surfels/scene_io.h"
 
 #include <glm/common.hpp>
 

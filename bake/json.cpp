@@ -9,12 +9,10 @@ Json json_of(const EngineSettings& settings)
     const Definition& definition = settings.definition;
     Json json;
     json["device"] = settings.device == Device::gpu ? "gpu" : "cpu";
-    if (settings.engine == Engine::rays) {
+    if (settings.engine == Engine::rays)
         json["rays"] = settings.rays;
-        json["smoothed"] = settings.smoothed;
-    } else {
+    else
         json["quality"] = settings.quality;
-    }
     if (settings.engine == Engine::disks) {
         json["passes"] = settings.passes;
         json["strength"] = settings.strength;

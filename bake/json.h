@@ -1,7 +1,7 @@
 /// json.h: how settings stand in reports. For the .cpp files of this folder.
 #pragma once
 
-#include "bake/engine.h"
+#include "engines/engine.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,10 +1,10 @@
 #include "bake/bake.h"
-#include "bake/text.h"
-#include "bake/threads.h"
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/output.h"
 #include "cli/progress_bar.h"
+#include "engines/threads.h"
+#include "surfels/number_text.h"
 #include "surfels/progress.h"
 
 #include <CLI/CLI.hpp>

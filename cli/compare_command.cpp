@@ -1,10 +1,10 @@
 #include "bake/compare.h"
 #include "bake/frontier.h"
-#include "bake/threads.h"
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/output.h"
 #include "cli/progress_bar.h"
+#include "engines/threads.h"
 #include "reference/rays.h"
 #include "surfels/atomic_file.h"
 

@@ -1,8 +1,8 @@
 #include "cli/engine_options.h"
 
-#include "bake/text.h"
 #include "cli/commands.h"
 #include "reference/rays.h"
+#include "surfels/number_text.h"
 
 #include <CLI/CLI.hpp>
 

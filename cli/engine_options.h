@@ -1,7 +1,7 @@
 /// engine_options.h: the options that say what is computed, for every command that computes.
 #pragma once
 
-#include "bake/engine.h"
+#include "engines/engine.h"
 
 #include <optional>
 #include <string>

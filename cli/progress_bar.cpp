@@ -1,6 +1,5 @@
 #include "cli/progress_bar.h"
 
-#include "bake/text.h"
 #include "cli/interrupt.h"
 
 #include <unistd.h>

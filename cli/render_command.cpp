@@ -1,14 +1,14 @@
 #include "bake/bake.h"
-#include "bake/text.h"
-#include "bake/threads.h"
-#include "bake/timing.h"
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/progress_bar.h"
 #include "cli/view_options.h"
+#include "engines/threads.h"
+#include "files/scene_io.h"
 #include "image/image_file.h"
 #include "reference/reference_cache.h"
-#include "surfels/scene_io.h"
+#include "surfels/number_text.h"
+#include "surfels/stopwatch.h"
 #include "viewer/render.h"
 
 #include <CLI/CLI.hpp>
@@ -85,7 +85,8 @@ int run(const RenderCommandOptions& options)
     const Colors colors = picture.view.colors;
     std::vector<Occlusion> occlusion(model.receivers.size());
     if (colors != Colors::rays && colors != Colors::normals && colors != Colors::levels)
-        occlusion = run_engine(model.geometry, model.receivers, engine, stage("solve")).occlusion;
+        occlusion = solve(prepare(model.geometry, engine), model.receivers, engine, stage("solve"))
+                        .occlusion;
     const double solve_s = watch.lap();
     std::vector<Occlusion> reference;
     if (needs_reference(picture.view))

@@ -1,10 +1,10 @@
-#include "bake/engine.h"
 #include "bake/statistics.h"
-#include "bake/threads.h"
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/interrupt.h"
 #include "cli/view_options.h"
+#include "engines/engine.h"
+#include "engines/threads.h"
 #include "image/image_file.h"
 #include "surfels/errors.h"
 #include "viewer/window.h"
@@ -47,7 +47,7 @@ std::vector<Choice> choices()
     return all;
 }
 
-Solved solve(const Model& model, const SolveSettings& settings, const Progress& progress)
+Solved solve(const Model& model, const SessionSettings& settings, const Progress& progress)
 {
     EngineSettings engine;
     engine.engine = choices()[settings.engine].engine;
@@ -57,8 +57,10 @@ Solved solve(const Model& model, const SolveSettings& settings, const Progress& 
     engine.passes = settings.passes;
     engine.strength = settings.strength;
     engine.rays = static_cast<std::uint32_t>(settings.rays);
-    EngineResult result = run_engine(model.geometry, model.receivers, engine, progress);
-    return {std::move(result.occlusion), result.surfels_s + result.tree_s, result.solve_s};
+    const Prepared prepared = prepare(model.geometry, engine);
+    Solution solution = surfelao::solve(prepared, model.receivers, engine, progress);
+    return {std::move(solution.occlusion), prepared.seconds().surfels + prepared.seconds().tree,
+            solution.seconds};
 }
 
 Services services()
@@ -96,7 +98,7 @@ int run(const ViewCommandOptions& options)
         throw InputError(options.input + ": no such file");
 
     const EngineSettings engine = settings_of(options.engine);
-    SolveSettings& settings = window.panel.settings;
+    SessionSettings& settings = window.panel.settings;
     const std::vector<Choice> known = choices();
     while (known[settings.engine].engine != engine.engine ||
            known[settings.engine].device != engine.device)

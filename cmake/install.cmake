@@ -1,7 +1,7 @@
 # `cmake --install`: program, libraries, headers and a CMake package for find_package(surfelao).
 include(CMakePackageConfigHelpers)
 
-set(installed surfels tree reference)
+set(installed surfels files tree reference)
 install(TARGETS ${installed} EXPORT surfelao
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
     FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/surfelao)

@@ -3,7 +3,7 @@
 #include "gpu/draw.h"
 #include "gpu/receiver_grid.h"
 #include "gpu/rows.h"
-#include "tree/disk_gather.h"
+#include "tree/disks/gather.h"
 #include "tree/receiver_group.h"
 
 #include <glm/vec4.hpp>

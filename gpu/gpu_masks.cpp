@@ -3,10 +3,10 @@
 #include "gpu/draw.h"
 #include "gpu/receiver_grid.h"
 #include "gpu/rows.h"
-#include "tree/mask_kernel.h"
-#include "tree/mask_limits.h"
-#include "tree/mask_raster.h"
-#include "tree/mask_tree.h"
+#include "tree/masks/kernel.h"
+#include "tree/masks/limits.h"
+#include "tree/masks/raster.h"
+#include "tree/masks/tree.h"
 #include "tree/receiver_group.h"
 
 #include <glm/geometric.hpp>
@@ -66,7 +66,7 @@ std::vector<MaskNode> in_preorder(const MaskTree& tree)
     return nodes;
 }
 
-/// From the mask frame to the axes of a face, +x -x +y -y +z -z, as in mask_raster.h.
+/// From the mask frame to the axes of a face, +x -x +y -y +z -z, as in tree/masks/raster.h.
 glm::mat3 axes_of_face(int face)
 {
     const int axis = face / 2;

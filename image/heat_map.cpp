@@ -1,6 +1,6 @@
 #include "image/heat_map.h"
 
-#include "image/text.h"
+#include "image/lettering.h"
 #include "surfels/errors.h"
 
 #include <glm/common.hpp>

@@ -1,4 +1,4 @@
-// disk_record.glsl: the octree of tree/octree.h as one array of records, nodes and surfels alike.
+// disk_record.glsl: the octree of tree/disks/octree.h as one array of records, nodes and surfels alike.
 //
 // Preorder, with each leaf's surfels right behind it, so that "open" means "go on to the next record"
 // for every node, and one piece of code adds nodes and surfels. Three RGBA32UI texels, since a float

@@ -15,7 +15,7 @@
 // Reads        u_records         octree, 3 texels a record (disk_record.glsl)
 //              u_record_count
 //              u_two_sided_from  records from here on occlude from both sides   (TWO_SIDED)
-//              u_far_front       per record, in rows: FarVisibility of tree/disk_form_factor.h on the
+//              u_far_front       per record, in rows: FarVisibility of tree/disks/form_factor.h on the
 //                                side that the casting normal points to: slope.xyz constant
 //              u_far_back        the same for the other side                    (TWO_SIDED)
 //              u_receivers       RGBA32F, 2 texels a slot: position.xyz 0 | normal.xyz 0
@@ -30,7 +30,7 @@
 //              u_smooth          1: Falloff::smooth, 0: none                    (LIMITED)
 // Writes       out_sum           RGBA32F: sum of form factors times direction | sum of form factors
 //              out_at            R32UI: record to go on with; u_record_count or more: done
-// CPU twin     tree/disk_gather.cpp; formulas: tree/disk_form_factor.h;
+// CPU twin     tree/disks/gather.cpp; formulas: tree/disks/form_factor.h;
 //              tests/gpu/gpu_disks_test.cpp holds them together
 #ifndef TWO_SIDED
 #define TWO_SIDED 0

@@ -12,7 +12,7 @@
 //                              the same for half 1
 //            u_fill            0: as drawn is all there is
 //            u_moments         RGBA32F, 3 texels a nibble, row by row: what a set bit of it is worth
-//                              (MaskRaster of tree/mask_raster.h). First moments 1 u v of the lower
+//                              (MaskRaster of tree/masks/raster.h). First moments 1 u v of the lower
 //                              two bits, second moment 1 | first of the upper two, second u |
 //                              second v uu uv vv
 //            u_receivers       RGBA32F, 2 texels a slot, mask frame: position.xyz 0 | normal.xyz 0
@@ -22,7 +22,7 @@
 //                              those left open by filling, over those left open by closing
 //            out_bent, out_bent_filled, out_bent_closed
 //                              RGBA32F: integral of w (n.w) over the same bits, mask frame, 0
-// CPU twin   first_moments, second_moments, horizon, fill, close in tree/mask_kernel_body.h
+// CPU twin   first_moments, second_moments, horizon, fill, close in tree/masks/kernel_body.h
 uniform usampler2D u_low_words0;
 uniform usampler2D u_low_words1;
 uniform usampler2D u_low_loose0;

@@ -6,8 +6,8 @@
 //
 // Vertices   fullscreen.vert
 // Drawn by   gpu/gpu_masks.cpp, in pieces, once per half face
-// Reads      u_nodes           RGBA32UI, 4 texels a node: MaskNode of tree/mask_tree.h in preorder,
-//                              the last word the flags of tree/mask_kernel.h and the node after
+// Reads      u_nodes           RGBA32UI, 4 texels a node: MaskNode of tree/masks/tree.h in preorder,
+//                              the last word the flags of tree/masks/kernel.h and the node after
 //                              its subtree
 //            u_node_count
 //            u_receivers       RGBA32F, 2 texels a slot, mask frame: position.xyz 0 | normal.xyz 0
@@ -16,7 +16,7 @@
 //            u_half            0: rows 0 to 7, where V < 0; 1: rows 8 to 15
 //            u_groups          RGBA32F, 3 texels a group of 16 slots (disks_gather.frag)
 //            u_cluster, u_cluster_limit, u_share, u_graze, u_one_sided, u_max_distance  MaskSettings of
-//                              tree/mask_kernel.h; u_share is share_leaf; no limit: the largest float
+//                              tree/masks/kernel.h; u_share is share_leaf; no limit: the largest float
 //            u_exact_radius    nodes with no larger open_radius are drawn as they are; -1: leaves alone
 //            u_words0, u_words1, u_loose0, u_loose1, u_at  the outputs of the draw before
 //            u_continued       0: there was none
@@ -24,7 +24,7 @@
 // Writes     out_words0, 1     RGBA32UI: the mask's rows
 //            out_loose0, 1     the same: what of it clusters have set
 //            out_at            R32UI: node to go on with; u_node_count or more: done
-// CPU twin   walk<true>, draw_near and draw in tree/mask_kernel_body.h: the same decisions for groups of 16, but
+// CPU twin   walk<true>, draw_near and draw in tree/masks/kernel_body.h: the same decisions for groups of 16, but
 //            the CPU's larger groups share what is far: tests/gpu/gpu_masks_test.cpp says how much
 //            that makes
 uniform usamplerBuffer u_nodes;
@@ -56,7 +56,7 @@ layout(location = 2) out uvec4 out_loose0;
 layout(location = 3) out uvec4 out_loose1;
 layout(location = 4) out uint out_at;
 
-const uint  kSheet           = 0x80000000u;  // these five as in tree/mask_kernel.h
+const uint  kSheet           = 0x80000000u;  // these five as in tree/masks/kernel.h
 const uint  kSolid           = 0x40000000u;
 const uint  kHollow          = 0x20000000u;
 const uint  kTriangle        = 0x10000000u;

@@ -1,8 +1,9 @@
 /// errors.h: what goes wrong outside the program, and what a caller did wrong.
 ///
 /// Bad input is an InputError and names file, element, what was found and what was wanted.
-/// The machine's faults (disk full, no context) are std::runtime_error. A caller's mistake aborts.
-/// Exceptions are caught once, in `main`.
+/// The machine's faults (disk full, no context) are std::runtime_error. Settings out of their
+/// ranges are a SettingsError. What cannot happen unless this project is wrong aborts. Exceptions
+/// are caught once, in `main`.
 #pragma once
 
 #include <cstdio>
@@ -17,9 +18,17 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// A setting is out of its range, or does not go with another one. what() is one sentence that
+/// names the setting and the range. Nothing was done.
+class SettingsError : public std::invalid_argument {
+public:
+    using std::invalid_argument::invalid_argument;
+};
+
 }  // namespace surfelao
 
-/// Prints the broken condition and its place, then aborts. For callers' mistakes only.
+/// Prints the broken condition and its place, then aborts. For mistakes of this project alone: what
+/// a caller from outside may get wrong throws.
 #define SURFELAO_CHECK(condition)                                                              \
     do {                                                                                       \
         if (!(condition)) {                                                                    \

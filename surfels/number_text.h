@@ -1,4 +1,4 @@
-/// number_text.h: numbers appended to a text, the same in every locale.
+/// number_text.h: numbers as text, the same in every locale.
 #pragma once
 
 #include <charconv>
@@ -32,5 +32,12 @@ inline void append_integer(std::string& text, std::int64_t value)
     const char* end = std::to_chars(digits, digits + sizeof(digits), value).ptr;
     text.append(digits, static_cast<std::size_t>(end - digits));
 }
+
+/// "0.0123"; never in the locale's manner.
+[[nodiscard]] std::string fixed(double value, int digits);
+/// The same with a sign: "+0.0012".
+[[nodiscard]] std::string signed_fixed(double value, int digits);
+/// The shortest text that reads back as the same number.
+[[nodiscard]] std::string exact(double value);
 
 }  // namespace surfelao

@@ -1,7 +1,8 @@
 /// lanes.h: four floats as one value, in what every processor of a 64-bit machine has.
 ///
 /// For loops that compilers do not turn into vector instructions by themselves. The same results as
-/// with single floats. Not for the mask kernels, which are compiled for wider sets (mask_simd.h).
+/// with single floats. Not for the mask kernels, which are compiled for wider sets
+/// (tree/masks/simd.h).
 #pragma once
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "viewer/model.h"
 
 #include "surfels/surfel.h"
-#include "tree/octree.h"
+#include "tree/disks/octree.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -71,7 +71,7 @@ bool was_set()
 }
 
 /// edited: what the widgets show while they are dragged; next: what is to be solved.
-void solver_widgets(SolveSettings& edited, SolveSettings& next, const Session& session)
+void solver_widgets(SessionSettings& edited, SessionSettings& next, const Session& session)
 {
     if (!ImGui::IsAnyItemActive())
         edited = next;

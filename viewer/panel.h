@@ -26,7 +26,7 @@ struct PanelState {
     Comparison comparison = Comparison::none;
     float wipe = 0.5f;  ///< where the line is, as a share of the picture's width
     bool is_hidden = false;
-    SolveSettings settings;
+    SessionSettings settings;
     int reference_rays = 1024;  ///< even
     bool wants_reference = false;
     bool shows_help = false;
@@ -82,7 +82,7 @@ private:
     void widgets(PanelState& state, const Session& session, const PanelFigures& figures,
                  PanelInput& input);
     void mouse(PanelState& state, PanelInput& input, float wipe_x, float left);
-    SolveSettings edited_;
+    SessionSettings edited_;
     bool drags_wipe_ = false;
 };
 

@@ -1,7 +1,7 @@
 #include "viewer/session.h"
 
+#include "files/scene_io.h"
 #include "reference/reference_cache.h"
-#include "surfels/scene_io.h"
 
 #include <algorithm>
 #include <chrono>
@@ -19,7 +19,7 @@ double seconds_since(std::chrono::steady_clock::time_point start)
 }
 
 /// The rough answer's settings; the same ones where the engine has none rougher.
-SolveSettings draft_of(SolveSettings settings, const EngineTraits& traits)
+SessionSettings draft_of(SessionSettings settings, const EngineTraits& traits)
 {
     if (traits.most_quality > 0.0f)
         settings.quality = std::min(settings.quality, 0.0f);
@@ -51,7 +51,7 @@ struct Session::Traced {
     double seconds = 0.0;
 };
 
-Definition definition_of(const SolveSettings& settings)
+Definition definition_of(const SessionSettings& settings)
 {
     Definition definition;
     if (settings.max_distance_percent > 0.0f) {
@@ -89,7 +89,7 @@ void Session::open(const std::filesystem::path& path, UpAxis up)
     });
 }
 
-void Session::solve(const SolveSettings& settings)
+void Session::solve(const SessionSettings& settings)
 {
     if (settings == settings_)
         return;
@@ -108,7 +108,7 @@ void Session::start_solve()
     was_cancelled_ = false;
     const std::uint64_t number = ++solve_number_;
     const EngineTraits& traits = services_.engines[settings_.engine];
-    std::vector<SolveSettings> steps = {draft_of(settings_, traits), settings_};
+    std::vector<SessionSettings> steps = {draft_of(settings_, traits), settings_};
     if (steps[0] == steps[1])
         steps.pop_back();
     solver_.start([this, number, steps, model = state_.model](const Progress& progress) {

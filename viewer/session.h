@@ -30,7 +30,7 @@ struct EngineTraits {
 };
 
 /// What is solved, and how. Equal settings give equal answers.
-struct SolveSettings {
+struct SessionSettings {
     std::size_t engine = 0;  ///< into Services::engines
     float quality = 1.0f;
     int passes = 2;
@@ -38,11 +38,11 @@ struct SolveSettings {
     int rays = 256;
     float max_distance_percent = 0.0f;  ///< of the diagonal; 0 = unlimited
     bool smooth_falloff = false;        ///< only with a distance limit
-    bool operator==(const SolveSettings&) const = default;
+    bool operator==(const SessionSettings&) const = default;
 };
 
 /// What is measured by these settings.
-[[nodiscard]] Definition definition_of(const SolveSettings& settings);
+[[nodiscard]] Definition definition_of(const SessionSettings& settings);
 
 struct Solved {
     std::vector<Occlusion> occlusion;  ///< one per receiver of the model
@@ -62,7 +62,7 @@ struct ErrorFigures {
 struct Services {
     std::vector<EngineTraits> engines;  ///< at least one
     /// In a background thread. Throws Cancelled when progress says so.
-    std::function<Solved(const Model&, const SolveSettings&, const Progress&)> solve;
+    std::function<Solved(const Model&, const SessionSettings&, const Progress&)> solve;
     std::function<ErrorFigures(std::span<const Occlusion> answer,
                                std::span<const Occlusion> reference)>
         measure;
@@ -93,7 +93,7 @@ public:
 
     /// Solves the model with these settings: a draft first where the engine has one, then the
     /// whole. What is running is given up. Does nothing when they are the last settings.
-    void solve(const SolveSettings& settings);
+    void solve(const SessionSettings& settings);
 
     /// An even number of rays: the reference is traced now and whenever the definition changes.
     /// 0: no more.
@@ -113,7 +113,7 @@ public:
 
     const SessionState& state() const { return state_; }
     const Services& services() const { return services_; }
-    const SolveSettings& settings() const { return settings_; }
+    const SessionSettings& settings() const { return settings_; }
     bool opening() const { return opening_; }
     bool was_cancelled() const { return was_cancelled_; }  ///< the last solving, before its end
     bool solving() const { return solver_.busy(); }
@@ -130,7 +130,7 @@ private:
     void measure();
 
     Services services_;
-    SolveSettings settings_;
+    SessionSettings settings_;
     std::uint32_t reference_rays_ = 0;
     bool opening_ = false;
     bool was_cancelled_ = false;

@@ -1,9 +1,9 @@
 #include "viewer/window.h"
 
+#include "files/scene_io.h"
 #include "gpu/context.h"
 #include "image/image_file.h"
 #include "surfels/errors.h"
-#include "surfels/scene_io.h"
 #include "viewer/render.h"
 #include "viewer/renderer.h"
 

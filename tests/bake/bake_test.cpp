@@ -1,7 +1,7 @@
 #include "bake/bake.h"
 
 #include "bake/info.h"
-#include "bake/threads.h"
+#include "engines/threads.h"
 #include "scenes.h"
 #include "surfels/errors.h"
 #include "temporary_folder.h"
@@ -66,7 +66,7 @@ TEST(Bake, CancelledAtAnyStageLeavesTheOldFile)
                                    [&](std::string_view stage, double) { return stage != stop; })),
             Cancelled)
             << stop;
-        EXPECT_EQ(read_text(folder / "out.ply"), "old");
+        EXPECT_EQ(contents_of(folder / "out.ply"), "old");
         EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2) << stop;
     }
 }

@@ -1,7 +1,7 @@
 #include "bake/compare.h"
 
+#include "files/scene_io.h"
 #include "scenes.h"
-#include "surfels/scene_io.h"
 #include "temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST_F(Compare, RowsComeInOrderAndMoreRaysAreMoreExact)
     ASSERT_EQ(c.rows.size(), 6u);  // the last because the disks are more exact than 64 rays
     EXPECT_EQ(c.rows[5].settings.rays, 256u);
     EXPECT_EQ(c.rows[0].settings.engine, Engine::disks);
-    EXPECT_TRUE(c.rows[4].settings.smoothed);
+    EXPECT_TRUE(c.rows[4].smoothed);
     EXPECT_GT(c.rows[1].error.rmse, c.rows[2].error.rmse);
     EXPECT_GT(c.rows[2].error.rmse, c.rows[3].error.rmse);
     EXPECT_LT(c.rows[3].error.rmse, 0.05);

@@ -8,14 +8,14 @@
 // they differ. Every time is the better of two alternating runs of the whole solve, upload and
 // read-back included.
 
+#include "files/scene_io.h"
 #include "gpu/context.h"
 #include "gpu/gpu_disks.h"
 #include "gpu/gpu_masks.h"
 #include "scenes.h"
-#include "surfels/scene_io.h"
 #include "surfels/topology.h"
-#include "tree/disks.h"
-#include "tree/masks.h"
+#include "tree/disks/disks.h"
+#include "tree/masks/masks.h"
 
 #include <algorithm>
 #include <chrono>

@@ -17,10 +17,10 @@
 #include "surfels/geometry.h"
 #include "surfels/receiver.h"
 #include "surfels/surfel.h"
-#include "tree/brute_force.h"
-#include "tree/disk_gather.h"
-#include "tree/disks.h"
-#include "tree/masks.h"
+#include "tree/disks/brute_force.h"
+#include "tree/disks/disks.h"
+#include "tree/disks/gather.h"
+#include "tree/masks/masks.h"
 #include "tree/receiver_group.h"
 
 #include <tbb/global_control.h>

@@ -1,7 +1,7 @@
-#include "../bake/temporary_folder.h"
+#include "files/scene_io.h"
 #include "program.h"
 #include "scenes.h"
-#include "surfels/scene_io.h"
+#include "temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <sys/mount.h>
@@ -52,7 +52,7 @@ TEST_F(BakeCommand, SameBytesForAnyNumberOfThreads)
             const Outcome outcome = run({"bake", folder_ / "b.obj", "-o", folder_ / "x.ply",
                                          "--engine", engine, "--threads", threads});
             EXPECT_EQ(outcome.code, 0) << outcome.err;
-            bytes.push_back(read_text(folder_ / "x.ply"));
+            bytes.push_back(contents_of(folder_ / "x.ply"));
         }
         EXPECT_EQ(bytes[0], bytes[1]) << engine;
         EXPECT_EQ(bytes[0], bytes[2]) << engine;
@@ -84,7 +84,7 @@ TEST_F(BakeCommand, OptionsReachTheReport)
                                  "--json",
                                  folder_ / "report.json"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    const Json json = Json::parse(read_text(folder_ / "report.json"));
+    const Json json = Json::parse(contents_of(folder_ / "report.json"));
     const Json& settings = json["settings"];
     EXPECT_EQ(json["engine"], "disks");
     EXPECT_EQ(settings["passes"], 3);
@@ -107,7 +107,7 @@ TEST_F(BakeCommand, TheGpuKnowsTheSameOptions)
                  "gpu", "--max-distance", "50%", "--falloff", "smooth", "--quality", "1.5",
                  "--json", folder_ / "report.json"});
         ASSERT_EQ(outcome.code, 0) << outcome.err;
-        const Json json = Json::parse(read_text(folder_ / "report.json"));
+        const Json json = Json::parse(contents_of(folder_ / "report.json"));
         EXPECT_EQ(json["engine"], engine);
         EXPECT_EQ(json["settings"]["device"], "gpu");
         EXPECT_EQ(read_scene(folder_ / "x.ply").positions.size(), 6u * 16 + 2);
@@ -138,7 +138,7 @@ TEST_F(BakeCommand, OneFailingFileDoesNotStopTheBatch)
     EXPECT_TRUE(fs::exists(folder_ / "out/a.obj"));
     EXPECT_FALSE(fs::exists(folder_ / "out/bad.obj"));
     EXPECT_TRUE(fs::exists(folder_ / "out/b.obj"));
-    const Json json = Json::parse(read_text(folder_ / "report.json"));
+    const Json json = Json::parse(contents_of(folder_ / "report.json"));
     ASSERT_EQ(json.size(), 3u);
     EXPECT_TRUE(json[0].contains("seconds"));
     EXPECT_TRUE(json[1].contains("error"));
@@ -152,13 +152,13 @@ TEST_F(BakeCommand, ResumeSkipsWhatIsFinishedAndRedoesWhatIsOlder)
     Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("skipped"), std::string::npos);
-    EXPECT_EQ(read_text(folder_ / "out/a.obj"), "finished");
+    EXPECT_EQ(contents_of(folder_ / "out/a.obj"), "finished");
     EXPECT_TRUE(fs::exists(folder_ / "out/b.obj"));
 
     fs::last_write_time(folder_ / "a.obj",
                         fs::last_write_time(folder_ / "out/a.obj") + std::chrono::seconds(5));
     EXPECT_EQ(run(arguments).code, 0);
-    EXPECT_NE(read_text(folder_ / "out/a.obj"), "finished");
+    EXPECT_NE(contents_of(folder_ / "out/a.obj"), "finished");
 }
 
 TEST_F(BakeCommand, ReadOnlyTargetIsRefusedAndUntouched)
@@ -169,7 +169,7 @@ TEST_F(BakeCommand, ReadOnlyTargetIsRefusedAndUntouched)
     fs::permissions(folder_ / "x.ply", fs::perms::owner_read);
     const Outcome outcome = run({"bake", folder_ / "a.obj", "-o", folder_ / "x.ply"});
     EXPECT_EQ(outcome.code, 1);
-    EXPECT_EQ(read_text(folder_ / "x.ply"), "old");
+    EXPECT_EQ(contents_of(folder_ / "x.ply"), "old");
     fs::permissions(folder_ / "out", fs::perms::owner_read | fs::perms::owner_exec);
     EXPECT_EQ(run({"bake", folder_ / "a.obj", "-o", folder_ / "out/x.ply"}).code, 1);
 }
@@ -184,7 +184,7 @@ TEST_F(BakeCommand, AFullDiskIsAFailureThatLeavesTheOldFileAndNothingElse)
     const Outcome outcome = run({"bake", folder_ / "large.obj", "-o", disk / "x.ply"});
     EXPECT_EQ(outcome.code, 1);
     EXPECT_EQ(outcome.err.rfind("surfelao: ", 0), 0u) << outcome.err;
-    EXPECT_EQ(read_text(disk / "x.ply"), "old");
+    EXPECT_EQ(contents_of(disk / "x.ply"), "old");
     EXPECT_EQ(std::distance(fs::directory_iterator(disk), {}), 1);
     umount(disk.c_str());
 }

@@ -1,6 +1,6 @@
-#include "../bake/temporary_folder.h"
 #include "program.h"
 #include "scenes.h"
+#include "temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -59,7 +59,7 @@ TEST_F(Interrupt, SignalsEndTheBatchWithTheirCodeAndLeaveFinishedAndOldFiles)
         const Outcome outcome = program.wait();
         EXPECT_EQ(outcome.code, 128 + signal);
         EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
-        EXPECT_EQ(read_text(folder_ / "out/in.obj"), "old");
+        EXPECT_EQ(contents_of(folder_ / "out/in.obj"), "old");
         EXPECT_EQ(outputs(), 2u) << "no temporary file";
     }
 }
@@ -83,13 +83,13 @@ TEST_F(Interrupt, KilledHalfWayTheBatchGoesOnWithResume)
         program.send(SIGKILL);
         EXPECT_EQ(program.wait().code, 128 + SIGKILL);
     }
-    const std::string first = read_text(folder_ / "out/quick.obj");
+    const std::string first = contents_of(folder_ / "out/quick.obj");
     EXPECT_FALSE(fs::exists(folder_ / "out/in.obj"));
     const Outcome outcome = run(folder_.path(), {"bake", folder_ / "quick.obj", folder_ / "in.obj",
                                                  "-o", folder_ / "out", "--resume"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("skipped"), std::string::npos);
-    EXPECT_EQ(read_text(folder_ / "out/quick.obj"), first);
+    EXPECT_EQ(contents_of(folder_ / "out/quick.obj"), first);
     EXPECT_TRUE(fs::exists(folder_ / "out/in.obj"));
 }
 

@@ -1,6 +1,6 @@
 #include "program.h"
 
-#include "../bake/temporary_folder.h"
+#include "temporary_folder.h"
 
 #include <fcntl.h>
 #include <pty.h>
@@ -84,8 +84,8 @@ Outcome Program::wait()
     waitpid(child_, &status, 0);
     child_ = -1;
     outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    outcome.out = read_text(out_);
-    outcome.err += read_text(err_);
+    outcome.out = contents_of(out_);
+    outcome.err += contents_of(err_);
     return outcome;
 }
 

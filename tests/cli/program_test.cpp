@@ -1,6 +1,6 @@
 #include "program.h"
-#include "../bake/temporary_folder.h"
 #include "scenes.h"
+#include "temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -137,7 +137,7 @@ TEST_F(ProgramTest, FailuresAreOneSentenceAndExitOneAndLeaveTheOldFile)
         EXPECT_EQ(outcome.out, "") << line;
         EXPECT_EQ(outcome.err.rfind("surfelao: ", 0), 0u) << line << outcome.err;
         EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-        EXPECT_EQ(read_text(out()), "old") << line;
+        EXPECT_EQ(contents_of(out()), "old") << line;
         EXPECT_EQ(file_count(), files) << line;
     }
 }

@@ -1,7 +1,7 @@
-#include "../bake/temporary_folder.h"
 #include "image/image_file.h"
 #include "program.h"
 #include "scenes.h"
+#include "temporary_folder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "../bake/temporary_folder.h"
 #include "program.h"
 #include "scenes.h"
+#include "temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -42,7 +42,7 @@ TEST_F(ReportCommands, ComparePrintsATableAndWritesPictures)
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     for (const char* word : {"masks", "disks", "rays", "RMSE", "Embree/ours", "noise"})
         EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
-    const Json json = Json::parse(read_text(folder_ / "c.json"));
+    const Json json = Json::parse(contents_of(folder_ / "c.json"));
     EXPECT_EQ(json["reference"]["rays"], 256);
     for (const char* key : {"engine", "setting", "build_s", "solve_s", "us_per_vertex", "rmse",
                             "bias", "p95", "max", "embree_ratio"})
@@ -105,7 +105,7 @@ TEST_F(ReportCommands, FrontierSumsUpOverScenesAndNamesTheBadOne)
     EXPECT_EQ(outcome.code, 1);  // one scene failed
     EXPECT_NE(outcome.err.find("none.obj"), std::string::npos);
     EXPECT_NE(outcome.out.find("MEDIAN"), std::string::npos);
-    const Json json = Json::parse(read_text(folder_ / "f.json"));
+    const Json json = Json::parse(contents_of(folder_ / "f.json"));
     EXPECT_EQ(json["summary"]["engine"], "masks");
     for (const char* key : {"median_ratio", "worst_ratio", "quartiles"}) {
         EXPECT_TRUE(json["summary"]["at_010"].contains(key));

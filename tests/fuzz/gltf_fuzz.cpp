@@ -2,8 +2,8 @@
 // promises and that survives being written and read again.
 #include "scene_checks.h"
 
+#include "files/gltf_io.h"
 #include "surfels/errors.h"
-#include "surfels/gltf_io.h"
 
 #include <cstdint>
 #include <string>

@@ -4,9 +4,9 @@
 
 #include "scene_checks.h"
 
-#include "surfels/obj_io.h"
-#include "surfels/off_io.h"
-#include "surfels/ply_io.h"
+#include "files/obj_io.h"
+#include "files/off_io.h"
+#include "files/ply_io.h"
 
 #include <string>
 #include <string_view>

@@ -1,5 +1,5 @@
 // Small good files for the fuzzers to start from: fuzz_seeds FOLDER fills FOLDER/<fuzzer>.
-#include "surfels/gltf_maker.h"
+#include "files/gltf_maker.h"
 
 #include <cstdint>
 #include <filesystem>

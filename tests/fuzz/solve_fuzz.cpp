@@ -5,8 +5,8 @@
 #include "reference/rays.h"
 #include "surfels/surfel.h"
 #include "tests/stability/judge.h"
-#include "tree/disks.h"
-#include "tree/masks.h"
+#include "tree/disks/disks.h"
+#include "tree/masks/masks.h"
 
 #include <glm/geometric.hpp>
 

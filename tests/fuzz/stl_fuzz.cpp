@@ -1,6 +1,6 @@
 #include "mesh_fuzz.h"
 
-#include "surfels/stl_io.h"
+#include "files/stl_io.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {

@@ -3,7 +3,7 @@
 #include "scenes.h"
 #include "surfels/topology.h"
 #include "tests/gpu/contexts.h"
-#include "tree/disks.h"
+#include "tree/disks/disks.h"
 
 #include <glm/geometric.hpp>
 

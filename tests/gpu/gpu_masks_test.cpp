@@ -2,7 +2,7 @@
 
 #include "scenes.h"
 #include "tests/gpu/contexts.h"
-#include "tree/masks.h"
+#include "tree/masks/masks.h"
 
 #include <glm/geometric.hpp>
 

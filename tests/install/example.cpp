@@ -1,7 +1,7 @@
+#include "files/scene_io.h"
 #include "surfels/geometry.h"
 #include "surfels/receiver.h"
-#include "surfels/scene_io.h"
-#include "tree/masks.h"
+#include "tree/masks/masks.h"
 
 #include <cstdio>
 #include <exception>

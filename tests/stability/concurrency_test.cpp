@@ -6,13 +6,13 @@
 // that has no place for others (kAlone), and every access is seen. The same on all cores is left to
 // the plain build.
 #include "bake/bake.h"
+#include "files/scene_io.h"
 #include "reference/rays.h"
-#include "surfels/scene_io.h"
 #include "surfels/topology.h"
 #include "tests/scenes.h"
 #include "tests/stability/engines.h"
-#include "tree/disks.h"
-#include "tree/masks.h"
+#include "tree/disks/disks.h"
+#include "tree/masks/masks.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

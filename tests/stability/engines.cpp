@@ -6,8 +6,8 @@
 #include "reference/rays.h"
 #include "surfels/surfel.h"
 #include "surfels/topology.h"
-#include "tree/disks.h"
-#include "tree/masks.h"
+#include "tree/disks/disks.h"
+#include "tree/masks/masks.h"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
-#include "tree/disks.h"
+#include "tree/disks/disks.h"
 
 #include "scenes.h"
-#include "tree/brute_force.h"
-#include "tree/disk_form_factor.h"
+#include "tree/disks/brute_force.h"
+#include "tree/disks/form_factor.h"
 
 #include <glm/geometric.hpp>
 

@@ -1,8 +1,8 @@
-#include "tree/mask_groups.h"
+#include "tree/masks/groups.h"
 
 #include "scenes.h"
 #include "surfels/geometry.h"
-#include "tree/mask_tree.h"
+#include "tree/masks/tree.h"
 
 #include <glm/geometric.hpp>
 

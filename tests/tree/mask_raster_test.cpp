@@ -1,7 +1,7 @@
 // The text of the kernels, compiled once more for this test, so that its parts can be asked alone.
 #define SURFELAO_MASK_ISA mask_under_test
 #define SURFELAO_MASK_ISA_NAME "under test"
-#include "tree/mask_kernel_body.h"
+#include "tree/masks/kernel_body.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>

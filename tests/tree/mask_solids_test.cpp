@@ -1,11 +1,11 @@
-#include "tree/mask_solids.h"
+#include "tree/masks/solids.h"
 
 #include "scenes.h"
 #include "surfels/geometry.h"
 #include "surfels/receiver.h"
-#include "tree/mask_kernel.h"
-#include "tree/mask_tree.h"
-#include "tree/masks.h"
+#include "tree/masks/kernel.h"
+#include "tree/masks/masks.h"
+#include "tree/masks/tree.h"
 
 #include <gtest/gtest.h>
 

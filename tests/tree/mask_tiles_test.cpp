@@ -1,10 +1,10 @@
-#include "tree/mask_tiles.h"
+#include "tree/masks/tiles.h"
 
 #include "scenes.h"
 #include "surfels/geometry.h"
 #include "surfels/receiver.h"
-#include "tree/mask_tree.h"
-#include "tree/masks.h"
+#include "tree/masks/masks.h"
+#include "tree/masks/tree.h"
 
 #include <glm/geometric.hpp>
 

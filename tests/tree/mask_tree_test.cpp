@@ -1,9 +1,9 @@
-#include "tree/mask_tree.h"
+#include "tree/masks/tree.h"
 
 #include "scenes.h"
 #include "surfels/geometry.h"
-#include "tree/mask_kernel.h"
-#include "tree/masks.h"
+#include "tree/masks/kernel.h"
+#include "tree/masks/masks.h"
 
 #include <glm/geometric.hpp>
 

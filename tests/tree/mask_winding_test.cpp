@@ -1,4 +1,4 @@
-#include "tree/mask_winding.h"
+#include "tree/masks/winding.h"
 
 #include "scenes.h"
 

@@ -1,4 +1,4 @@
-#include "tree/masks.h"
+#include "tree/masks/masks.h"
 
 #include "scenes.h"
 

@@ -1,4 +1,4 @@
-#include "tree/octree.h"
+#include "tree/disks/octree.h"
 
 #include "scenes.h"
 #include "tree/morton.h"

@@ -31,7 +31,7 @@ struct Fake {
     {
         Services all;
         all.engines = {{.name = "fake", .most_quality = 2.0f}};
-        all.solve = [this](const Model& model, const SolveSettings& settings,
+        all.solve = [this](const Model& model, const SessionSettings& settings,
                            const Progress& progress) {
             ++calls;
             while (settings.quality > 1.5f) {
@@ -185,7 +185,7 @@ TEST(Session, AnEnginesFailureIsTold)
 {
     Fake fake;
     Services services = fake.services();
-    services.solve = [](const Model&, const SolveSettings&, const Progress&) -> Solved {
+    services.solve = [](const Model&, const SessionSettings&, const Progress&) -> Solved {
         throw std::runtime_error("the device is gone");
     };
     Session session(std::move(services));
@@ -207,9 +207,9 @@ TEST(Session, EndsWhileWorkIsRunning)
 
 TEST(DefinitionOf, ADistanceOfZeroIsNoLimit)
 {
-    EXPECT_TRUE(std::isinf(definition_of(SolveSettings{}).max_distance));
+    EXPECT_TRUE(std::isinf(definition_of(SessionSettings{}).max_distance));
     const Definition limited =
-        definition_of(SolveSettings{.max_distance_percent = 10.0f, .smooth_falloff = true});
+        definition_of(SessionSettings{.max_distance_percent = 10.0f, .smooth_falloff = true});
     EXPECT_FLOAT_EQ(limited.max_distance, 0.1f);
     EXPECT_EQ(limited.falloff, Falloff::smooth);
 }

@@ -3,9 +3,9 @@
 
 #include "viewer/window.h"
 
+#include "files/scene_io.h"
 #include "image/image_file.h"
 #include "scenes.h"
-#include "surfels/scene_io.h"
 
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ Services same_everywhere(float occlusion, std::atomic<int>& calls)
 {
     Services all;
     all.engines = {{.name = "same"}};
-    all.solve = [occlusion, &calls](const Model& model, const SolveSettings&, const Progress&) {
+    all.solve = [occlusion, &calls](const Model& model, const SessionSettings&, const Progress&) {
         ++calls;
         std::vector<Occlusion> answer;
         for (const Receiver& receiver : model.receivers)
@@ -170,7 +170,7 @@ TEST_F(Window, UntilTheFirstAnswerNormalsAreShown)
     std::atomic<bool> may_answer{false};
     Services services = open_everywhere(calls);
     services.solve = [&may_answer, answer = services.solve](const Model& model,
-                                                            const SolveSettings& settings,
+                                                            const SessionSettings& settings,
                                                             const Progress& progress) {
         may_answer.wait(false);
         return answer(model, settings, progress);

@@ -1,0 +1,199 @@
+#include "bake/compare_text.h"
+
+#include "bake/json.h"
+#include "bake/picture.h"
+#include "bake/table.h"
+#include "surfels/atomic_file.h"
+#include "surfels/number_text.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+
+namespace surfelao {
+namespace {
+
+Json json_of(const std::optional<EmbreeRatio>& ratio)
+{
+    return ratio ? Json(ratio->ratio) : Json();
+}
+
+template <class T>
+void put(std::ofstream& file, T value)
+{
+    static_assert(std::endian::native == std::endian::little);
+    file.write(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+}  // namespace
+
+Json json_object_of(const Comparison& comparison)
+{
+    Json json;
+    json["input"] = comparison.input.string();
+    json["vertices"] = comparison.vertices;
+    json["triangles"] = comparison.triangles;
+    json["dropped_triangles"] = comparison.dropped_triangles;
+    json["threads"] = comparison.threads;
+    json["rounds"] = comparison.rounds;
+    json["read_s"] = comparison.read_s;
+    json["reference"] = {{"rays", comparison.reference_rays},
+                         {"noise", comparison.reference_noise},
+                         {"from_cache", comparison.reference_from_cache},
+                         {"judged", comparison.judged},
+                         {"ill_defined", comparison.ill_defined},
+                         {"without_normal", comparison.without_normal}};
+    json["rows"] = Json::array();
+    for (const CompareRow& row : comparison.rows) {
+        Json worst = Json::array();
+        for (const WorstVertex& vertex : row.worst) {
+            worst.push_back(
+                {{"vertex", vertex.vertex},
+                 {"position", {vertex.position.x, vertex.position.y, vertex.position.z}},
+                 {"occlusion", vertex.occlusion},
+                 {"reference", vertex.reference}});
+        }
+        json["rows"].push_back({{"engine", name_of(row.settings.engine)},
+                                {"setting", setting_of(row)},
+                                {"settings", json_of(row.settings)},
+                                {"rounds", row.rounds},
+                                {"build_s", row.build_s},
+                                {"solve_s", row.solve_s},
+                                {"us_per_vertex", row.us_per_vertex},
+                                {"rmse", row.error.rmse},
+                                {"bias", row.error.bias},
+                                {"p95", row.error.p95},
+                                {"max", row.error.max},
+                                {"bent_mean_deg", row.error.bent_mean_deg},
+                                {"bent_p95_deg", row.error.bent_p95_deg},
+                                {"embree_ratio", json_of(row.solve_ratio)},
+                                {"embree_ratio_with_builds", json_of(row.total_ratio)},
+                                {"extrapolated", row.solve_ratio && row.solve_ratio->extrapolated},
+                                {"worst", worst}});
+    }
+    return json;
+}
+
+std::string json_of(const Comparison& comparison)
+{
+    return json_object_of(comparison).dump(2) + '\n';
+}
+
+std::string csv_head()
+{
+    return "input,vertices,triangles,engine,setting,build_s,solve_s,us_per_vertex,rmse,bias,p95,"
+           "max,"
+           "bent_mean_deg,bent_p95_deg,embree_ratio,embree_ratio_with_builds,extrapolated\n";
+}
+
+std::string csv_of(const Comparison& comparison)
+{
+    return csv_head() + csv_rows_of(comparison);
+}
+
+std::string csv_rows_of(const Comparison& comparison)
+{
+    std::string text;
+    for (const CompareRow& row : comparison.rows) {
+        const auto number = [](double value) { return ',' + exact(value); };
+        const auto ratio = [](const std::optional<EmbreeRatio>& value) {
+            return ',' + (value ? exact(value->ratio) : std::string());
+        };
+        text += csv_field(comparison.input.string()) + ',' + std::to_string(comparison.vertices) +
+                ',' + std::to_string(comparison.triangles) + ',' + name_of(row.settings.engine) +
+                ',' + csv_field(setting_of(row)) + number(row.build_s) + number(row.solve_s) +
+                number(row.us_per_vertex) + number(row.error.rmse) + number(row.error.bias) +
+                number(row.error.p95) + number(row.error.max) + number(row.error.bent_mean_deg) +
+                number(row.error.bent_p95_deg) + ratio(row.solve_ratio) + ratio(row.total_ratio) +
+                (row.solve_ratio && row.solve_ratio->extrapolated ? ",1\n" : ",0\n");
+    }
+    return text;
+}
+
+std::string text_of(const std::optional<EmbreeRatio>& ratio)
+{
+    if (!ratio)
+        return "-";
+    return fixed(ratio->ratio, 2) + (ratio->extrapolated ? "*" : "");
+}
+
+std::string rows_run_once(const Comparison& comparison)
+{
+    std::string text;
+    for (const CompareRow& row : comparison.rows) {
+        if (row.rounds == 1 && comparison.rounds != 1)
+            text += name_of(row.settings.engine) + ' ' + setting_of(row) + " ran once\n";
+    }
+    return text;
+}
+
+std::string table_of(const Comparison& comparison)
+{
+    Table table({"engine", "setting", "build s", "solve s", "us/vertex", "RMSE", "bias", "p95",
+                 "max", "bent deg", "Embree/ours", "with builds"});
+    for (const CompareRow& row : comparison.rows) {
+        table.add({name_of(row.settings.engine), setting_of(row), fixed(row.build_s, 4),
+                   fixed(row.solve_s, 4), fixed(row.us_per_vertex, 3), fixed(row.error.rmse, 4),
+                   signed_fixed(row.error.bias, 4), fixed(row.error.p95, 4),
+                   fixed(row.error.max, 3), fixed(row.error.bent_mean_deg, 2),
+                   text_of(row.solve_ratio), text_of(row.total_ratio)});
+    }
+    std::string text = comparison.input.string() + ": " + std::to_string(comparison.vertices) +
+                       " vertices, " + std::to_string(comparison.triangles) + " triangles, " +
+                       std::to_string(comparison.threads) + " threads, median of " +
+                       std::to_string(comparison.rounds) +
+                       "\nreference: " + std::to_string(comparison.reference_rays) +
+                       " robust rays at " + std::to_string(comparison.judged) +
+                       " vertices, noise " + fixed(comparison.reference_noise, 4);
+    if (comparison.ill_defined > 0) {
+        text += "; " + std::to_string(comparison.ill_defined) + " ill-defined left out";
+    }
+    if (comparison.without_normal > 0)
+        text += "; " + std::to_string(comparison.without_normal) + " without a normal left out";
+    text += "\n\n" + table.text();
+    text += rows_run_once(comparison);
+    for (const CompareRow& row : comparison.rows) {
+        if (row.solve_ratio && row.solve_ratio->extrapolated) {
+            text += "* extrapolated beyond the rows of rays\n";
+            break;
+        }
+    }
+    return text;
+}
+
+void write_difference(const std::filesystem::path& path, const Comparison& comparison,
+                      const CompareRow& row)
+{
+    const Scene& scene = comparison.scene;
+    write_atomically(path, [&](const std::filesystem::path& temporary) {
+        std::ofstream file(temporary, std::ios::binary);
+        file << "ply\nformat binary_little_endian 1.0\ncomment error of "
+             << name_of(row.settings.engine) << ' ' << setting_of(row)
+             << " against rays; full colour at " << kFullColorError
+             << ": red = too dark, blue = too bright, grey = not judged\n"
+             << "element vertex " << scene.positions.size()
+             << "\nproperty double x\nproperty double y\nproperty double z\n"
+                "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                "property float error\nelement face "
+             << scene.triangles.size() << "\nproperty list uchar uint vertex_indices\nend_header\n";
+        for (std::size_t v = 0; v < scene.positions.size(); ++v) {
+            for (int axis = 0; axis < 3; ++axis)
+                put(file, scene.positions[v][axis]);
+            for (const std::uint8_t channel : color_of_error(row.errors[v], kFullColorError))
+                put(file, channel);
+            put(file, std::isnan(row.errors[v]) ? 0.0f : row.errors[v]);
+        }
+        for (const glm::uvec3 triangle : scene.triangles) {
+            put(file, std::uint8_t{3});
+            for (int corner = 0; corner < 3; ++corner)
+                put(file, triangle[corner]);
+        }
+        file.close();
+        if (!file)
+            throw std::runtime_error("cannot write " + path.string());
+    });
+}
+
+}  // namespace surfelao

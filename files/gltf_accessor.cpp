@@ -1,0 +1,183 @@
+#include "files/gltf_accessor.h"
+
+#include "surfels/errors.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+namespace surfelao {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "glTF is little endian, and so is this");
+
+template <typename T>
+T load(const char* at)
+{
+    T value;
+    std::memcpy(&value, at, sizeof value);
+    return value;
+}
+
+/// Calls f with a value of the C++ type that `component` names.
+template <typename F>
+void with_type(GltfComponent component, F&& f)
+{
+    switch (component) {
+        case GltfComponent::int8:
+            return f(std::int8_t{});
+        case GltfComponent::uint8:
+            return f(std::uint8_t{});
+        case GltfComponent::int16:
+            return f(std::int16_t{});
+        case GltfComponent::uint16:
+            return f(std::uint16_t{});
+        case GltfComponent::uint32:
+            return f(std::uint32_t{});
+        case GltfComponent::float32:
+            return f(float{});
+    }
+}
+
+/// Section 3.6.2.2 of the specification: c / 127, c / 255 and so on, not below -1.
+template <typename T>
+double to_real(T value, bool normalized)
+{
+    if constexpr (std::is_floating_point_v<T>) {
+        return value;
+    } else {
+        return normalized ? std::max(value / double{std::numeric_limits<T>::max()}, -1.0) : value;
+    }
+}
+
+/// Which elements the sparse values replace.
+std::vector<std::uint32_t> sparse_targets(const GltfAccessor& accessor)
+{
+    GltfAccessor list;
+    list.bytes = accessor.sparse_indices;
+    list.component = accessor.sparse_component;
+    list.stride = size_of(list.component);
+    list.count = accessor.sparse_count;
+    std::vector<std::uint32_t> targets = read_indices(list);
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        if (targets[i] >= accessor.count)
+            throw AccessorError("sparse index " + std::to_string(i) + " is " +
+                                std::to_string(targets[i]) + ", but the accessor has " +
+                                std::to_string(accessor.count) + " elements");
+        if (i > 0 && targets[i] <= targets[i - 1])
+            throw AccessorError("sparse indices do not increase at " + std::to_string(i));
+    }
+    return targets;
+}
+
+/// Calls store(i, vector) for `count` elements of dimension N that begin at `bytes`.
+template <int N, typename Store>
+void load_vectors(const GltfAccessor& accessor, const char* bytes, std::size_t stride,
+                  std::size_t count, Store&& store)
+{
+    with_type(accessor.component, [&](auto sample) {
+        using T = decltype(sample);
+        for (std::size_t i = 0; i < count; ++i, bytes += stride) {
+            glm::vec<N, double> vector;
+            for (int k = 0; k < N; ++k)
+                vector[k] = to_real(load<T>(bytes + static_cast<std::size_t>(k) * sizeof(T)),
+                                    accessor.normalized);
+            store(i, vector);
+        }
+    });
+}
+
+template <int N>
+void append(const GltfAccessor& accessor, std::vector<glm::vec<N, double>>& vectors)
+{
+    SURFELAO_CHECK(accessor.dimension == N);
+    const std::size_t first = vectors.size();
+    vectors.resize(first + accessor.count, glm::vec<N, double>(0.0));
+    if (!accessor.zero)
+        load_vectors<N>(accessor, accessor.bytes.data(), accessor.stride, accessor.count,
+                        [&](std::size_t i, const auto& vector) { vectors[first + i] = vector; });
+    if (accessor.sparse_count > 0) {
+        const std::vector<std::uint32_t> targets = sparse_targets(accessor);
+        load_vectors<N>(accessor, accessor.sparse_values.data(), N * size_of(accessor.component),
+                        targets.size(), [&](std::size_t i, const auto& vector) {
+                            vectors[first + targets[i]] = vector;
+                        });
+    }
+    for (std::size_t i = first; i < vectors.size(); ++i) {
+        // doubles that were floats cannot overflow: the sum is finite when all of them are
+        double sum = 0.0;
+        for (int k = 0; k < N; ++k)
+            sum += vectors[i][k];
+        if (!std::isfinite(sum))
+            throw AccessorError("element " + std::to_string(i - first) + " is not finite");
+    }
+}
+
+}  // namespace
+
+std::size_t size_of(GltfComponent component)
+{
+    std::size_t size = 0;
+    with_type(component, [&](auto value) { size = sizeof value; });
+    return size;
+}
+
+bool is_index_type(GltfComponent component)
+{
+    return component == GltfComponent::uint8 || component == GltfComponent::uint16 ||
+           component == GltfComponent::uint32;
+}
+
+std::uint32_t largest_index(GltfComponent component)
+{
+    SURFELAO_CHECK(is_index_type(component));
+    return std::numeric_limits<std::uint32_t>::max() >> (32 - 8 * size_of(component));
+}
+
+void append_vectors(const GltfAccessor& accessor, std::vector<glm::dvec3>& vectors)
+{
+    append<3>(accessor, vectors);
+}
+
+std::vector<glm::dvec4> read_colors(const GltfAccessor& accessor)
+{
+    std::vector<glm::dvec4> colors;
+    if (accessor.dimension == 4) {
+        append<4>(accessor, colors);
+        return colors;
+    }
+    std::vector<glm::dvec3> opaque;
+    append<3>(accessor, opaque);
+    for (const glm::dvec3& color : opaque)
+        colors.emplace_back(color, 1.0);
+    return colors;
+}
+
+std::vector<std::uint32_t> read_indices(const GltfAccessor& accessor)
+{
+    SURFELAO_CHECK(accessor.dimension == 1);
+    std::vector<std::uint32_t> indices(accessor.count, 0);
+    with_type(accessor.component, [&](auto sample) {
+        using T = decltype(sample);
+        if constexpr (std::is_unsigned_v<T>) {
+            if (!accessor.zero) {
+                for (std::size_t i = 0; i < accessor.count; ++i)
+                    indices[i] = load<T>(accessor.bytes.data() + i * accessor.stride);
+            }
+            if (accessor.sparse_count > 0) {
+                const std::vector<std::uint32_t> targets = sparse_targets(accessor);
+                for (std::size_t i = 0; i < targets.size(); ++i)
+                    indices[targets[i]] = load<T>(accessor.sparse_values.data() + i * sizeof(T));
+            }
+        } else {
+            SURFELAO_CHECK(!"indices are unsigned");
+        }
+    });
+    return indices;
+}
+
+}  // namespace surfelao

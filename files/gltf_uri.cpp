@@ -1,0 +1,123 @@
+#include "files/gltf_uri.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdint>
+
+namespace surfelao {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kBase64 =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+std::optional<std::string> decode_base64(std::string_view text)
+{
+    static constexpr std::array<std::int8_t, 256> kValues = [] {
+        std::array<std::int8_t, 256> values{};
+        values.fill(-1);
+        for (std::size_t i = 0; i < kBase64.size(); ++i)
+            values[static_cast<unsigned char>(kBase64[i])] = static_cast<std::int8_t>(i);
+        return values;
+    }();
+    for (int padding = 0; padding < 2 && text.ends_with('='); ++padding)
+        text.remove_suffix(1);
+    if (text.size() % 4 == 1)
+        return std::nullopt;
+    std::string bytes;
+    bytes.reserve(text.size() / 4 * 3 + 2);
+    std::uint32_t pending = 0;
+    int bits = 0;
+    for (const char c : text) {
+        const int value = kValues[static_cast<unsigned char>(c)];
+        if (value < 0)
+            return std::nullopt;
+        pending = pending << 6 | static_cast<std::uint32_t>(value);
+        bits += 6;
+        if (bits >= 8) {
+            bits -= 8;
+            bytes.push_back(static_cast<char>(pending >> bits & 0xFF));
+        }
+    }
+    return bytes;
+}
+
+int hex_value(char c)
+{
+    if (c >= '0' && c <= '9')
+        return c - '0';
+    if (c >= 'a' && c <= 'f')
+        return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F')
+        return c - 'A' + 10;
+    return -1;
+}
+
+std::optional<std::string> decode_percent(std::string_view uri)
+{
+    std::string decoded;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        if (uri[i] != '%') {
+            decoded.push_back(uri[i]);
+            continue;
+        }
+        const int high = i + 1 < uri.size() ? hex_value(uri[i + 1]) : -1;
+        const int low = i + 2 < uri.size() ? hex_value(uri[i + 2]) : -1;
+        if (high < 0 || low < 0)
+            return std::nullopt;
+        decoded.push_back(static_cast<char>(high * 16 + low));
+        i += 2;
+    }
+    return decoded;
+}
+
+}  // namespace
+
+std::optional<fs::path> resolve_uri(const fs::path& folder, std::string_view uri)
+{
+    const std::optional<std::string> name = decode_percent(uri);
+    if (!name || name->empty() || name->find('\\') != name->npos ||
+        std::ranges::any_of(*name, [](unsigned char c) { return std::iscntrl(c); }))
+        return std::nullopt;
+    // a colon in front of the first slash ends a scheme or a drive
+    if (name->substr(0, name->find('/')).find(':') != name->npos)
+        return std::nullopt;
+    const fs::path relative(*name);
+    if (relative.is_absolute() ||
+        std::find(relative.begin(), relative.end(), fs::path("..")) != relative.end())
+        return std::nullopt;
+    return folder / relative;
+}
+
+bool is_data_uri(std::string_view uri)
+{
+    return uri.starts_with("data:");
+}
+
+std::optional<std::string> decode_data_uri(std::string_view uri)
+{
+    const std::size_t comma = uri.find(',');
+    if (!is_data_uri(uri) || comma == uri.npos || !uri.substr(0, comma).ends_with(";base64"))
+        return std::nullopt;
+    return decode_base64(uri.substr(comma + 1));
+}
+
+std::string make_data_uri(std::string_view media_type, std::string_view bytes)
+{
+    std::string uri = "data:";
+    uri.append(media_type).append(";base64,");
+    uri.reserve(uri.size() + (bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t group = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            group =
+                group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k)
+            uri.push_back(i + k <= bytes.size() ? kBase64[group >> (18 - 6 * k) & 63] : '=');
+    }
+    return uri;
+}
+
+}  // namespace surfelao

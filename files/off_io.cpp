@@ -1,0 +1,180 @@
+#include "files/off_io.h"
+
+#include "files/mesh_source.h"
+#include "files/text_cursor.h"
+#include "surfels/errors.h"
+#include "surfels/number_text.h"
+
+namespace surfelao {
+namespace {
+
+/// x y z, normal, colour, texture coordinates.
+constexpr int kMostVertexNumbers = 3 + 3 + 4 + 2;
+
+struct Counts {
+    std::uint64_t vertices = 0;
+    std::uint64_t faces = 0;
+};
+
+/// The cursor stands on a line with a word left, or moves to the next.
+void next_word_line(TextCursor& cursor, const std::string& wanted)
+{
+    if (cursor.at_line_end() && !cursor.next_line())
+        cursor.fail("the file ends, but " + wanted);
+}
+
+std::uint64_t read_count(TextCursor& cursor, const std::string& what)
+{
+    next_word_line(cursor, "the number of " + what + " is missing");
+    const std::int64_t count = cursor.integer({});
+    if (count < 0)
+        cursor.fail("the number of " + what + " is " + std::to_string(count));
+    return static_cast<std::uint64_t>(count);
+}
+
+/// Refuses counts for which the file is too short before anything of that size is reserved.
+void check_room(const TextCursor& cursor, const Counts& counts)
+{
+    const std::size_t most_vertices =
+        cursor.remaining() / 6 + 1;                             // "0 0 0" and the end of the line
+    const std::size_t most_faces = cursor.remaining() / 4 + 1;  // "1 0"
+    if (counts.vertices > most_vertices || counts.faces > most_faces) {
+        cursor.fail(std::to_string(counts.vertices) + " vertices and " +
+                    std::to_string(counts.faces) +
+                    " faces are more than the rest of the file can hold");
+    }
+}
+
+Counts read_header(const std::string& file_name, TextCursor& cursor)
+{
+    if (!cursor.next_line())
+        throw InputError(file_name + ": is empty");
+    TextCursor ahead = cursor;
+    const std::string_view keyword = ahead.word();
+    if (keyword.find_first_not_of("0123456789+-") != std::string_view::npos) {
+        std::string_view prefix = keyword;
+        if (!prefix.ends_with("OFF"))
+            cursor.fail("begins with " + quoted(keyword) + ", but must begin with OFF");
+        prefix.remove_suffix(3);
+        for (const std::string_view known : {"ST", "C", "N"}) {
+            if (prefix.starts_with(known))
+                prefix.remove_prefix(known.size());
+        }
+        if (!prefix.empty())
+            cursor.fail("the variant " + quoted(keyword) + " is not known");
+        cursor = ahead;
+        ahead = cursor;
+        if (!ahead.at_line_end() && ahead.word() == "BINARY")
+            cursor.fail("binary OFF files are not read");
+    }
+    Counts counts;
+    counts.vertices = read_count(cursor, "vertices");
+    counts.faces = read_count(cursor, "faces");
+    // the edges, which may be missing: a line with a single number is no vertex
+    ahead = cursor;
+    const bool same_line = !cursor.at_line_end();
+    if (same_line || (ahead.next_line() && !ahead.word().empty() && ahead.at_line_end())) {
+        next_word_line(cursor, "the number of edges is missing");
+        cursor.integer({});
+    }
+    if (!cursor.at_line_end())
+        cursor.fail(quoted(cursor.word()) + " stands behind the counts");
+    check_room(cursor, counts);
+    return counts;
+}
+
+glm::dvec3 read_vertex(TextCursor& cursor, std::uint64_t vertex, std::uint64_t count)
+{
+    const auto missing = [&] {
+        return "vertex " + std::to_string(vertex) + " of " + std::to_string(count) + " is missing";
+    };
+    if (!cursor.next_line())
+        cursor.fail("the file ends, but " + missing());
+    glm::dvec3 position;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (cursor.at_line_end())
+            cursor.fail("vertex " + std::to_string(vertex) + " has " + std::to_string(axis) +
+                        " numbers, but needs 3");
+        position[axis] = cursor.number({});
+    }
+    int numbers = 3;
+    for (; !cursor.at_line_end(); ++numbers)
+        cursor.number({});
+    if (numbers > kMostVertexNumbers)
+        cursor.fail("vertex " + std::to_string(vertex) + " has " + std::to_string(numbers) +
+                    " numbers, but at most " + std::to_string(kMostVertexNumbers) +
+                    " have a meaning");
+    return position;
+}
+
+void read_face(TextCursor& cursor, std::uint64_t face, const Counts& counts, Polygons& polygons)
+{
+    const auto name = [&] { return "face " + std::to_string(face); };
+    if (!cursor.next_line())
+        cursor.fail("the file ends, but " + name() + " of " + std::to_string(counts.faces) +
+                    " is missing");
+    const std::int64_t size = cursor.integer({});
+    if (size < 1)
+        cursor.fail(name() + " has " + std::to_string(size) + " corners");
+    for (std::int64_t i = 0; i < size; ++i) {
+        if (cursor.at_line_end())
+            cursor.fail(name() + " has " + std::to_string(i) + " corners, but says " +
+                        std::to_string(size));
+        const std::int64_t index = cursor.integer({});
+        if (index < 0 || static_cast<std::uint64_t>(index) >= counts.vertices)
+            cursor.fail(name() + " uses vertex " + std::to_string(index) + ", but there are " +
+                        std::to_string(counts.vertices) + " vertices");
+        if (size > 2)
+            polygons.corners.push_back(static_cast<std::uint32_t>(index));
+    }
+    if (size > 2)
+        close_polygon(polygons, static_cast<std::uint32_t>(size));
+}
+
+}  // namespace
+
+Scene read_off(const std::string& file_name, std::string contents)
+{
+    TextCursor cursor(file_name, contents, {.comment = '#'});
+    const Counts counts = read_header(file_name, cursor);
+    std::vector<glm::dvec3> positions;
+    positions.reserve(counts.vertices);
+    for (std::uint64_t v = 0; v < counts.vertices; ++v)
+        positions.push_back(read_vertex(cursor, v, counts.vertices));
+    Polygons polygons;
+    for (std::uint64_t face = 0; face < counts.faces; ++face)
+        read_face(cursor, face, counts, polygons);
+    return make_mesh_scene(file_name, std::move(positions), std::move(polygons),
+                           std::make_shared<MeshSource>());
+}
+
+std::string off_contents(const Scene& scene, std::span<const Occlusion> occlusion)
+{
+    std::string text = "COFF\n";
+    append_integer(text, static_cast<std::int64_t>(scene.positions.size()));
+    text += ' ';
+    append_integer(text, static_cast<std::int64_t>(face_count(scene)));
+    text += " 0\n";
+    for (std::size_t v = 0; v < scene.positions.size(); ++v) {
+        for (int axis = 0; axis < 3; ++axis) {
+            append_shortest(text, scene.positions[v][axis]);
+            text += ' ';
+        }
+        for (int channel = 0; channel < 3; ++channel) {
+            append_integer(text, grey(occlusion[v]));
+            text += ' ';
+        }
+        text += "255\n";
+    }
+    for_each_face(scene, [&](std::span<const std::uint32_t> corners) {
+        append_integer(text, static_cast<std::int64_t>(corners.size()));
+        for (const std::uint32_t corner : corners) {
+            text += ' ';
+            append_integer(text, corner);
+        }
+        text += '\n';
+    });
+    return text;
+}
+
+}  // namespace surfelao

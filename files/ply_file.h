@@ -1,0 +1,267 @@
+/// ply_file.h: a PLY file as its reader and its writer both see it: the header, and rows of
+/// numbers. Internal to ply_reader.cpp and ply_writer.cpp.
+#pragma once
+
+#include "files/mesh_source.h"
+#include "files/text_cursor.h"
+#include "surfels/errors.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace surfelao::ply {
+
+enum class Type : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+/// Bytes in a binary file.
+inline std::size_t size_of(Type type)
+{
+    constexpr std::size_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+    return kSizes[static_cast<std::size_t>(type)];
+}
+
+inline bool is_integer(Type type)
+{
+    return type != Type::float32 && type != Type::float64;
+}
+
+struct Property {
+    std::string name;
+    std::optional<Type> count_type;  ///< of a list
+    Type type = Type::int8;
+};
+
+struct Element {
+    std::string name;
+    std::uint64_t count = 0;
+    std::vector<Property> properties;
+    std::size_t lines_end = 0;  ///< byte behind the last header line of this element
+};
+
+enum class Format : std::uint8_t { ascii, little_endian, big_endian };
+
+struct Header {
+    Format format = Format::ascii;
+    std::vector<Element> elements;
+    std::size_t data_begin = 0;    ///< first byte behind the header
+    std::uint64_t line_count = 0;  ///< lines of the header
+    std::string newline;
+};
+
+/// Throws InputError with the line for anything that is no PLY header.
+[[nodiscard]] Header read_header(const std::string& file_name, std::string_view contents);
+
+/// Null when there is none.
+[[nodiscard]] const Element* find_element(const Header& header, std::string_view name);
+
+/// The byte behind the end of a line (LF, CRLF or CR) that stands at `offset`.
+[[nodiscard]] std::size_t line_after(std::string_view contents, std::size_t offset);
+
+/// "face 12", also for names that are too long or too strange for a sentence.
+[[nodiscard]] std::string row_name(const Element& element, std::uint64_t row);
+
+/// The file itself, for the writer.
+class PlySource : public MeshSource {
+public:
+    std::string contents;
+    Header header;
+    std::size_t vertices_begin = 0;  ///< bytes of the vertex rows, counted from the data's first
+    std::size_t vertices_end = 0;
+
+    [[nodiscard]] std::string_view data() const
+    {
+        return std::string_view(contents).substr(header.data_begin);
+    }
+};
+
+/// Rows of numbers in an ascii file: one row, one line.
+class AsciiData {
+public:
+    /// rows: from the beginning of some row on; lines are counted from the end of the header.
+    AsciiData(const std::string& file_name, std::string_view rows, const Header& header)
+        : cursor_(file_name, rows, {}, header.line_count + 1)
+    {
+    }
+
+    /// The fewest bytes that one row takes.
+    static std::size_t least_bytes(const Element& element) { return 2 * element.properties.size(); }
+
+    void begin_row(const Element& element, std::uint64_t row)
+    {
+        element_ = &element;
+        row_ = row;
+        if (!cursor_.next_line())
+            fail("of " + std::to_string(element.count) + " is missing: the file ends");
+    }
+    void end_row()
+    {
+        if (!cursor_.at_line_end())
+            fail("has more numbers than the header says");
+    }
+    double number(Type)
+    {
+        demand_word();
+        return cursor_.number({});
+    }
+    std::int64_t integer(Type)
+    {
+        demand_word();
+        return cursor_.integer({});
+    }
+    void skip(Type, std::uint64_t count)
+    {
+        for (; count > 0; --count) {
+            demand_word();
+            cursor_.word();
+        }
+    }
+    [[nodiscard]] std::size_t remaining() const { return cursor_.remaining(); }
+    [[nodiscard]] std::size_t offset() const { return cursor_.offset(); }
+    [[noreturn]] void fail(const std::string& fault) const
+    {
+        cursor_.fail(row_name(*element_, row_) + " " + fault);
+    }
+
+private:
+    void demand_word()
+    {
+        if (cursor_.at_line_end())
+            fail("has fewer numbers than the header says");
+    }
+
+    TextCursor cursor_;
+    const Element* element_ = nullptr;
+    std::uint64_t row_ = 0;
+};
+
+/// Rows of numbers in a binary file.
+class BinaryData {
+public:
+    BinaryData(const std::string& file_name, std::string_view rows, const Header& header)
+        : file_name_(file_name),
+          rows_(rows),
+          swapped_((header.format == Format::big_endian) !=
+                   (std::endian::native == std::endian::big))
+    {
+    }
+
+    static std::size_t least_bytes(const Element& element)
+    {
+        std::size_t bytes = 0;
+        for (const Property& property : element.properties)
+            bytes += size_of(property.count_type.value_or(property.type));
+        return bytes;
+    }
+
+    void begin_row(const Element& element, std::uint64_t row)
+    {
+        element_ = &element;
+        row_ = row;
+    }
+    void end_row() {}
+    double number(Type type)
+    {
+        double value = 0.0;
+        switch (type) {
+            case Type::float32:
+                value = std::bit_cast<float>(take<std::uint32_t>());
+                break;
+            case Type::float64:
+                value = std::bit_cast<double>(take<std::uint64_t>());
+                break;
+            default:
+                value = static_cast<double>(integer(type));
+        }
+        if (!std::isfinite(value))
+            fail("has the coordinate " + std::string(std::isnan(value) ? "nan" : "inf") +
+                 ", which is not finite");
+        return value;
+    }
+    std::int64_t integer(Type type)
+    {
+        switch (type) {
+            case Type::int8:
+                return static_cast<std::int8_t>(take<std::uint8_t>());
+            case Type::uint8:
+                return take<std::uint8_t>();
+            case Type::int16:
+                return static_cast<std::int16_t>(take<std::uint16_t>());
+            case Type::uint16:
+                return take<std::uint16_t>();
+            case Type::int32:
+                return static_cast<std::int32_t>(take<std::uint32_t>());
+            default:
+                return take<std::uint32_t>();
+        }
+    }
+    void skip(Type type, std::uint64_t count)
+    {
+        if (count > remaining() / size_of(type))
+            fail_at_end();
+        offset_ += count * size_of(type);
+    }
+    [[nodiscard]] std::size_t remaining() const { return rows_.size() - offset_; }
+    [[nodiscard]] std::size_t offset() const { return offset_; }
+    [[noreturn]] void fail(const std::string& fault) const
+    {
+        throw InputError(file_name_ + ": " + row_name(*element_, row_) + " " + fault);
+    }
+
+private:
+    template <class Unsigned>
+    Unsigned take()
+    {
+        if (remaining() < sizeof(Unsigned))
+            fail_at_end();
+        unsigned char bytes[sizeof(Unsigned)];
+        std::memcpy(bytes, rows_.data() + offset_, sizeof(Unsigned));
+        if (swapped_)
+            std::reverse(bytes, bytes + sizeof(Unsigned));
+        offset_ += sizeof(Unsigned);
+        Unsigned value = 0;
+        std::memcpy(&value, bytes, sizeof(Unsigned));
+        return value;
+    }
+    [[noreturn]] void fail_at_end() const
+    {
+        fail("of " + std::to_string(element_->count) + " is cut: the file ends");
+    }
+
+    const std::string& file_name_;
+    std::string_view rows_;
+    std::size_t offset_ = 0;
+    bool swapped_;
+    const Element* element_ = nullptr;
+    std::uint64_t row_ = 0;
+};
+
+/// The length of a list.
+template <class Data>
+std::uint64_t read_length(Data& data, const Property& property)
+{
+    const std::int64_t length = data.integer(*property.count_type);
+    if (length < 0)
+        data.fail("has a list of negative length " + std::to_string(length));
+    // a list cannot be longer than what is left of the file
+    if (static_cast<std::uint64_t>(length) > data.remaining())
+        data.fail("has a list of length " + std::to_string(length) + ", but the file ends");
+    return static_cast<std::uint64_t>(length);
+}
+
+template <class Data>
+void skip_property(Data& data, const Property& property)
+{
+    std::uint64_t count = 1;
+    if (property.count_type)
+        count = read_length(data, property);
+    data.skip(property.type, count);
+}
+
+}  // namespace surfelao::ply

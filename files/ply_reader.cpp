@@ -1,0 +1,198 @@
+#include "files/mesh_source.h"
+#include "files/ply_file.h"
+#include "files/ply_io.h"
+#include "surfels/errors.h"
+
+#include <algorithm>
+#include <array>
+
+namespace surfelao {
+namespace {
+
+using namespace ply;
+
+/// Which property of the element is the list of vertex indices.
+std::size_t index_list(const std::string& file_name, const Element& element)
+{
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+        const Property& property = element.properties[p];
+        if (property.name != "vertex_indices" && property.name != "vertex_index")
+            continue;
+        if (!property.count_type || !is_integer(property.type)) {
+            throw InputError(file_name + ": property " + quoted(property.name) + " of element " +
+                             quoted(element.name) + " is not a list of integers");
+        }
+        return p;
+    }
+    throw InputError(file_name + ": element " + quoted(element.name) +
+                     " has no list \"vertex_indices\"");
+}
+
+template <class Data>
+class Reader {
+public:
+    Reader(const std::string& file_name, PlySource& source)
+        : file_name_(file_name), source_(source), data_(file_name, source.data(), source.header)
+    {
+        const Element* vertices = find_element(source.header, "vertex");
+        if (!vertices)
+            throw InputError(file_name + ": has no element \"vertex\"");
+        vertex_count_ = vertices->count;
+    }
+
+    void run()
+    {
+        for (const Element& element : source_.header.elements) {
+            check_size(element);
+            if (element.name == "vertex")
+                read_vertices(element);
+            else if (element.name == "face" && element.count > 0)
+                read_lists(element, [this](std::uint64_t n) { read_face(n); });
+            else if (element.name == "tristrips" && element.count > 0)
+                read_lists(element, [this](std::uint64_t n) { read_strips(n); });
+            else
+                skip_rows(element);
+        }
+    }
+
+    std::vector<glm::dvec3> positions;
+    Polygons polygons;
+
+private:
+    /// Refuses a count for which the file is too short before anything of that size is reserved.
+    void check_size(const Element& element) const
+    {
+        const std::size_t least = Data::least_bytes(element);
+        // the last row of an ascii file may go without the end of its line
+        if (least > 0 && element.count > (data_.remaining() + 1) / least) {
+            throw InputError(file_name_ + ": the header says " + std::to_string(element.count) +
+                             " of element " + quoted(element.name) +
+                             ", but the file is too short for that");
+        }
+    }
+
+    void read_vertices(const Element& element)
+    {
+        // what each property is: a coordinate, or 3 = passed over
+        std::vector<int> axis_of(element.properties.size(), 3);
+        constexpr std::string_view kAxes[] = {"x", "y", "z"};
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto found = std::ranges::find(element.properties, kAxes[axis], &Property::name);
+            if (found == element.properties.end() || found->count_type) {
+                throw InputError(file_name_ + ": element \"vertex\" has no scalar property " +
+                                 quoted(kAxes[axis]));
+            }
+            axis_of[static_cast<std::size_t>(found - element.properties.begin())] = axis;
+        }
+        source_.vertices_begin = data_.offset();
+        positions.resize(element.count);
+        for (std::uint64_t row = 0; row < element.count; ++row) {
+            data_.begin_row(element, row);
+            for (std::size_t p = 0; p < axis_of.size(); ++p) {
+                if (axis_of[p] < 3)
+                    positions[row][axis_of[p]] = data_.number(element.properties[p].type);
+                else
+                    skip_property(data_, element.properties[p]);
+            }
+            data_.end_row();
+        }
+        source_.vertices_end = data_.offset();
+    }
+
+    template <class ReadList>
+    void read_lists(const Element& element, const ReadList& read_list)
+    {
+        const std::size_t list = index_list(file_name_, element);
+        index_type_ = element.properties[list].type;
+        for (std::uint64_t row = 0; row < element.count; ++row) {
+            data_.begin_row(element, row);
+            for (std::size_t p = 0; p < element.properties.size(); ++p) {
+                if (p == list)
+                    read_list(read_length(data_, element.properties[p]));
+                else
+                    skip_property(data_, element.properties[p]);
+            }
+            data_.end_row();
+        }
+    }
+
+    std::uint32_t checked(std::int64_t index) const
+    {
+        if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_) {
+            data_.fail("uses vertex " + std::to_string(index) + ", but there are " +
+                       std::to_string(vertex_count_) + " vertices");
+        }
+        return static_cast<std::uint32_t>(index);
+    }
+
+    void read_face(std::uint64_t length)
+    {
+        if (length < 3)
+            data_.fail("has " + std::to_string(length) + " corners, but needs 3");
+        for (std::uint64_t i = 0; i < length; ++i)
+            polygons.corners.push_back(checked(data_.integer(index_type_)));
+        close_polygon(polygons, static_cast<std::uint32_t>(length));
+    }
+
+    void read_strips(std::uint64_t length)
+    {
+        std::array<std::uint32_t, 3> last{};
+        std::uint64_t in_strip = 0;
+        for (std::uint64_t i = 0; i < length; ++i) {
+            const std::int64_t index = data_.integer(index_type_);
+            if (index == -1) {
+                in_strip = 0;
+                continue;
+            }
+            last = {last[1], last[2], checked(index)};
+            if (++in_strip < 3 || last[0] == last[1] || last[1] == last[2] || last[0] == last[2])
+                continue;
+            if (in_strip % 2 == 0)  // every other triangle of a strip is wound the other way
+                polygons.corners.insert(polygons.corners.end(), {last[1], last[0], last[2]});
+            else
+                polygons.corners.insert(polygons.corners.end(), {last[0], last[1], last[2]});
+            close_polygon(polygons, 3);
+        }
+    }
+
+    void skip_rows(const Element& element)
+    {
+        if (element.properties.empty())
+            return;
+        for (std::uint64_t row = 0; row < element.count; ++row) {
+            data_.begin_row(element, row);
+            for (const Property& property : element.properties)
+                skip_property(data_, property);
+            data_.end_row();
+        }
+    }
+
+    const std::string& file_name_;
+    PlySource& source_;
+    Data data_;
+    std::uint64_t vertex_count_ = 0;
+    Type index_type_ = Type::int32;
+};
+
+template <class Data>
+Scene read_with(const std::string& file_name, std::shared_ptr<PlySource> source)
+{
+    Reader<Data> reader(file_name, *source);
+    reader.run();
+    return make_mesh_scene(file_name, std::move(reader.positions), std::move(reader.polygons),
+                           std::move(source));
+}
+
+}  // namespace
+
+Scene read_ply(const std::string& file_name, std::string contents)
+{
+    auto source = std::make_shared<PlySource>();
+    source->contents = std::move(contents);
+    source->header = read_header(file_name, source->contents);
+    if (source->header.format == Format::ascii)
+        return read_with<AsciiData>(file_name, std::move(source));
+    return read_with<BinaryData>(file_name, std::move(source));
+}
+
+}  // namespace surfelao

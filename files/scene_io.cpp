@@ -1,0 +1,111 @@
+#include "files/scene_io.h"
+
+#include "files/file_contents.h"
+#include "files/gltf_io.h"
+#include "files/obj_io.h"
+#include "files/off_io.h"
+#include "files/ply_io.h"
+#include "files/stl_io.h"
+#include "surfels/atomic_file.h"
+#include "surfels/errors.h"
+
+#include <algorithm>
+#include <string>
+
+namespace surfelao {
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class FileType { obj, ply, off, stl, gltf, glb, unknown };
+
+FileType type_of(const fs::path& path)
+{
+    std::string extension = path.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    constexpr std::pair<const char*, FileType> kTypes[] = {
+        {".obj", FileType::obj}, {".ply", FileType::ply},   {".off", FileType::off},
+        {".stl", FileType::stl}, {".gltf", FileType::gltf}, {".glb", FileType::glb}};
+    for (const auto& [name, type] : kTypes) {
+        if (extension == name)
+            return type;
+    }
+    return FileType::unknown;
+}
+
+bool is_gltf(FileType type)
+{
+    return type == FileType::gltf || type == FileType::glb;
+}
+
+std::string unknown_type(const fs::path& path, const std::string& known)
+{
+    const std::string extension = path.extension().string();
+    return (extension.empty() ? "a file without extension" : "the extension " + extension) +
+           " is not known, only " + known;
+}
+
+Scene read_any(const fs::path& path)
+{
+    const std::string name = path.string();
+    switch (type_of(path)) {
+        case FileType::obj:
+            return read_obj(name, read_contents(path, name));
+        case FileType::ply:
+            return read_ply(name, read_contents(path, name));
+        case FileType::off:
+            return read_off(name, read_contents(path, name));
+        case FileType::stl:
+            return read_stl(name, read_contents(path, name));
+        case FileType::gltf:
+        case FileType::glb:
+            return read_gltf(path, read_contents(path, name));
+        default:
+            throw InputError(name + ": " + unknown_type(path, ".obj .ply .off .stl .gltf .glb"));
+    }
+}
+
+}  // namespace
+
+Scene read_scene(const fs::path& path)
+{
+    Scene scene = read_any(path);
+    scene.name = path.filename().string();
+    return scene;
+}
+
+void check_output(const fs::path& input, const fs::path& output)
+{
+    const auto refuse = [&](const std::string& fault) {
+        throw InputError(output.string() + ": " + fault);
+    };
+    const FileType type = type_of(output);
+    if (type == FileType::stl)
+        refuse("STL has no place for occlusion, use .ply");
+    if (type == FileType::unknown)
+        refuse(unknown_type(output, ".ply .obj .off .gltf .glb"));
+    if (is_gltf(type) && !is_gltf(type_of(input)))
+        refuse("only a scene that was read from glTF can be written as glTF, use .ply or .obj");
+    check_writable(output);
+}
+
+void write_scene(const fs::path& path, const Scene& scene, std::span<const Occlusion> occlusion,
+                 const WriteOptions& options)
+{
+    SURFELAO_CHECK(occlusion.size() == scene.positions.size());
+    check_output(path, path);
+    switch (type_of(path)) {
+        case FileType::obj:
+            return write_atomically(path, obj_contents(scene, occlusion));
+        case FileType::off:
+            return write_atomically(path, off_contents(scene, occlusion));
+        case FileType::ply:
+            return write_atomically(path, ply_contents(scene, occlusion));
+        default:
+            return write_atomically(path, gltf_contents(path, scene, occlusion, options));
+    }
+}
+
+}  // namespace surfelao

@@ -1,0 +1,116 @@
+#include "tree/disks/brute_force.h"
+
+#include "tree/disks/form_factor.h"
+
+#include <glm/geometric.hpp>
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace surfelao {
+namespace {
+
+struct Sum {
+    double occlusion = 0.0;
+    glm::dvec3 direction{0.0};
+};
+
+struct Far {
+    glm::dvec3 slope{0.0};
+    double constant = 1.0;
+};
+
+/// far[0]: on the side of the casting normal; far[1]: on the other.
+using FarSides = std::vector<Far>[2];
+
+Sum gather(const Octree& octree, const FarSides& far, const Definition& definition,
+           bool all_two_sided, const Receiver& receiver)
+{
+    Sum sum;
+    const glm::dvec3 position(receiver.position);
+    const glm::dvec3 normal(receiver.normal);
+    for (std::size_t s = 0; s < octree.surfels.size(); ++s) {
+        const Surfel& surfel = octree.surfels[s];
+        const bool two_sided = all_two_sided || s >= octree.two_sided_surfels;
+        const glm::dvec3 c = glm::dvec3(surfel.position) - position;
+        const double distance = std::sqrt(glm::dot(c, c) + double{kTinyLength} * kTinyLength);
+        const glm::dvec3 w = c / distance;
+        const Far& beyond = far[glm::dot(w, glm::dvec3(surfel.normal)) < 0.0 ? 1 : 0][s];
+        const double term = disk_form_factor(definition.kernel, position, normal,
+                                             {surfel.position, surfel.normal, surfel.area,
+                                              surfel.area, two_sided}) *
+                            distance_weight(definition, distance, surfel.area) *
+                            std::clamp(beyond.constant + glm::dot(beyond.slope, w), 0.0, 1.0);
+        sum.occlusion += term;
+        sum.direction += term * w;
+    }
+    return sum;
+}
+
+Sum capped(const Sum& sum)
+{
+    const double scale = 1.0 / std::max(1.0, sum.occlusion);
+    return {scale * sum.occlusion, scale * sum.direction};
+}
+
+}  // namespace
+
+DiskResult solve_disks_brute_force(const Octree& octree, std::span<const Receiver> receivers,
+                                   const DiskOptions& options)
+{
+    const std::size_t count = octree.surfels.size();
+    const bool limited = std::isfinite(options.definition.max_distance);
+    const bool two_sided = limited || octree.two_sided_surfels < count;
+    Definition beyond = options.definition;
+    beyond.max_distance *= 0.5f;
+
+    DiskResult result;
+    FarSides far = {std::vector<Far>(count), std::vector<Far>(count)};
+    for (int pass = 1; pass < options.passes; ++pass) {
+        const FarSides before = {far[0], far[1]};
+        std::vector<double> changes(count, 0.0);
+        for (int side = 0; side < (two_sided ? 2 : 1); ++side) {
+            tbb::parallel_for(std::size_t{0}, count, [&](std::size_t s) {
+                const glm::vec3 normal = (side == 0 ? 1.0f : -1.0f) * octree.surfels[s].normal;
+                const Receiver at = {
+                    octree.surfels[s].position + options.definition.offset * normal, normal};
+                const Sum sum = capped(gather(octree, before, beyond, limited, at));
+                const glm::dvec3 mean = 2.0 / 3.0 * glm::dvec3(normal);
+                const glm::dvec3 slope = -4.0 * (sum.direction - sum.occlusion * mean);
+                const double constant = 1.0 - sum.occlusion - glm::dot(slope, mean);
+                const double weight = pass == 1 ? 1.0 : kDamping;
+                Far& now = far[side][s];
+                now.slope += weight * (slope - now.slope);
+                now.constant += weight * (constant - now.constant);
+                const Far& then = before[side][s];
+                changes[s] += std::pow(
+                    now.constant - then.constant + glm::dot(now.slope - then.slope, mean), 2);
+            });
+        }
+        double change = 0.0;
+        for (const double each : changes)
+            change += each;
+        const double changed = static_cast<double>(count * (two_sided ? 2 : 1));
+        result.residuals.push_back(count > 0 ? std::sqrt(change / changed) : 0.0);
+        if (result.residuals.back() <= kSettled)
+            break;
+    }
+
+    result.occlusion.resize(receivers.size());
+    tbb::parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t i) {
+        if (receivers[i].normal == glm::vec3(0.0f))
+            return;
+        const Sum sum = gather(octree, far, options.definition, limited, receivers[i]);
+        const glm::dvec3 normal(receivers[i].normal);
+        const glm::dvec3 open = 2.0 / 3.0 * normal - capped(sum).direction;
+        Occlusion& out = result.occlusion[i];
+        out.occlusion = static_cast<float>(std::clamp(options.strength * sum.occlusion, 0.0, 1.0));
+        out.bent_normal = sum.occlusion < 1.0 ? bent_normal_of(glm::vec3(open), receivers[i].normal)
+                                              : receivers[i].normal;
+    });
+    return result;
+}
+
+}  // namespace surfelao

@@ -1,0 +1,94 @@
+/// disks.h: occlusion by summed disk form factors over an octree of clustered surfels.
+///
+/// The classic, with one thing added. Fast, preview quality, the same in GLSL (gpu/).
+///
+/// A ray that leaves a closed body again crosses one surface from behind for every layer it passes.
+/// So each surfel occludes only what sees its back (octree.h: `casting normal`), and layers would
+/// count several times. Only the last layer of a ray has nothing behind it:
+///
+///     occlusion along w = sum over the layers of  (1 - occlusion along w beyond that layer)
+///
+/// which is exact and refers to itself: the next pass weights each disk by what the pass before
+/// found beyond it. The classic weights by one number for all directions; here it is a linear
+/// function of the direction, fitted to the first moment of the occluders that the disk sees. That
+/// halves the error, and settles in two passes where one number oscillates.
+///
+/// Surfaces that have no back (open, not manifold: OccluderSide::both) occlude from both sides and
+/// carry two such functions, one for each side; the same is done to all surfaces where a maximum
+/// distance may end between a front and its back.
+///
+/// Known limits: surfaces nearer to each other than three times the vertex spacing; the foot of a
+/// concave edge (what a vertex's own triangles hide from it is no disk's: 0.29 too little at a
+/// right angle); closed rooms with much in them (every ray passes many layers); a ground of few
+/// triangles that is hundreds of times as wide as the model on it (surfels_of cuts triangles by the
+/// size of the whole scene, not by what is near them).
+///
+/// Based on:
+///   Bunnell. Dynamic Ambient Occlusion and Indirect Lighting. GPU Gems 2, ch. 14. 2005
+///   Hoberock, Jia. High-Quality Ambient Occlusion. GPU Gems 3, ch. 12. 2007
+///   Engleson. Point-based ambient occlusion (report). 2011: Kernel::bunnell, `strength`
+#pragma once
+
+#include "surfels/occlusion.h"
+#include "surfels/progress.h"
+#include "surfels/receiver.h"
+#include "surfels/surfel.h"
+#include "surfels/topology.h"
+#include "tree/disks/octree.h"
+
+#include <span>
+#include <vector>
+
+namespace surfelao {
+
+/// A node stands for its surfels where its opening_size (octree.h: radius, more where it is folded)
+/// is below opening * distance to the nearest receiver of a group. From 1/sqrt(3) = 0.577 on the
+/// error of such a sum has no bound (Salmon, Warren 1994): draft is beyond, for speed. Error and
+/// time on the bunny, relative to good: draft 1.16 and 0.8, best 0.99 and 1.4.
+inline constexpr float kDraftOpening = 0.8f;
+inline constexpr float kGoodOpening = 0.5f;
+inline constexpr float kBestOpening = 0.25f;
+
+struct DiskOptions {
+    Definition definition = {};
+    float opening = kGoodOpening;  ///< 0 (every surfel is summed) to below 1: a node that holds the
+                                   ///< receiver is always opened
+    int passes = 2;         ///< >= 1: 1 = plain sum; each further one corrects over-occlusion
+    float strength = 1.0f;  ///< >= 0: occlusion is multiplied by it, then cut to [0, 1]
+};
+
+struct DiskResult {
+    std::vector<Occlusion> occlusion;  ///< one per receiver
+    /// RMS change of the emitters' mean visibility in each correcting pass: passes - 1 of them, or
+    /// fewer where they settled below kSettled.
+    std::vector<double> residuals;
+};
+
+/// Corrections stop when a pass changes the emitters by no more than this.
+inline constexpr double kSettled = 5e-4;
+
+/// From the second correction on, emitters go this share of the way to what the pass found. The map
+/// is order-reversing, so whole steps can end in a cycle of two (rooms); the first step starts from
+/// "nothing is beyond" and is best taken whole.
+inline constexpr float kDamping = 0.7f;
+
+/// O(n log n) per pass, all cores, same bytes for any number of threads and on every processor.
+/// The first pass costs one gather at the receivers; each correcting pass one at the surfels, two
+/// where any of them is two-sided. Throws Cancelled.
+[[nodiscard]] DiskResult solve_disks(const Octree& octree, std::span<const Receiver> receivers,
+                                     const DiskOptions& options, const Progress& progress = {});
+
+/// The opening of the correcting passes: what lies beyond a disk only weighs it, so it is summed
+/// kCoarser than the answer, up to draft. On five meshes the error stayed the same or fell, by up
+/// to a tenth, and a quarter to a half of the time was saved. 0 stays 0.
+[[nodiscard]] float correction_opening(float opening);
+inline constexpr float kCoarser = 3.2f;
+
+/// Aborts where an option is out of its range.
+void check_disk_options(const DiskOptions& options);
+
+/// The surfels' far sides as receivers, one per surfel: what the correcting passes ask.
+/// side: +1 = where the casting normal points, -1 = the other.
+[[nodiscard]] std::vector<Receiver> far_sides(const Octree& octree, float offset, float side);
+
+}  // namespace surfelao

@@ -1,0 +1,41 @@
+#include "tree/disks/form_factor.h"
+
+namespace surfelao {
+
+double disk_form_factor(Kernel kernel, const glm::dvec3& receiver, const glm::dvec3& normal,
+                        const DiskShape& disk)
+{
+    const glm::dvec3 c = glm::dvec3(disk.center) - receiver;
+    const double d2 = glm::dot(c, c) + double{kTinyLength} * kTinyLength;
+    const glm::dvec3 w = c / std::sqrt(d2);
+    const glm::dvec3 m(disk.normal);
+    const double at_receiver = glm::dot(normal, w);
+    const double at_disk = glm::dot(m, w);
+    if (at_receiver <= 0.0)
+        return 0.0;
+    const double facing = disk.two_sided ? std::abs(at_disk) : std::max(0.0, at_disk);
+    const double x = disk.flat_area / (std::numbers::pi * d2);
+    if (kernel == Kernel::bunnell)
+        return (1.0 - 1.0 / std::sqrt(1.0 + x)) * facing * std::min(1.0, 4.0 * at_receiver);
+
+    const double all = disk.area / (std::numbers::pi * d2);
+    const double spread = std::max(0.0, all - x) * (disk.two_sided ? 0.5 : 0.25);
+    const double second = x < kNearDisk ? x : 0.0;
+    const double correction =
+        at_receiver * (2.0 - 3.0 * at_disk * at_disk) + at_disk * glm::dot(normal, m);
+    const double flat = x * facing * std::max(0.0, at_receiver + second * correction);
+    return (flat + spread * at_receiver) / (1.0 + all);
+}
+
+double distance_weight(const Definition& definition, double distance, double area)
+{
+    if (!std::isfinite(definition.max_distance))
+        return 1.0;
+    if (definition.falloff != Falloff::none)
+        return hit_weight(definition, static_cast<float>(distance));
+    const double width =
+        std::min(2.0 * std::sqrt(area / std::numbers::pi), double{definition.max_distance});
+    return std::clamp(0.5 + (definition.max_distance - distance) / width, 0.0, 1.0);
+}
+
+}  // namespace surfelao

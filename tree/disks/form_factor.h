@@ -1,0 +1,80 @@
+/// form_factor.h: what one disk, or one cluster as a disk, adds to a receiver's occlusion.
+///
+/// The formulas of the disk engine, in plain code: brute_force.cpp sums them, tree/disks/gather.cpp
+/// holds the same in SIMD and shaders/disks.glsl the same on the GPU.
+///
+/// With R^2 = flat_area / pi, d the distance, x = R^2 / d^2, and the cosines h = m.w at the disk
+/// and cR = n.w at the receiver (w = direction from receiver to disk), a disk wholly above the
+/// horizon covers exactly (contour integral over its rim)
+///
+///     F = a (n.m) + b (cR - h (n.m)),  a = 2 x h^2 / (S (S + 1 - x)),  b = 2 x h / (S (S + 1 +
+///     x)), S = sqrt((1 - x)^2 + 4 x h^2)
+///
+/// to second order in x, which is what is summed below x = 1/9 (d = 3R; there within 2 %):
+///
+///     F = x h / (1 + x) * (cR + x (cR (2 - 3 h^2) + h (n.m)))
+///
+/// Nearer than that a disk is no likeness of the mesh around it and the first factor alone,
+/// A h cR / (pi d^2 + A), errs less. A disk counts as above the horizon when its centre is: cutting
+/// the rim was measured to be worse, since the surface that the disk stands for bends away.
+///
+/// The part of a cluster's area that its mean normal does not explain, area - flat_area, counts as
+/// spread over all orientations: it shows a quarter of itself to any side (half when two-sided).
+///
+/// Based on:
+///   Bunnell. Dynamic Ambient Occlusion and Indirect Lighting. GPU Gems 2, ch. 14. 2005
+///   Hoberock, Jia. High-Quality Ambient Occlusion. GPU Gems 3, ch. 12. 2007
+///   Engleson. Point-based ambient occlusion (report). 2011
+#pragma once
+
+#include "surfels/occlusion.h"
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace surfelao {
+
+/// Directions are resolved by a linear function: how much of the light that comes in along -w, from
+/// far away, reaches the disk's far side. 1 = all.
+struct FarVisibility {
+    glm::vec3 slope{0.0f};
+    float constant = 1.0f;
+};
+static_assert(sizeof(FarVisibility) == 16);  // one RGBA32F texel
+
+/// A surfel or an octree node, as the formulas see it.
+struct DiskShape {
+    glm::vec3 center{0.0f};
+    glm::vec3 normal{0.0f};  ///< casting normal, unit length or zero (octree.h)
+    float flat_area = 0.0f;
+    float area = 0.0f;
+    bool two_sided = false;
+};
+
+/// Beyond this ratio of R^2 to d^2 the second-order term is left out: a disk at d < 3R.
+inline constexpr float kNearDisk = 1.0f / 9.0f;
+
+/// Lengths below this are zero, in diagonals: it keeps 1/d^4 finite in float and is far below the
+/// offset, and below what floats resolve in a unit frame.
+inline constexpr float kTinyLength = 1e-8f;
+
+/// The unweighted form factor in [0, 1 + 1/9]; 0 below the horizon or, one-sided, from in front.
+[[nodiscard]] double disk_form_factor(Kernel kernel, const glm::dvec3& receiver,
+                                      const glm::dvec3& normal, const DiskShape& disk);
+
+/// The share of a disk at this distance that counts: hit_weight of its centre, and without falloff
+/// the share of its width that lies within max_distance, so that nothing jumps at the limit. A disk
+/// wider than the limit counts as that wide: else the ones around a receiver would never fade.
+[[nodiscard]] double distance_weight(const Definition& definition, double distance, double area);
+
+/// FarVisibility in direction w, in [0, 1].
+[[nodiscard]] inline double visibility_towards(const FarVisibility& far, const glm::dvec3& w)
+{
+    return std::clamp(far.constant + glm::dot(glm::dvec3(far.slope), w), 0.0, 1.0);
+}
+
+}  // namespace surfelao

@@ -1,0 +1,242 @@
+#include "tree/masks/groups.h"
+
+#include "tree/lanes.h"
+#include "tree/masks/tree.h"
+#include "tree/part.h"
+
+#include <glm/geometric.hpp>
+
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace surfelao {
+namespace {
+
+constexpr std::size_t kParallelGroup = 2048;  ///< smaller groups are built by one thread
+constexpr std::size_t kSample = 63;           ///< keys among which a pivot is chosen at most
+
+/// Where a receiver stands, in the mask frame.
+struct alignas(16) Key {
+    std::array<float, 3> at;
+    std::uint32_t receiver;
+};
+
+/// Brings the first `rank` keys along an axis before the others; of keys at one place those of the
+/// first receivers. `spare` is as large as `keys`. O(n) on average; std::nth_element does the same
+/// with a branch for each key, in twice the time.
+void select(std::span<Key> keys, std::size_t rank, std::size_t axis, std::span<Key> spare)
+{
+    while (rank > 0 && rank < keys.size()) {
+        // the place that has the rank in a sample
+        std::array<float, kSample> sample;
+        const std::size_t count = std::clamp(keys.size() / 8, std::size_t{1}, kSample);
+        for (std::size_t i = 0; i < count; ++i)
+            sample[i] = keys[(2 * i + 1) * keys.size() / (2 * count)].at[axis];
+        const auto middle =
+            sample.begin() + static_cast<std::ptrdiff_t>(rank * count / keys.size());
+        std::nth_element(sample.begin(), middle,
+                         sample.begin() + static_cast<std::ptrdiff_t>(count));
+        const float place = *middle;
+
+        const auto part_keys = [&](const auto& below) {
+            const std::size_t first = part<Key>(keys, below, spare.data());
+            for_blocks(spare.first(keys.size()), [&](std::span<const Key> block, std::size_t i) {
+                std::copy(block.begin(), block.end(), keys.begin() + i * kPartBlock);
+            });
+            return first;
+        };
+        std::size_t first = part_keys([=](const Key& key) { return key.at[axis] < place; });
+        if (first == 0) {
+            first = part_keys([=](const Key& key) { return key.at[axis] <= place; });
+            if (rank < first) {
+                std::nth_element(
+                    keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(rank),
+                    keys.begin() + static_cast<std::ptrdiff_t>(first),
+                    [](const Key& a, const Key& b) { return a.receiver < b.receiver; });
+                return;
+            }
+        }
+        if (rank < first) {
+            keys = keys.first(first);
+        } else {
+            keys = keys.subspan(first);
+            rank -= first;
+        }
+    }
+}
+
+/// Sums over a group.
+struct Sums {
+    glm::dvec3 position{0.0};
+    glm::dvec3 normal{0.0};
+};
+
+class Grouper {
+public:
+    explicit Grouper(std::span<const Receiver> receivers) : receivers_(receivers) {}
+
+    MaskGroups build()
+    {
+        keys_.resize(receivers_.size());
+        for_blocks(std::span(keys_), [&](std::span<Key> block, std::size_t) {
+            for (Key& key : block) {
+                const auto receiver = static_cast<std::uint32_t>(&key - keys_.data());
+                const glm::vec3 p = kMaskFrame * receivers_[receiver].position;
+                key = {{p.x, p.y, p.z}, receiver};
+            }
+        });
+        keys_.erase(std::remove_if(keys_.begin(), keys_.end(),
+                                   [&](const Key& key) {
+                                       return receivers_[key.receiver].normal == glm::vec3(0.0f);
+                                   }),
+                    keys_.end());
+        if (keys_.empty())
+            return {};
+        spare_.resize(keys_.size());
+        out_.order.resize(keys_.size());
+        for (auto* columns : {&out_.position, &out_.normal}) {
+            for (RawVector<float>& column : *columns) {
+                column.resize(keys_.size() + kMaskGroupSize);
+                std::fill_n(column.end() - kMaskGroupSize, kMaskGroupSize, 0.0f);
+            }
+        }
+        out_.groups.resize(2 * leaf_count(keys_.size()) - 1);
+        build_group(0, 1, 0, keys_.size());
+        return std::move(out_);
+    }
+
+private:
+    static std::size_t leaf_count(std::size_t receivers)
+    {
+        return (receivers + kMaskGroupSize - 1) / kMaskGroupSize;
+    }
+
+    /// Group `index` over keys [begin, end); its descendants stand at [first, first + 2
+    /// (leaves-1)).
+    Sums build_group(std::size_t index, std::size_t first, std::size_t begin, std::size_t end)
+    {
+        MaskGroup& group = out_.groups[index];
+        group.begin = static_cast<std::uint32_t>(begin);
+        group.end = static_cast<std::uint32_t>(end);
+        group.first_child = 0;
+        const std::size_t leaves = leaf_count(end - begin);
+        Sums sums;
+        if (leaves == 1) {
+            sums = finish_leaf(begin, end);
+        } else {
+            group.first_child = static_cast<std::uint32_t>(first);
+            // in two at the median of the longest extent, so that all leaves but the last are full
+            const std::size_t left_leaves = leaves / 2;
+            const std::size_t middle = begin + left_leaves * kMaskGroupSize;
+            select(std::span(keys_).subspan(begin, end - begin), middle - begin,
+                   longest_axis(begin, end), std::span(spare_).subspan(begin, end - begin));
+            const std::size_t left_first = first + 2;
+            const std::size_t right_first = left_first + 2 * (left_leaves - 1);
+            Sums right_sums;
+            const auto left = [&] { sums = build_group(first, left_first, begin, middle); };
+            const auto right = [&] {
+                right_sums = build_group(first + 1, right_first, middle, end);
+            };
+            if (end - begin > kParallelGroup) {
+                tbb::parallel_invoke(left, right);
+            } else {
+                left();
+                right();
+            }
+            sums.position += right_sums.position;
+            sums.normal += right_sums.normal;
+        }
+        bound(group, sums);
+        return sums;
+    }
+
+    std::size_t longest_axis(std::size_t begin, std::size_t end) const
+    {
+        // the fourth lane is the receiver and of no meaning
+        Lanes low = std::bit_cast<Lanes>(keys_[begin]);
+        Lanes high = low;
+        for (std::size_t i = begin + 1; i < end; ++i) {
+            const Lanes at = std::bit_cast<Lanes>(keys_[i]);
+            low = least(low, at);
+            high = most(high, at);
+        }
+        const Lanes length = high - low;
+        std::size_t axis = 0;
+        for (std::size_t k = 1; k < 3; ++k) {
+            if (length[k] > length[axis])
+                axis = k;
+        }
+        return axis;
+    }
+
+    /// Writes order and columns.
+    Sums finish_leaf(std::size_t begin, std::size_t end)
+    {
+        Sums sums;
+        for (std::size_t i = begin; i < end; ++i) {
+            const Key& key = keys_[i];
+            const glm::vec3 normal = kMaskFrame * receivers_[key.receiver].normal;
+            out_.order[i] = key.receiver;
+            for (std::size_t k = 0; k < 3; ++k) {
+                out_.position[k][i] = key.at[k];
+                out_.normal[k][i] = normal[static_cast<int>(k)];
+            }
+            sums.position += glm::dvec3(key.at[0], key.at[1], key.at[2]);
+            sums.normal += glm::dvec3(normal);
+        }
+        return sums;
+    }
+
+    /// The centre is the centroid of the points: the box's lies inside of the body, and darkens.
+    void bound(MaskGroup& group, const Sums& sums) const
+    {
+        const glm::vec3 center(sums.position / static_cast<double>(group.end - group.begin));
+        const double length = glm::length(sums.normal);
+        const glm::vec3 axis =
+            length > 0.0 ? glm::vec3(sums.normal / length)
+                         : glm::vec3(out_.normal[0][group.begin], out_.normal[1][group.begin],
+                                     out_.normal[2][group.begin]);
+        Lanes radius2 = all_lanes(0.0f);
+        Lanes rise = all_lanes(-std::numeric_limits<float>::max());
+        Lanes cone_cos = all_lanes(1.0f);
+        for (std::uint32_t i = group.begin; i < group.end; i += kLaneCount) {
+            const LaneMask inside = LaneMask{0, 1, 2, 3} < static_cast<std::int32_t>(group.end - i);
+            const Lanes x = load_lanes(&out_.position[0][i]) - center.x;
+            const Lanes y = load_lanes(&out_.position[1][i]) - center.y;
+            const Lanes z = load_lanes(&out_.position[2][i]) - center.z;
+            const Lanes nx = load_lanes(&out_.normal[0][i]);
+            const Lanes ny = load_lanes(&out_.normal[1][i]);
+            const Lanes nz = load_lanes(&out_.normal[2][i]);
+            // lanes beyond the end change nothing
+            radius2 = most(radius2, inside ? x * x + y * y + z * z : radius2);
+            rise = most(rise, inside ? -(nx * x + ny * y + nz * z) : rise);
+            cone_cos = least(cone_cos, inside ? nx * axis.x + ny * axis.y + nz * axis.z : cone_cos);
+        }
+        for (int k = 0; k < 3; ++k) {
+            group.center[k] = center[k];
+            group.axis[k] = axis[k];
+        }
+        group.radius = std::sqrt(std::max({radius2[0], radius2[1], radius2[2], radius2[3]}));
+        group.rise = std::max({rise[0], rise[1], rise[2], rise[3]});
+        group.cone_cos =
+            std::max(-1.0f, std::min({cone_cos[0], cone_cos[1], cone_cos[2], cone_cos[3]}));
+        group.cone_sin = std::sqrt(1.0f - group.cone_cos * group.cone_cos);
+    }
+
+    std::span<const Receiver> receivers_;
+    RawVector<Key> keys_, spare_;
+    MaskGroups out_;
+};
+
+}  // namespace
+
+MaskGroups group_for_masks(std::span<const Receiver> receivers)
+{
+    return Grouper(receivers).build();
+}
+
+}  // namespace surfelao

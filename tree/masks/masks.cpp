@@ -1,0 +1,297 @@
+#include "tree/masks/masks.h"
+
+#include "tree/masks/groups.h"
+#include "tree/masks/kernel.h"
+#include "tree/masks/limits.h"
+#include "tree/masks/raster.h"
+#include "tree/masks/tree.h"
+
+#include <glm/geometric.hpp>
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <new>
+#include <stdexcept>
+
+namespace surfelao {
+
+namespace {
+
+/// 64-byte aligned zeros: lanes beyond the end are loaded, though never used.
+template <typename T>
+T* allocate_zeros(std::size_t count)
+{
+    const std::size_t bytes = (count * sizeof(T) + 63) / 64 * 64;
+    void* data = std::aligned_alloc(64, bytes);
+    if (data == nullptr)
+        throw std::bad_alloc();
+    return static_cast<T*>(std::memset(data, 0, bytes));
+}
+
+}  // namespace
+
+void reserve(MaskBuffer<std::uint32_t>& buffer, std::size_t count)
+{
+    if (count <= buffer.capacity)
+        return;
+    const std::size_t capacity = std::max<std::size_t>(2 * buffer.capacity, count + 1024);
+    auto* data = allocate_zeros<std::uint32_t>(capacity);
+    std::copy_n(buffer.data, buffer.count, data);
+    const std::size_t kept = buffer.count;
+    release(buffer);
+    buffer = {data, kept, capacity};
+}
+void release(MaskBuffer<std::uint32_t>& buffer)
+{
+    std::free(buffer.data);
+    buffer = {};
+}
+
+namespace {
+
+const MaskKernel* kernel_of(MaskKernelSet set)
+{
+    switch (set) {
+        case MaskKernelSet::best:
+            return kernel_of(available_mask_kernels().front());
+#if defined(__x86_64__)
+        case MaskKernelSet::avx512:
+            return &kMaskKernelAvx512;
+        case MaskKernelSet::avx2:
+            return &kMaskKernelAvx2;
+#endif
+        default:
+            return &kMaskKernelPortable;
+    }
+}
+
+/// The family at whole qualities, from MaskOptions::kCoarsest on.
+struct FamilyPoint {
+    float cluster, share_leaf, share_inner, graze;
+};
+constexpr FamilyPoint kFamily[] = {{0.9f, 0.6f, 0.32f, 0.24f},     {0.9f, 0.3f, 0.2f, 0.18f},
+                                   {0.7f, 0.1f, 0.07f, 0.13f},     {0.25f, 0.045f, 0.04f, 0.09f},
+                                   {0.17f, 0.015f, 0.015f, 0.03f}, {0.1f, 0.007f, 0.007f, 0.015f}};
+constexpr float kRelaxedCluster = 0.9f;  ///< a larger rectangle could swallow its receiver
+/// Cracks shrink with the clusters: up to this s none is two bits wide, from twice that many are.
+constexpr float kNarrowCracks = 0.35f;
+
+float between(float a, float b, float t)
+{
+    return a * std::pow(b / a, t);
+}
+
+}  // namespace
+
+MaskSettings mask_settings(const MaskOptions& options)
+{
+    if (!(options.quality >= MaskOptions::kCoarsest && options.quality <= MaskOptions::kFinest))
+        throw std::invalid_argument("MaskOptions: quality must be between -1 and 4");
+    if (options.definition.kernel != Kernel::cosine)
+        throw std::invalid_argument("MaskOptions: masks know the cosine kernel only");
+    MaskSettings settings{};
+    settings.fill = !options.exact;
+    // within a limit a body's far side may be missing
+    settings.one_sided = !options.exact && std::isinf(options.definition.max_distance);
+    if (options.exact)
+        return settings;
+    settings.exact_radius = std::numeric_limits<float>::min();
+    const float place = options.quality - MaskOptions::kCoarsest;
+    const auto i = std::min(static_cast<std::size_t>(place), std::size(kFamily) - 2);
+    const float t = place - static_cast<float>(i);
+    const FamilyPoint &a = kFamily[i], &b = kFamily[i + 1];
+    settings.cluster = between(a.cluster, b.cluster, t);
+    settings.cluster_limit = std::max(settings.cluster, kRelaxedCluster);
+    settings.share_leaf = between(a.share_leaf, b.share_leaf, t);
+    settings.share_inner = between(a.share_inner, b.share_inner, t);
+    settings.graze = between(a.graze, b.graze, t);
+    settings.close = std::clamp(settings.cluster / kNarrowCracks - 1.0f, 0.0f, 1.0f);
+    return settings;
+}
+
+/// A falloff is a mean over hits within several limits: with H(w) the weight of the distance t,
+/// H = integral over h in [0, 1] of (t < distance at which the weight is h). Midpoints of as many
+/// steps; a hit's weight is off by half a step at most.
+constexpr int kFalloffSteps = 8;
+
+std::vector<float> distance_limits(const Definition& definition)
+{
+    if (definition.falloff == Falloff::none)
+        return {definition.max_distance};
+    std::vector<float> limits;
+    for (int step = 0; step < kFalloffSteps; ++step) {
+        const float weight = (static_cast<float>(step) + 0.5f) / kFalloffSteps;
+        // hit_weight falls steadily: bisection keeps its formula in one place
+        float near = 0.0f;
+        float far = definition.max_distance;
+        for (int i = 0; i < 24; ++i) {
+            const float middle = 0.5f * (near + far);
+            (hit_weight(definition, middle) > weight ? near : far) = middle;
+        }
+        limits.push_back(far);
+    }
+    return limits;
+}
+
+namespace {
+
+/// Buffers of one thread: one list of nodes per level of the group tree on the way down.
+struct Workspace {
+    MaskScratch scratch;
+    std::vector<MaskBuffer<std::uint32_t>> lists;
+
+    Workspace() = default;
+    Workspace(const Workspace&) = delete;
+    Workspace& operator=(const Workspace&) = delete;
+    ~Workspace()
+    {
+        release(scratch.frontier);
+        release(scratch.clusters);
+        release(scratch.rectangles);
+        release(scratch.triangles);
+        for (MaskBuffer<std::uint32_t>& list : lists)
+            release(list);
+    }
+};
+
+class Solver {
+public:
+    Solver(const MaskTree& tree, std::span<const Receiver> receivers, const MaskOptions& options,
+           const Progress& progress)
+        : kernel_(*kernel_of(options.kernel)),
+          world_{reinterpret_cast<const float*>(tree.nodes.data()), &mask_raster(),
+                 mask_settings(options)},
+          has_triangles_(!tree.nodes.empty()),
+          receivers_(receivers),
+          groups_(group_for_masks(receivers)),
+          limits_(distance_limits(options.definition)),
+          progress_(progress, groups_.order.size() * limits_.size()),
+          answers_(receivers.size())
+    {
+    }
+
+    std::vector<Occlusion> run()
+    {
+        if (!groups_.groups.empty()) {
+            for (const float limit : limits_) {
+                world_.settings.max_distance = limit;
+                const std::uint32_t root = 0;
+                visit(0, &root, has_triangles_ ? 1 : 0, MaskShared{}, 0);
+            }
+        }
+        const float weight = 1.0f / static_cast<float>(limits_.size());
+        tbb::parallel_for(std::size_t{0}, answers_.size(), [&](std::size_t i) {
+            Occlusion& answer = answers_[i];
+            answer.occlusion *= weight;
+            // a row vector times a rotation: turned back
+            answer.bent_normal =
+                bent_normal_of(answer.bent_normal * kMaskFrame, receivers_[i].normal);
+        });
+        return std::move(answers_);
+    }
+
+private:
+    static constexpr std::uint32_t kParallelReceivers = 64;  ///< smaller groups stay on one thread
+
+    void visit(std::uint32_t index, const std::uint32_t* in, std::size_t in_count,
+               const MaskShared& from_above, std::size_t level)
+    {
+        const MaskGroup& group = groups_.groups[index];
+        if (group.first_child == 0) {
+            solve_leaf(group, in, in_count, from_above);
+            return;
+        }
+        MaskShared shared = from_above;
+        const auto visit_child = [&](std::uint32_t child, const std::uint32_t* list,
+                                     std::size_t count) {
+            visit(group.first_child + child, list, count, shared, level + 1);
+        };
+        Workspace& workspace = workspaces_.local();
+        if (group.end - group.begin > kParallelReceivers) {
+            // a thread that waits may take up other groups meanwhile: this list is nobody else's
+            MaskBuffer<std::uint32_t> list;
+            kernel_.descend(world_, group, in, in_count, list, shared, workspace.scratch);
+            const std::vector<std::uint32_t> kept(list.data, list.data + list.count);
+            release(list);
+            tbb::parallel_invoke([&] { visit_child(0, kept.data(), kept.size()); },
+                                 [&] { visit_child(1, kept.data(), kept.size()); });
+        } else {
+            if (workspace.lists.size() <= level)
+                workspace.lists.resize(level + 1);
+            kernel_.descend(world_, group, in, in_count, workspace.lists[level], shared,
+                            workspace.scratch);
+            const MaskBuffer<std::uint32_t> list = workspace.lists[level];
+            visit_child(0, list.data, list.count);
+            visit_child(1, list.data, list.count);
+        }
+    }
+
+    void solve_leaf(const MaskGroup& group, const std::uint32_t* in, std::size_t in_count,
+                    const MaskShared& from_above)
+    {
+        MaskReceivers columns{};
+        columns.count = group.end - group.begin;
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::copy_n(&groups_.position[k][group.begin], columns.count, columns.position[k]);
+            std::copy_n(&groups_.normal[k][group.begin], columns.count, columns.normal[k]);
+        }
+        MaskAnswers found{};
+        kernel_.solve(world_, group, in, in_count, from_above, columns, found,
+                      workspaces_.local().scratch);
+        for (std::uint32_t i = 0; i < columns.count; ++i) {
+            const std::uint32_t index = groups_.order[group.begin + i];
+            answers_[index].occlusion += found.occlusion[i];
+            answers_[index].bent_normal +=
+                glm::vec3(found.bent[0][i], found.bent[1][i], found.bent[2][i]);
+        }
+        progress_.add(columns.count);
+    }
+
+    const MaskKernel& kernel_;
+    MaskWorld world_;
+    bool has_triangles_;
+    std::span<const Receiver> receivers_;
+    MaskGroups groups_;
+    std::vector<float> limits_;
+    ProgressMeter progress_;
+    std::vector<Occlusion> answers_;
+    tbb::enumerable_thread_specific<Workspace> workspaces_;
+};
+
+}  // namespace
+
+std::vector<MaskKernelSet> available_mask_kernels()
+{
+    std::vector<MaskKernelSet> sets;
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("avx512vnni"))
+        sets.push_back(MaskKernelSet::avx512);
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+        sets.push_back(MaskKernelSet::avx2);
+#endif
+    sets.push_back(MaskKernelSet::portable);
+    return sets;
+}
+
+std::string_view name_of(MaskKernelSet kernel)
+{
+    return kernel_of(kernel)->name;
+}
+
+std::vector<Occlusion> solve_masks(const MaskTree& tree, std::span<const Receiver> receivers,
+                                   const MaskOptions& options, const Progress& progress)
+{
+    return Solver(tree, receivers, options, progress).run();
+}
+
+}  // namespace surfelao

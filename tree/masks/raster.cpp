@@ -1,0 +1,72 @@
+#include "tree/masks/raster.h"
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+namespace surfelao {
+namespace {
+
+void set_rows(MaskRaster& raster)
+{
+    for (int y = 0; y < kMaskRows; ++y) {
+        const double angle = ((y + 0.5) / kMaskRows - 0.5) * std::numbers::pi / 2.0;
+        const double turns = y * (std::numbers::phi - 1.0);
+        raster.row_v[y] = static_cast<float>(std::tan(angle));
+        raster.row_shift[y] = static_cast<float>(turns - std::floor(turns));
+    }
+    for (int y = 0; y < kMaskRows; ++y) {
+        const auto further = [&](int other) {
+            return other >= 0 && other < kMaskRows && raster.row_shift[other] > raster.row_shift[y]
+                       ? ~0u
+                       : 0u;
+        };
+        raster.below_is_right[y] = further(y - 1);
+        raster.above_is_right[y] = further(y + 1);
+    }
+}
+
+/// Order 1: the first moments; 2: the second.
+template <int kOrder, int kMoments, int kParts>
+void set_moments(const MaskRaster& raster, std::int8_t (&table)[kMoments][kParts][kMaskFaceBytes],
+                 std::int32_t (&sums)[kMoments])
+{
+    constexpr int kBits = 8 / kParts;
+    for (int byte = 0; byte < kMaskFaceBytes; ++byte) {
+        for (int part = 0; part < kParts; ++part) {
+            double mean[6] = {};
+            for (int i = 0; i < kBits; ++i) {
+                const int y = byte / 4;
+                const int x = byte % 4 * 8 + part * kBits + i;
+                const double u = (x + static_cast<double>(raster.row_shift[y])) / 16.0 - 1.0;
+                const double v = raster.row_v[y];
+                const double length = std::sqrt(1.0 + u * u + v * v);
+                // rows at equal angles: their width in v grows as 1 + v^2
+                const double solid_angle = (1.0 + v * v) / (length * length * length);
+                const double products[6] = {1.0, u, v, u * u, u * v, v * v};
+                for (int m = 0; m < kMoments; ++m)
+                    mean[m] += solid_angle / std::pow(length, kOrder) * products[m] / kBits;
+            }
+            for (int m = 0; m < kMoments; ++m) {
+                table[m][part][byte] = static_cast<std::int8_t>(std::lround(127.0 * mean[m]));
+                sums[m] += table[m][part][byte];
+            }
+        }
+    }
+}
+
+}  // namespace
+
+const MaskRaster& mask_raster()
+{
+    static const std::unique_ptr<const MaskRaster> raster = [] {
+        auto made = std::make_unique<MaskRaster>();
+        set_rows(*made);
+        set_moments<1>(*made, made->first, made->first_sum);
+        set_moments<2>(*made, made->second, made->second_sum);
+        return made;
+    }();
+    return *raster;
+}
+
+}  // namespace surfelao

@@ -1,0 +1,35 @@
+/// tiles.h: flat pairs: two triangles that share an edge, lie in one plane and together are
+/// one convex quadrilateral.
+///
+/// Internal to the mask engine; masks.h is its door.
+#pragma once
+
+#include "surfels/geometry.h"
+#include "tree/raw_vector.h"
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace surfelao {
+
+/// Corners in the triangles' own direction. The triangles of a pair are (x, y, z) and (z, w, x); of
+/// a triangle that stays alone, z = w.
+struct MaskTile {
+    glm::uvec4 corners;                      ///< into Geometry::positions
+    std::array<std::uint32_t, 2> triangles;  ///< twice the same one where it is alone
+};
+
+/// Every triangle is in one tile. First those next to each other in the list are paired: files
+/// often say so where their quadrilaterals were; then those with one and the same longest edge,
+/// then the others, each time in the order of the triangles. O(n) where no vertex has many
+/// triangles.
+///
+/// normals: one per triangle, unit or zero.
+[[nodiscard]] RawVector<MaskTile> tiles_of(const Geometry& geometry,
+                                           std::span<const glm::vec3> normals);
+
+}  // namespace surfelao

@@ -1,0 +1,434 @@
+#include "tree/masks/tree.h"
+
+#include "tree/lanes.h"
+#include "tree/masks/kernel.h"
+#include "tree/masks/masks.h"
+#include "tree/masks/patch.h"
+#include "tree/masks/solids.h"
+#include "tree/masks/tiles.h"
+#include "tree/masks/winding.h"
+#include "tree/part.h"
+#include "tree/raw_vector.h"
+
+#include <glm/geometric.hpp>
+
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace surfelao {
+namespace {
+
+/// A unit of normal counts as this many diagonals of the node when it is split: neighbours that
+/// look elsewhere are parted before they become one rectangle.
+constexpr float kNormalExtent = 0.5f;
+/// Walls that meet in an edge: normals at the ends, to within this share, of an extent of at least
+/// so much. They are parted whatever the diagonal is: a rectangle for two of them fills no edge.
+constexpr float kEndShare = 0.1f;
+constexpr float kSharpExtent = 0.5f;
+
+/// Subtrees of up to this many triangles are built as one, in the cache, their radius and thickness
+/// measured at the corners; above, these follow from the children's.
+constexpr std::size_t kBundle = 32;
+
+constexpr std::size_t kParallelNode = 2048;  ///< smaller subtrees are built by one thread
+
+/// Where the splits look: centroid and unit normal of one triangle, in the scene's own axes: what
+/// is built along them is cut along them.
+struct alignas(16) Key {
+    std::array<float, 6> at;
+    std::uint32_t tile;
+    std::uint32_t padding;
+};
+
+struct Extent {
+    /// Of `at`; what follows it in a key is carried along and of no meaning.
+    std::array<Lanes, 2> low, high;
+
+    Extent()
+    {
+        low.fill(all_lanes(std::numeric_limits<float>::max()));
+        high.fill(all_lanes(-std::numeric_limits<float>::max()));
+    }
+    explicit Extent(std::span<const Key> keys) : Extent()
+    {
+        for (const Key& key : keys) {
+            const auto at = std::bit_cast<std::array<Lanes, 2>>(key);
+            add({at, at});
+        }
+    }
+    Extent(const std::array<Lanes, 2>& lowest, const std::array<Lanes, 2>& highest)
+        : low(lowest), high(highest)
+    {
+    }
+    void add(const Extent& other)
+    {
+        for (std::size_t i = 0; i < 2; ++i) {
+            low[i] = least(low[i], other.low[i]);
+            high[i] = most(high[i], other.high[i]);
+        }
+    }
+};
+
+Extent extent_of(std::span<const Key> keys)
+{
+    if (keys.size() < kPartMany)
+        return Extent(keys);
+    std::vector<Extent> extents(keys.size() / kPartBlock + 1);
+    for_blocks(keys,
+               [&](std::span<const Key> block, std::size_t i) { extents[i] = Extent(block); });
+    Extent extent;
+    for (const Extent& one : extents)
+        extent.add(one);
+    return extent;
+}
+
+/// Parts the keys below `at` on one of the six axes from the others.
+struct Plane {
+    std::size_t axis;
+    float at;
+
+    bool operator()(const Key& key) const { return key.at[axis] < at; }
+};
+
+/// Whether all keys lie at the one or the other end of an extent. Smooth surfaces are told after a
+/// few keys.
+bool at_ends(std::span<const Key> keys, std::size_t axis, float low, float high)
+{
+    const float margin = kEndShare * (high - low);
+    return std::all_of(keys.begin(), keys.end(), [=](const Key& key) {
+        return key.at[axis] < low + margin || key.at[axis] > high - margin;
+    });
+}
+
+/// The middle of the longest of the six extents; walls that meet in an edge are parted first.
+Plane plane_of(const Extent& extent, std::span<const Key> keys)
+{
+    const auto low = std::bit_cast<std::array<float, 8>>(extent.low);
+    const auto high = std::bit_cast<std::array<float, 8>>(extent.high);
+    std::array<float, 6> square;
+    for (std::size_t i = 0; i < 6; ++i)
+        square[i] = (high[i] - low[i]) * (high[i] - low[i]);
+    const float unit = kNormalExtent * kNormalExtent * (square[0] + square[1] + square[2]);
+    std::size_t axis = 0;
+    float longest = square[0];
+    for (std::size_t i = 1; i < 6; ++i) {
+        const float here = i < 3 ? square[i] : unit * square[i];
+        axis = here > longest ? i : axis;
+        longest = here > longest ? here : longest;
+    }
+    if (axis < 3) {
+        std::size_t turned = 3;
+        for (std::size_t i = 4; i < 6; ++i)
+            turned = square[i] > square[turned] ? i : turned;
+        if (square[turned] > kSharpExtent * kSharpExtent &&
+            at_ends(keys, turned, low[turned], high[turned]))
+            axis = turned;
+    }
+    return {axis, 0.5f * (low[axis] + high[axis])};
+}
+
+/// Nodes over up to kBundle triangles while they are built. Node 0 is the root; children stand
+/// side by side, after their parent.
+struct Bundle {
+    struct Node {
+        std::uint8_t begin, end;
+        std::uint8_t first_child;  ///< 0 = triangle
+        std::uint8_t side;         ///< of `keys`: they go to and fro from level to level
+    };
+    static constexpr std::size_t kNodes = 2 * kBundle - 1;
+    static constexpr std::size_t kStride = kBundle + MaskCorners::kSlack;
+
+    std::array<std::array<Key, kBundle>, 2> keys;
+    std::array<Node, kNodes> nodes;
+    std::array<std::uint8_t, kBundle> leaf;   ///< the node of each triangle
+    std::array<std::uint8_t, kBundle> inner;  ///< parents first
+    std::array<float, 12 * kStride> corners;  ///< columns, as in MaskCorners
+    std::array<MaskPatch, kNodes> patches;
+    std::array<MaskCuts, kNodes> cuts;
+    std::array<MaskPatchNode, kBundle> shown;
+};
+
+/// What looks elsewhere need not be beside what it was parted from.
+void cut(const Plane& plane, MaskCuts& left, MaskCuts& right)
+{
+    if (plane.axis < 3) {
+        left.high[static_cast<int>(plane.axis)] = plane.at;
+        right.low[static_cast<int>(plane.axis)] = plane.at;
+    }
+}
+
+class Builder {
+public:
+    explicit Builder(const Geometry& geometry) : geometry_(geometry), solid_(small_solids(geometry))
+    {
+    }
+
+    RawVector<MaskNode> build()
+    {
+        if (geometry_.triangles.empty())
+            return {};
+        RawVector<glm::vec3> normals;
+        normals.resize(geometry_.triangles.size());
+        for_blocks(std::span(normals), [&](std::span<glm::vec3> block, std::size_t i) {
+            for (std::size_t t = 0; t < block.size(); ++t)
+                block[t] = normal_of(i * kPartBlock + t);
+        });
+        tiles_ = tiles_of(geometry_, normals);
+        const std::size_t count = tiles_.size();
+        positions_.resize(geometry_.positions.size());
+        for_blocks(std::span(positions_), [&](std::span<glm::vec3> block, std::size_t i) {
+            for (std::size_t v = 0; v < block.size(); ++v)
+                block[v] = kMaskFrame * geometry_.positions[i * kPartBlock + v];
+        });
+        for (RawVector<Key>& side : keys_)
+            side.resize(count);
+        for_blocks(std::span(keys_[0]), [&](std::span<Key> block, std::size_t i) {
+            for (std::size_t t = 0; t < block.size(); ++t)
+                block[t] = key_of(i * kPartBlock + t, normals);
+        });
+        order_.resize(count);
+        nodes_.resize(2 * count - 1);
+        build_node(0, 1, 0, count, 0, {});
+        return std::move(nodes_);
+    }
+
+private:
+    /// Zero where a triangle has no area.
+    glm::vec3 normal_of(std::size_t triangle) const
+    {
+        const glm::uvec3 t = geometry_.triangles[triangle];
+        const glm::vec3 a = geometry_.positions[t.x];
+        const glm::vec3 cross =
+            glm::cross(geometry_.positions[t.y] - a, geometry_.positions[t.z] - a);
+        const float length = glm::length(cross);
+        return length > 0.0f ? cross / length : glm::vec3(0.0f);
+    }
+
+    Key key_of(std::size_t tile, std::span<const glm::vec3> normals) const
+    {
+        const auto& [t, triangles] = tiles_[tile];
+        const glm::vec3 a = geometry_.positions[t.x], b = geometry_.positions[t.y],
+                        c = geometry_.positions[t.z], d = geometry_.positions[t.w];
+        const glm::vec3 center = t.z != t.w ? (a + b + c + d) * 0.25f : (a + b + c) * (1.0f / 3.0f);
+        const glm::vec3 normal = normals[triangles[0]];
+        return {{center.x, center.y, center.z, normal.x, normal.y, normal.z},
+                static_cast<std::uint32_t>(tile),
+                0};
+    }
+
+    /// Node `index` over keys [begin, end) of one side; its descendants stand in nodes [first,
+    /// first + 2 (n-1)).
+    MaskPatch build_node(std::size_t index, std::size_t first, std::size_t begin, std::size_t end,
+                         int side, const MaskCuts& cuts)
+    {
+        const std::size_t count = end - begin;
+        if (count <= kBundle)
+            return build_bundle(index, first, begin, end, side, cuts);
+
+        MaskCuts left_cuts = cuts, right_cuts = cuts;
+        const std::size_t middle = split(begin, end, side, left_cuts, right_cuts);
+        const std::size_t left_first = first + 2;
+        const std::size_t right_first = left_first + 2 * (middle - begin - 1);
+        MaskPatch left, right;
+        const auto build_left = [&] {
+            left = build_node(first, left_first, begin, middle, 1 - side, left_cuts);
+        };
+        const auto build_right = [&] {
+            right = build_node(first + 1, right_first, middle, end, 1 - side, right_cuts);
+        };
+        if (count > kParallelNode) {
+            tbb::parallel_invoke(build_left, build_right);
+        } else {
+            build_left();
+            build_right();
+        }
+
+        MaskPatch patch;
+        join(patch, left, right);
+        MaskPatchNode shown{&patch, &nodes_[index], &cuts, false};
+        show_patches({&shown, 1});
+        if (shown.may_be_whole) {
+            const std::size_t stride = count + MaskCorners::kSlack;
+            std::vector<float> columns(12 * stride);
+            for (std::size_t i = 0; i < count; ++i)
+                gather_corners(order_[begin + i], columns.data(), stride, i);
+            make_whole(patch, {columns.data(), stride, count}, order_.data() + begin,
+                       nodes_[index]);
+        }
+        nodes_[index].links |= static_cast<std::uint32_t>(first);
+        return patch;
+    }
+
+    /// Parts keys [begin, end) of one side into the other side. Returns where the second part
+    /// begins. What the plane does not part is cut in two halves.
+    std::size_t split(std::size_t begin, std::size_t end, int side, MaskCuts& left_cuts,
+                      MaskCuts& right_cuts)
+    {
+        const std::span<const Key> keys(keys_[side].data() + begin, end - begin);
+        const Plane plane = plane_of(extent_of(keys), keys);
+        const std::size_t below = part(keys, plane, keys_[1 - side].data() + begin);
+        if (below == 0 || below == keys.size())
+            return begin + keys.size() / 2;
+        cut(plane, left_cuts, right_cuts);
+        return begin + below;
+    }
+
+    /// The corners of a tile into row `i` of twelve columns.
+    void gather_corners(std::uint32_t tile, float* columns, std::size_t stride, std::size_t i) const
+    {
+        gather_corners(tiles_[tile].corners, columns, stride, i);
+    }
+    void gather_corners(glm::uvec4 t, float* columns, std::size_t stride, std::size_t i) const
+    {
+        for (int corner = 0; corner < 4; ++corner) {
+            const glm::vec3 p = positions_[t[corner]];
+            for (int axis = 0; axis < 3; ++axis, columns += stride)
+                columns[i] = p[axis];
+        }
+    }
+
+    /// Of the tiles order[0 ...].
+    void make_whole(const MaskPatch& patch, const MaskCorners& corners, const std::uint32_t* order,
+                    MaskNode& node) const
+    {
+        surfelao::make_whole(patch, corners, node);
+        const bool is_whole = node.open_radius == 0.0f;
+        if (is_whole &&
+            std::all_of(order, order + corners.count, [&](std::uint32_t t) { return is_solid(t); }))
+            node.links |= kMaskSolid;
+    }
+
+    bool is_solid(std::uint32_t tile) const
+    {
+        const auto [first, second] = tiles_[tile].triangles;
+        return solid_[first] != 0 && solid_[second] != 0;
+    }
+
+    /// build_node for few triangles.
+    MaskPatch build_bundle(std::size_t index, std::size_t first, std::size_t begin, std::size_t end,
+                           int side, const MaskCuts& cuts)
+    {
+        Bundle bundle;
+        bundle.cuts[0] = cuts;
+        const std::size_t count = end - begin;
+        // memory is asked for long before it is needed: triangles stand anywhere
+        for (std::size_t k = 0; k < 2 * (count - 1); ++k)
+            __builtin_prefetch(&nodes_[first + k], 1);
+        for (std::size_t i = 0; i < count; ++i) {
+            bundle.keys[0][i] = keys_[side][begin + i];
+            __builtin_prefetch(&tiles_[bundle.keys[0][i].tile]);
+        }
+        std::uint32_t* const order = order_.data() + begin;
+        const std::size_t inner_count = split_bundle(bundle, count, order);
+        for (std::size_t i = 0; i < count; ++i) {
+            const glm::uvec4 t = tiles_[order[i]].corners;
+            for (int corner = 0; corner < 4; ++corner)
+                __builtin_prefetch(&positions_[t[corner]]);
+        }
+
+        for (std::size_t i = 0; i < count; ++i)
+            gather_corners(order[i], bundle.corners.data(), Bundle::kStride, i);
+        for (std::size_t column = 0; column < 12; ++column)
+            std::fill_n(bundle.corners.data() + column * Bundle::kStride + count,
+                        MaskCorners::kSlack, 0.0f);
+        const MaskCorners corners{bundle.corners.data(), Bundle::kStride, count};
+        const auto place = [&](std::size_t k) { return k == 0 ? index : first + k - 1; };
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::size_t k = bundle.leaf[i];
+            bundle.shown[i] = {&bundle.patches[k], &nodes_[place(k)], nullptr, false};
+        }
+        set_tiles({bundle.shown.data(), count}, corners);
+        for (std::size_t i = 0; i < count; ++i)
+            bundle.shown[i].node->links |= is_solid(order[i]) ? kMaskSolid : 0;
+
+        // children before their parents
+        for (std::size_t i = inner_count; i-- > 0;) {
+            const std::size_t k = bundle.inner[i];
+            const Bundle::Node node = bundle.nodes[k];
+            join(bundle.patches[k], bundle.patches[node.first_child],
+                 bundle.patches[node.first_child + 1], corners.part(node.begin, node.end));
+            bundle.shown[i] = {&bundle.patches[k], &nodes_[place(k)], &bundle.cuts[k], false};
+        }
+        show_patches({bundle.shown.data(), inner_count});
+        for (std::size_t i = 0; i < inner_count; ++i) {
+            const Bundle::Node node = bundle.nodes[bundle.inner[i]];
+            const MaskPatchNode& shown = bundle.shown[i];
+            if (shown.may_be_whole)
+                make_whole(*shown.patch, corners.part(node.begin, node.end), order + node.begin,
+                           *shown.node);
+            shown.node->links |= static_cast<std::uint32_t>(first + node.first_child - 1);
+        }
+        return bundle.patches[0];
+    }
+
+    /// The nodes over the bundle's keys, and the triangles in the order of the leaves. Returns how
+    /// many nodes are not triangles.
+    static std::size_t split_bundle(Bundle& bundle, std::size_t count, std::uint32_t* order)
+    {
+        std::size_t node_count = 1;
+        std::size_t inner_count = 0;
+        bundle.nodes[0] = {0, static_cast<std::uint8_t>(count), 0, 0};
+        for (std::size_t k = 0; k < node_count; ++k) {
+            Bundle::Node& node = bundle.nodes[k];
+            const std::size_t size = node.end - node.begin;
+            const Key* const keys = bundle.keys[node.side].data() + node.begin;
+            if (size == 1) {
+                bundle.leaf[node.begin] = static_cast<std::uint8_t>(k);
+                order[node.begin] = keys->tile;
+                continue;
+            }
+            std::uint8_t side = node.side;
+            std::size_t below = 1;
+            MaskCuts* const cuts = &bundle.cuts[node_count];
+            cuts[0] = cuts[1] = bundle.cuts[k];
+            if (size > 2) {
+                side = 1 - side;
+                const Plane plane = plane_of(Extent({keys, size}), {keys, size});
+                Key* const out = bundle.keys[side].data() + node.begin;
+                below = part<Key>({keys, size}, plane, out, 0, size);
+                if (below != 0 && below != size)
+                    cut(plane, cuts[0], cuts[1]);
+                else
+                    below = size / 2;
+            }
+            const auto middle = static_cast<std::uint8_t>(node.begin + below);
+            node.first_child = static_cast<std::uint8_t>(node_count);
+            bundle.inner[inner_count++] = static_cast<std::uint8_t>(k);
+            bundle.nodes[node_count++] = {node.begin, middle, 0, side};
+            bundle.nodes[node_count++] = {middle, node.end, 0, side};
+        }
+        return inner_count;
+    }
+
+    const Geometry& geometry_;
+    RawVector<MaskTile> tiles_;
+    std::vector<std::uint8_t> solid_;     ///< one per triangle
+    RawVector<glm::vec3> positions_;      ///< in the mask frame
+    std::array<RawVector<Key>, 2> keys_;  ///< to and fro from level to level
+    RawVector<std::uint32_t> order_;      ///< the triangles below each finished node in one range
+    RawVector<MaskNode> nodes_;
+};
+
+}  // namespace
+
+std::shared_ptr<const MaskTree> build_mask_tree(const Geometry& geometry)
+{
+    auto tree = std::make_shared<MaskTree>();
+    if (is_winding_mixed(geometry)) {
+        Geometry alike = geometry;
+        wind_alike(alike);
+        tree->nodes = Builder(alike).build();
+    } else {
+        tree->nodes = Builder(geometry).build();
+    }
+    return tree;
+}
+
+}  // namespace surfelao
