@@ -16,7 +16,7 @@ namespace surfelao {
 
 /// Turns triangles so that neighbours over an edge of exactly two triangles run along it in
 /// opposite directions; the first triangle of what hangs together by such edges stays (where that
-/// is impossible, as on a Moebius strip, some edge is left over). O(n log n).
+/// is impossible, as on a Moebius strip, some edge is left over). O(n), as edges.h.
 void wind_alike(Geometry& geometry);
 
 }  // namespace surfelao
