@@ -7,6 +7,8 @@
 #include "surfels/atomic_file.h"
 #include "surfels/errors.h"
 
+#include <CLI/CLI.hpp>
+
 #include <sys/stat.h>
 
 #include <iostream>
@@ -64,6 +66,12 @@ void FilePlan::writes_report(const std::optional<std::string>& file, const std::
 {
     if (file && *file != "-")
         writes(*file, what);
+}
+
+void add_overwrite_option(CLI::App& command, bool& overwrite)
+{
+    command.add_flag("--overwrite", overwrite,
+                     "In a folder, replace files too that this command did not make");
 }
 
 void refuse_foreign(const fs::path& file, std::string_view command)

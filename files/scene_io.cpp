@@ -100,11 +100,11 @@ void write_scene(const fs::path& path, const Scene& scene, std::span<const Occlu
     check_output(path, path);
     switch (type_of(path)) {
         case FileType::obj:
-            return write_atomically(path, obj_contents(scene, occlusion));
+            return write_atomically(path, obj_contents(scene, occlusion, options.mark));
         case FileType::off:
-            return write_atomically(path, off_contents(scene, occlusion));
+            return write_atomically(path, off_contents(scene, occlusion, options.mark));
         case FileType::ply:
-            return write_atomically(path, ply_contents(scene, occlusion));
+            return write_atomically(path, ply_contents(scene, occlusion, options.mark));
         default:
             return write_atomically(path, gltf_contents(path, scene, occlusion, options));
     }

@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 
 namespace surfelao {
 
@@ -25,6 +26,7 @@ namespace surfelao {
 struct WriteOptions {
     bool colors =
         false;  ///< glTF: also write COLOR_0 (visibility as grey). PLY and OBJ always have it
+    std::string mark = {};  ///< who made the file, and how (maker_mark.h); empty: it says nothing
 };
 
 /// Throws InputError when a scene from `input` could not be written to `output` at all: unknown
