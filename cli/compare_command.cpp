@@ -235,6 +235,7 @@ void add_compare_command(CLI::App& app, Work& work)
                       "with the ratio to Embree at RMSE 0.010 and 0.005 and a summary");
     command->add_option("--engines", options->engines, "Engines to compare with rays")
         ->delimiter(',')
+        ->allow_extra_args(false)  // the word behind the list may be IN
         ->check(CLI::IsMember({"masks", "disks"}))
         ->type_name("E,...")
         ->capture_default_str();
@@ -242,6 +243,7 @@ void add_compare_command(CLI::App& app, Work& work)
         ->add_option("--devices", options->devices,
                      "Where the engines run: cpu, gpu or both, side by side")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->check(CLI::IsMember({"cpu", "gpu"}))
         ->type_name("D,...")
         ->capture_default_str();
@@ -249,6 +251,7 @@ void add_compare_command(CLI::App& app, Work& work)
         ->add_option("--qualities", options->qualities,
                      "Settings of each engine: draft, good, best or numbers")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->type_name("Q,...")
         ->default_str("draft,good,best");
     add_measure_options(*command, options->measure);
