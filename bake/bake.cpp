@@ -3,14 +3,18 @@
 #include "bake/json.h"
 #include "bake/peak_memory.h"
 #include "engines/threads.h"
+#include "files/maker_mark.h"
 #include "files/scene_io.h"
+#include "files/sidecars.h"
 #include "surfels/errors.h"
+#include "surfels/extension.h"
+#include "surfels/number_text.h"
 #include "surfels/stopwatch.h"
 
 #include <glm/vec3.hpp>
 
 #include <algorithm>
-#include <cctype>
+#include <cmath>
 
 namespace surfelao {
 namespace {
@@ -22,14 +26,6 @@ void enter(const StageProgress& progress, std::string_view stage)
 {
     if (progress && !progress(stage, 0.0))
         throw Cancelled();
-}
-
-std::string lower_extension(const fs::path& path)
-{
-    std::string extension = path.extension().string();
-    for (char& c : extension)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
 }
 
 double mean_occlusion_of(std::span<const Receiver> receivers, std::span<const Occlusion> occlusion)
@@ -103,7 +99,8 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
 
     enter(progress, "write");
     stage.lap();
-    write_scene(settings.output, scene, solution.occlusion, {.colors = settings.colors});
+    write_scene(settings.output, scene, solution.occlusion,
+                {.colors = settings.colors, .mark = mark_of(settings)});
     report.seconds.write = stage.lap();
 
     report.vertices = scene.positions.size();
@@ -138,14 +135,49 @@ fs::path output_in_folder(const fs::path& input, const fs::path& folder)
     return folder / name;
 }
 
-bool is_finished(const fs::path& input, const fs::path& output)
+std::string mark_of(const BakeSettings& settings)
+{
+    const EngineSettings& engine = settings.engine;
+    const DistanceLimit& limit = settings.max_distance;
+    std::string text = "engine=" + name_of(engine.engine) +
+                       " device=" + (engine.device == Device::gpu ? "gpu" : "cpu");
+    const auto add = [&](const char* name, auto value) { append_shortest(text += name, value); };
+    if (engine.engine == Engine::rays)
+        text += " rays=" + std::to_string(engine.rays);
+    else
+        add(" quality=", engine.quality);
+    if (engine.engine == Engine::disks) {
+        text += " passes=" + std::to_string(engine.passes);
+        add(" strength=", engine.strength);
+    }
+    if (engine.instructions == Instructions::avx2)
+        text += " instructions=avx2";
+    text += settings.kernel == Kernel::cosine ? " kernel=cosine" : " kernel=bunnell";
+    if (std::isfinite(limit.value))
+        add(" max_distance=", limit.value);
+    else
+        text += " max_distance=none";
+    text += std::isfinite(limit.value) && limit.percent ? "%" : "";
+    text += limit.falloff == Falloff::smooth ? " falloff=smooth" : " falloff=none";
+    text += settings.colors ? " colors=yes" : " colors=no";
+    return make_mark("bake", text);
+}
+
+bool is_finished(const BakeSettings& settings)
 {
     std::error_code error;
-    const fs::file_time_type made = fs::last_write_time(output, error);
-    if (error)
+    const fs::file_time_type made = fs::last_write_time(settings.output, error);
+    if (error || read_mark(settings.output) != mark_of(settings))
         return false;
-    const fs::file_time_type changed = fs::last_write_time(input, error);
-    return !error && made >= changed;
+    std::vector<fs::path> sources;
+    if (lower_extension(settings.input) == ".gltf")
+        sources = sidecars_of(settings.input);
+    sources.push_back(settings.input);
+    return std::ranges::all_of(sources, [&](const fs::path& source) {
+        std::error_code missing;
+        const fs::file_time_type changed = fs::last_write_time(source, missing);
+        return !missing && made >= changed;
+    });
 }
 
 }  // namespace surfelao

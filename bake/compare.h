@@ -114,8 +114,9 @@ struct Comparison {
 /// The aligned table for people.
 [[nodiscard]] std::string table_of(const Comparison& comparison);
 
-/// The scene as binary PLY with the row's error as colour (white = right, red = too dark, blue =
-/// too bright, full colour at kFullColorError, grey = not judged) and as property `error`.
+/// The scene as binary PLY (coordinates as double) with the row's error as colour (white = right,
+/// red = too dark, blue = too bright, full colour at kFullColorError, grey = not judged) and as
+/// property `error`; marked as a result of `compare` (files/maker_mark.h).
 void write_difference(const std::filesystem::path& path, const Comparison& comparison,
                       const CompareRow& row);
 

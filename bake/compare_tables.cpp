@@ -3,14 +3,13 @@
 #include "bake/json.h"
 #include "bake/picture.h"
 #include "bake/table.h"
+#include "files/maker_mark.h"
+#include "files/ply_io.h"
 #include "surfels/atomic_file.h"
 #include "surfels/number_text.h"
 
-#include <algorithm>
-#include <bit>
 #include <cmath>
-#include <fstream>
-#include <stdexcept>
+#include <sstream>
 
 namespace surfelao {
 namespace {
@@ -20,11 +19,17 @@ Json json_of(const std::optional<EmbreeRatio>& ratio)
     return ratio ? Json(ratio->ratio) : Json();
 }
 
-template <class T>
-void put(std::ofstream& file, T value)
+/// What the row was told, with what only rows of a comparison have.
+Json settings_of(const CompareRow& row)
 {
-    static_assert(std::endian::native == std::endian::little);
-    file.write(reinterpret_cast<const char*>(&value), sizeof value);
+    const Json of_engine = json_of(row.settings);
+    Json settings;
+    for (const auto& [key, value] : of_engine.items()) {
+        settings[key] = value;
+        if (key == "rays")
+            settings["smoothed"] = row.smoothed;
+    }
+    return settings;
 }
 
 }  // namespace
@@ -57,7 +62,7 @@ Json json_object_of(const Comparison& comparison)
         }
         json["rows"].push_back({{"engine", name_of(row.settings.engine)},
                                 {"setting", setting_of(row)},
-                                {"settings", json_of(row.settings)},
+                                {"settings", settings_of(row)},
                                 {"rounds", row.rounds},
                                 {"build_s", row.build_s},
                                 {"solve_s", row.solve_s},
@@ -166,34 +171,19 @@ std::string table_of(const Comparison& comparison)
 void write_difference(const std::filesystem::path& path, const Comparison& comparison,
                       const CompareRow& row)
 {
-    const Scene& scene = comparison.scene;
-    write_atomically(path, [&](const std::filesystem::path& temporary) {
-        std::ofstream file(temporary, std::ios::binary);
-        file << "ply\nformat binary_little_endian 1.0\ncomment error of "
-             << name_of(row.settings.engine) << ' ' << setting_of(row)
-             << " against rays; full colour at " << kFullColorError
-             << ": red = too dark, blue = too bright, grey = not judged\n"
-             << "element vertex " << scene.positions.size()
-             << "\nproperty double x\nproperty double y\nproperty double z\n"
-                "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-                "property float error\nelement face "
-             << scene.triangles.size() << "\nproperty list uchar uint vertex_indices\nend_header\n";
-        for (std::size_t v = 0; v < scene.positions.size(); ++v) {
-            for (int axis = 0; axis < 3; ++axis)
-                put(file, scene.positions[v][axis]);
+    std::ostringstream what;
+    what << "error of " << name_of(row.settings.engine) << ' ' << setting_of(row)
+         << " against rays; full colour at " << kFullColorError
+         << ": red = too dark, blue = too bright, grey = not judged";
+    const PlyValues values{
+        {"uchar red", "uchar green", "uchar blue", "float error"},
+        [&](std::string& bytes, std::size_t v) {
             for (const std::uint8_t channel : color_of_error(row.errors[v], kFullColorError))
-                put(file, channel);
-            put(file, std::isnan(row.errors[v]) ? 0.0f : row.errors[v]);
-        }
-        for (const glm::uvec3 triangle : scene.triangles) {
-            put(file, std::uint8_t{3});
-            for (int corner = 0; corner < 3; ++corner)
-                put(file, triangle[corner]);
-        }
-        file.close();
-        if (!file)
-            throw std::runtime_error("cannot write " + path.string());
-    });
+                append_bytes(bytes, channel);
+            append_bytes(bytes, std::isnan(row.errors[v]) ? 0.0f : row.errors[v]);
+        }};
+    write_atomically(path, new_ply(comparison.scene, values, make_mark("compare", what.str()),
+                                   PlyCoordinates::exact));
 }
 
 }  // namespace surfelao

@@ -8,8 +8,8 @@
 #include "files/stl_io.h"
 #include "surfels/atomic_file.h"
 #include "surfels/errors.h"
+#include "surfels/extension.h"
 
-#include <algorithm>
 #include <string>
 
 namespace surfelao {
@@ -21,10 +21,7 @@ enum class FileType { obj, ply, off, stl, gltf, glb, unknown };
 
 FileType type_of(const fs::path& path)
 {
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    });
+    const std::string extension = lower_extension(path);
     constexpr std::pair<const char*, FileType> kTypes[] = {
         {".obj", FileType::obj}, {".ply", FileType::ply},   {".off", FileType::off},
         {".stl", FileType::stl}, {".gltf", FileType::gltf}, {".glb", FileType::glb}};
@@ -76,6 +73,11 @@ Scene read_scene(const fs::path& path)
     return scene;
 }
 
+bool is_mesh_name(const fs::path& path)
+{
+    return type_of(path) != FileType::unknown;
+}
+
 void check_output(const fs::path& input, const fs::path& output)
 {
     const auto refuse = [&](const std::string& fault) {
@@ -98,11 +100,11 @@ void write_scene(const fs::path& path, const Scene& scene, std::span<const Occlu
     check_output(path, path);
     switch (type_of(path)) {
         case FileType::obj:
-            return write_atomically(path, obj_contents(scene, occlusion));
+            return write_atomically(path, obj_contents(scene, occlusion, options.mark));
         case FileType::off:
-            return write_atomically(path, off_contents(scene, occlusion));
+            return write_atomically(path, off_contents(scene, occlusion, options.mark));
         case FileType::ply:
-            return write_atomically(path, ply_contents(scene, occlusion));
+            return write_atomically(path, ply_contents(scene, occlusion, options.mark));
         default:
             return write_atomically(path, gltf_contents(path, scene, occlusion, options));
     }

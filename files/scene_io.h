@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 
 namespace surfelao {
 
@@ -19,9 +20,13 @@ namespace surfelao {
 /// memory stay in proportion to the file's size, whatever its counts claim.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path);
 
+/// Whether the extension is one of those that read_scene() knows.
+[[nodiscard]] bool is_mesh_name(const std::filesystem::path& path);
+
 struct WriteOptions {
     bool colors =
         false;  ///< glTF: also write COLOR_0 (visibility as grey). PLY and OBJ always have it
+    std::string mark = {};  ///< who made the file, and how (maker_mark.h); empty: it says nothing
 };
 
 /// Throws InputError when a scene from `input` could not be written to `output` at all: unknown

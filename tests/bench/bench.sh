@@ -18,7 +18,7 @@ if [ $# -eq 0 ]; then
         [ ! -e "$model" ] || set -- "$@" "$model"
     done
 fi
-"$build/bin/surfelao" compare --frontier "$@" -o "$out" \
+"$build/bin/surfelao" compare --frontier "$@" -o "$out" --overwrite \
     --json "$out/frontier.json" --csv "$out/frontier.csv"
 "$build/bin/scaling" masks
 "$build/bin/scaling" disks
