@@ -3,6 +3,7 @@
 #include "bake/sample.h"
 #include "engines/threads.h"
 #include "files/scene_io.h"
+#include "gpu/context.h"
 #include "reference/reference_cache.h"
 #include "reference/smoothing.h"
 #include "surfels/errors.h"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace surfelao {
@@ -206,13 +208,17 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
 
     // rounds: one after the other, so that whatever slows the machine slows all alike
     std::vector<std::vector<double>> builds(rows.size()), solves(rows.size());
+    std::optional<GlContext> context;  // one for all, so that shaders are compiled once
     const auto run = [&](std::size_t i) {
         CompareRow& row = rows[i];
         const Progress running = stage(name_of(row.settings.engine) + " " + setting_of(row));
+        EngineChoice choice = row.settings;
+        if (choice.device == Device::gpu && choice.context == nullptr)
+            choice.context = context ? &*context : &context.emplace(GlContext::create());
         std::vector<double> build, solve;
         double spent = 0.0;
         do {
-            const Prepared prepared = prepare(comparison.geometry, row.settings);
+            const Prepared prepared = prepare(comparison.geometry, choice);
             Solution solution =
                 surfelao::solve(prepared, question.receivers, row.settings, running);
             if (row.smoothed) {

@@ -1,5 +1,7 @@
 #include "engines/engine.h"
 
+#include "engines/device_solution.h"
+#include "gpu/answers.h"
 #include "gpu/context.h"
 #include "gpu/gpu_disks.h"
 #include "gpu/gpu_masks.h"
@@ -54,12 +56,26 @@ struct Prepared::Impl {
     EngineChoice choice;
     PrepareSeconds seconds;
     std::uint64_t surfel_count = 0;
+    std::optional<GlContext> own_context;  // before what lives in it
     std::shared_ptr<const MaskTree> masks;
     std::optional<Octree> disks;
     std::optional<RayScene> rays;
-    std::optional<GlContext> own_context;
+    std::optional<GpuMasks> gpu_masks;
+    std::optional<GpuDisks> gpu_disks;
 
+    /// Where it computes; null on the CPU.
     const GlContext* context() const { return own_context ? &*own_context : choice.context; }
+
+    ~Impl()
+    {
+        if (!gpu_masks && !gpu_disks)
+            return;
+        try {
+            context()->make_current();
+        } catch (const std::runtime_error&) {
+            // a driver that refuses has lost the context, and the objects with it
+        }
+    }
 };
 
 Prepared::Prepared(std::unique_ptr<const Impl> impl) : impl_(std::move(impl))
@@ -90,13 +106,22 @@ Prepared prepare(const Geometry& geometry, const EngineChoice& choice)
     impl->choice = choice;
     if (!runs_on(choice.engine, choice.device))
         throw SettingsError(name_of(choice.engine) + " do not run on the GPU");
-    if (choice.device == Device::gpu && choice.context == nullptr)
+    const bool on_gpu = choice.device == Device::gpu;
+    if (!on_gpu)
+        impl->choice.context = nullptr;
+    else if (choice.context == nullptr)
         impl->own_context.emplace(GlContext::create());
+    else
+        choice.context->make_current();
     Stopwatch watch;
     switch (choice.engine) {
         case Engine::masks:
             static_cast<void>(kernel_set_of(choice.instructions));
             impl->masks = build_mask_tree(geometry);
+            if (on_gpu) {
+                impl->gpu_masks.emplace(*impl->context(), *impl->masks);
+                impl->masks.reset();
+            }
             break;
         case Engine::disks: {
             const SurfelCloud cloud = surfels_of(geometry);
@@ -104,6 +129,8 @@ Prepared prepare(const Geometry& geometry, const EngineChoice& choice)
             impl->surfel_count = cloud.surfels.size();
             impl->seconds.surfels = watch.lap();
             impl->disks = build_octree(cloud.surfels, sides);
+            if (on_gpu)
+                impl->gpu_disks.emplace(*impl->context(), *impl->disks);
             break;
         }
         case Engine::rays:
@@ -116,48 +143,76 @@ Prepared prepare(const Geometry& geometry, const EngineChoice& choice)
     return Prepared(std::move(impl));
 }
 
+namespace {
+
+MaskOptions mask_options(const EngineChoice& choice, const SolveSettings& settings)
+{
+    MaskOptions options;
+    options.definition = settings.definition;
+    options.quality = settings.quality;
+    options.kernel = kernel_set_of(choice.instructions);
+    return options;
+}
+
+DiskOptions disk_options(const SolveSettings& settings)
+{
+    DiskOptions options;
+    options.definition = settings.definition;
+    options.opening = opening_at(settings.quality);
+    options.passes = settings.passes;
+    options.strength = settings.strength;
+    return options;
+}
+
+std::optional<double> residual_of(const std::vector<double>& residuals)
+{
+    return residuals.empty() ? std::nullopt : std::optional(residuals.back());
+}
+
+}  // namespace
+
+DeviceSolution solve_on_device(const Prepared& prepared, std::span<const Receiver> receivers,
+                               const SolveSettings& settings, const Progress& progress)
+{
+    const Prepared::Impl& impl = prepared.impl();
+    if (impl.choice.device != Device::gpu)
+        throw SettingsError("answers stay on the device only where it is the GPU");
+    check_settings(impl.choice, settings);
+    impl.context()->make_current();
+    Stopwatch watch;
+    if (impl.gpu_masks) {
+        TextureBuffer answers =
+            impl.gpu_masks->solve(receivers, mask_options(impl.choice, settings), progress);
+        return {std::move(answers), receivers.size(), watch.lap(), std::nullopt};
+    }
+    GpuDiskResult solved = impl.gpu_disks->solve(receivers, disk_options(settings), progress);
+    return {std::move(solved.answers), receivers.size(), watch.lap(),
+            residual_of(solved.residuals)};
+}
+
 Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
                const SolveSettings& settings, const Progress& progress)
 {
     const Prepared::Impl& impl = prepared.impl();
     check_settings(impl.choice, settings);
-    const GlContext* gpu = impl.choice.device == Device::gpu ? impl.context() : nullptr;
-    if (gpu != nullptr)
-        gpu->make_current();
     Stopwatch watch;
     Solution solution;
-    switch (impl.choice.engine) {
-        case Engine::masks: {
-            MaskOptions options;
-            options.definition = settings.definition;
-            options.quality = settings.quality;
-            options.kernel = kernel_set_of(impl.choice.instructions);
-            solution.occlusion =
-                gpu != nullptr ? solve_masks_gpu(*gpu, *impl.masks, receivers, options, progress)
-                               : solve_masks(*impl.masks, receivers, options, progress);
-            break;
-        }
-        case Engine::disks: {
-            DiskOptions options;
-            options.definition = settings.definition;
-            options.opening = opening_at(settings.quality);
-            options.passes = settings.passes;
-            options.strength = settings.strength;
-            DiskResult solved =
-                gpu != nullptr ? solve_disks_gpu(*gpu, *impl.disks, receivers, options, progress)
-                               : solve_disks(*impl.disks, receivers, options, progress);
-            solution.occlusion = std::move(solved.occlusion);
-            if (!solved.residuals.empty())
-                solution.residual = solved.residuals.back();
-            break;
-        }
-        case Engine::rays: {
-            RayOptions options;
-            options.definition = settings.definition;
-            options.rays = settings.rays;
-            solution.occlusion = trace_occlusion(*impl.rays, receivers, options, progress);
-            break;
-        }
+    if (impl.choice.device == Device::gpu) {
+        const DeviceSolution solved = solve_on_device(prepared, receivers, settings, progress);
+        solution.occlusion = read_answers(solved.answers, solved.count);
+        solution.residual = solved.residual;
+    } else if (impl.masks) {
+        solution.occlusion =
+            solve_masks(*impl.masks, receivers, mask_options(impl.choice, settings), progress);
+    } else if (impl.disks) {
+        DiskResult solved = solve_disks(*impl.disks, receivers, disk_options(settings), progress);
+        solution.occlusion = std::move(solved.occlusion);
+        solution.residual = residual_of(solved.residuals);
+    } else {
+        RayOptions options;
+        options.definition = settings.definition;
+        options.rays = settings.rays;
+        solution.occlusion = trace_occlusion(*impl.rays, receivers, options, progress);
     }
     solution.seconds = watch.lap();
     return solution;

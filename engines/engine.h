@@ -77,11 +77,12 @@ struct EngineSettings : EngineChoice, SolveSettings {
 /// Seconds of preparing.
 struct PrepareSeconds {
     double surfels = 0.0;  ///< what the engine makes of the geometry first
-    double tree = 0.0;     ///< its hierarchy
+    double tree = 0.0;     ///< its hierarchy, and the copy on the device
 };
 
 /// What an engine has built. Immutable: on the CPU any number of threads may solve with it at once;
-/// on the GPU one at a time. The geometry is not needed any more.
+/// on the GPU one at a time. The geometry is not needed any more. On the GPU its end makes its
+/// context current in the calling thread, to take its copies off the device.
 class Prepared {
 public:
     struct Impl;

@@ -88,17 +88,21 @@ void check_size(const GlInfo& info, const char* what, int width, int height)
                                  std::to_string(info.max_texture_size) + " a side can");
 }
 
-/// Bytes to allocate for a texture buffer: an empty one gets a texel, drivers differ on no bytes.
-std::size_t checked_buffer_size(const GlInfo& info, TexelFormat format, std::size_t bytes)
+std::size_t texels_of(TexelFormat format, std::span<const std::byte> bytes)
 {
-    const std::size_t texel = texel_bytes(format);
-    SURFELAO_CHECK(bytes % texel == 0);
+    SURFELAO_CHECK(bytes.size() % texel_bytes(format) == 0);
+    return bytes.size() / texel_bytes(format);
+}
+
+/// Bytes to allocate for a texture buffer: an empty one gets a texel, drivers differ on no bytes.
+std::size_t checked_buffer_size(const GlInfo& info, TexelFormat format, std::size_t texels)
+{
     const std::size_t limit = static_cast<std::size_t>(info.max_buffer_texels);
-    if (bytes / texel > limit)
-        throw std::runtime_error("OpenGL: a texture buffer of " + std::to_string(bytes / texel) +
+    if (texels > limit)
+        throw std::runtime_error("OpenGL: a texture buffer of " + std::to_string(texels) +
                                  " texels cannot be made; this device takes " +
                                  std::to_string(limit));
-    return std::max(bytes, texel);
+    return std::max<std::size_t>(texels, 1) * texel_bytes(format);
 }
 
 }  // namespace
@@ -135,15 +139,28 @@ void Buffer::update_bytes(std::size_t offset, std::span<const std::byte> bytes)
     check_gl(gl(), "filling a buffer");
 }
 
+void Buffer::read_bytes(std::span<std::byte> bytes) const
+{
+    SURFELAO_CHECK(bytes.size() <= size_);
+    gl().BindBuffer(GL_ARRAY_BUFFER, id());
+    gl().GetBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+    check_gl(gl(), "reading a buffer");
+}
+
 // --- textures
 // -------------------------------------------------------------------------------------
 
 TextureBuffer::TextureBuffer(const GlContext& context, TexelFormat format,
                              std::span<const std::byte> bytes)
-    : buffer_(context, checked_buffer_size(context.info(), format, bytes.size())),
-      texture_(make_texture(context.gl()))
+    : TextureBuffer(context, format, texels_of(format, bytes))
 {
     buffer_.update(0, bytes);
+}
+
+TextureBuffer::TextureBuffer(const GlContext& context, TexelFormat format, std::size_t texels)
+    : buffer_(context, checked_buffer_size(context.info(), format, texels)),
+      texture_(make_texture(context.gl()))
+{
     const GlTable& gl = context.gl();
     gl.BindTexture(GL_TEXTURE_BUFFER, texture_.id());
     gl.TexBuffer(GL_TEXTURE_BUFFER, static_cast<GLenum>(names_of(format).internal), buffer_.id());
@@ -298,13 +315,32 @@ void Framebuffer::read(const Rect& part, unsigned layout, void* out) const
     check_gl(*gl_, "reading pixels");
 }
 
+void Framebuffer::bind_for_reading(std::size_t index) const
+{
+    gl_->BindFramebuffer(GL_FRAMEBUFFER, id());
+    gl_->ReadBuffer(id() == 0 ? static_cast<GLenum>(GL_BACK)
+                              : GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(index));
+}
+
+void Framebuffer::copy_color(const Rect& part, const Buffer& out, std::size_t offset,
+                             std::size_t index) const
+{
+    SURFELAO_CHECK(offset + static_cast<std::size_t>(part.width) *
+                                static_cast<std::size_t>(part.height) * sizeof(glm::vec4) <=
+                   out.size());
+    bind_for_reading(index);
+    gl_->BindBuffer(GL_PIXEL_PACK_BUFFER, out.id());
+    gl_->ReadPixels(part.x, part.y, part.width, part.height, GL_RGBA, GL_FLOAT,
+                    reinterpret_cast<void*>(offset));
+    gl_->BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    check_gl(*gl_, "copying pixels");
+}
+
 std::vector<glm::vec4> Framebuffer::read_color(const Rect& part, std::size_t index) const
 {
     std::vector<glm::vec4> result(static_cast<std::size_t>(part.width) *
                                   static_cast<std::size_t>(part.height));
-    gl_->BindFramebuffer(GL_FRAMEBUFFER, id());
-    gl_->ReadBuffer(id() == 0 ? static_cast<GLenum>(GL_BACK)
-                              : GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(index));
+    bind_for_reading(index);
     read(part, GL_RGBA, result.data());
     return result;
 }
@@ -313,8 +349,7 @@ std::vector<float> Framebuffer::read_red(const Rect& part, std::size_t index) co
 {
     std::vector<float> result(static_cast<std::size_t>(part.width) *
                               static_cast<std::size_t>(part.height));
-    gl_->BindFramebuffer(GL_FRAMEBUFFER, id());
-    gl_->ReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(index));
+    bind_for_reading(index);
     read(part, GL_RED, result.data());
     return result;
 }

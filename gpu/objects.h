@@ -1,6 +1,13 @@
 /// objects.h: what lives in the device's memory. All RAII and move-only; each belongs to the
-/// context it was made with (context.h). Constructors throw std::runtime_error when the device
-/// refuses (out of memory, beyond a limit) and for sizes of zero, naming the object.
+/// context it was made with (context.h), which must be current where it is used or destroyed, and
+/// must outlive it. Constructors throw std::runtime_error when the device refuses (out of memory,
+/// beyond a limit) and for sizes of zero, naming the object.
+///
+/// Among contexts that share objects (GlContext::create_shared, or a window made to share) Buffer,
+/// TextureBuffer and Texture2D belong to all: they may be bound, read and destroyed where any of
+/// them is current, as long as the one they were made with lives. What one context has written
+/// another sees once GlContext::finish has returned in the first. Framebuffer and VertexArray are
+/// never shared.
 #pragma once
 
 #include "gpu/context.h"
@@ -70,12 +77,20 @@ public:
         update_bytes(offset, std::as_bytes(values));
     }
 
+    /// The first bytes, as many as `values` has; waits for what is written there.
+    template <typename T>
+    void read(std::span<T> values) const
+    {
+        read_bytes(std::as_writable_bytes(values));
+    }
+
     std::size_t size() const { return size_; }
     unsigned id() const { return handle_.id(); }
     const GlTable& gl() const { return handle_.gl(); }
 
 private:
     void update_bytes(std::size_t offset, std::span<const std::byte> bytes);
+    void read_bytes(std::span<std::byte> bytes) const;
     GlHandle handle_;
     std::size_t size_ = 0;
 };
@@ -104,6 +119,8 @@ public:
     {
     }
     TextureBuffer(const GlContext& context, TexelFormat format, std::span<const std::byte> bytes);
+    /// Of that many texels, not filled.
+    TextureBuffer(const GlContext& context, TexelFormat format, std::size_t texels);
 
     template <typename T>
     void update(std::size_t offset, std::span<const T> values)
@@ -111,6 +128,7 @@ public:
         buffer_.update(offset, values);
     }
     TextureBinding binding() const;
+    const Buffer& buffer() const { return buffer_; }
 
 private:
     Buffer buffer_;
@@ -193,6 +211,11 @@ public:
     /// or this must have one sample (then it is stretched, with linear filtering).
     void copy_to(const Framebuffer& target, std::size_t index = 0) const;
 
+    /// Copies the texels of colour `index` in `part`, rgba32f, to `out` from byte `offset` on, row
+    /// by row from the bottom. They do not leave the device, and nobody waits.
+    void copy_color(const Rect& part, const Buffer& out, std::size_t offset,
+                    std::size_t index = 0) const;
+
     /// The texels of colour `index` in `part`, row by row from the bottom, waiting for the drawing.
     /// Not for *ui formats, nor for several samples.
     std::vector<glm::vec4> read_color(const Rect& part, std::size_t index = 0) const;
@@ -206,6 +229,7 @@ public:
 
 private:
     Framebuffer() = default;
+    void bind_for_reading(std::size_t index) const;
     void read(const Rect& part, unsigned layout, void* out) const;
     const GlTable* gl_ = nullptr;
     GlHandle handle_;  // empty for a window: GL's framebuffer 0

@@ -1,4 +1,5 @@
 #version 330 core
+#include "bent_normal.glsl"
 #include "receiver_grid.glsl"
 #include "rows.glsl"
 // disks_result.frag: occlusion and bent normal of each receiver from its sums, in the receivers' order.
@@ -19,15 +20,6 @@ uniform usamplerBuffer u_slots;
 uniform float u_strength;
 
 out vec4 out_result;
-
-// bent_normal_of in surfels/occlusion.cpp
-vec3 bent_normal_of(vec3 open, vec3 normal)
-{
-    float size = length(open);
-    open -= min(0.0, dot(open, normal)) * normal;
-    float left = length(open);
-    return left > 0.01 * size ? open / left : normal;
-}
 
 void main()
 {

@@ -4,12 +4,13 @@
 // masks_result.frag: occlusion and bent normal of each slot from the sums over all faces. Where much
 // is covered cracks count as filled, by degrees; where nearly all is, those of two bits too.
 //
-// Vertices   fullscreen.vert, over rows of slots (rows.glsl)
-// Drawn by   gpu/gpu_masks.cpp
+// Vertices   fullscreen.vert, over the part of the rows of all slots (rows.glsl) that is computed
+// Drawn by   gpu/gpu_masks.cpp, once per distance limit, added by blending
 // Reads      u_share, u_bent, u_bent_filled, u_bent_closed
 //                              outputs of masks_face.frag, summed over the faces
 //            u_close           how much cracks of two bits count as closed
 //            u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
+//            u_first_slot      before those that are computed
 // Writes     out_result      RGBA32F: bent normal, mask frame, any length, zero where all is closed |
 //                            occlusion (surfels/occlusion.h)
 // CPU twin   solve in tree/masks/kernel_body.h
@@ -20,6 +21,7 @@ uniform sampler2D u_bent_closed;
 uniform float u_close;
 uniform int u_slot_count;
 uniform int u_blocks_per_row;
+uniform int u_first_slot;
 
 out vec4 out_result;
 
@@ -32,7 +34,7 @@ const float kCloseRange = 0.04;
 void main()
 {
     out_result = vec4(0.0);
-    int slot = index_of_texel(ivec2(gl_FragCoord.xy));
+    int slot = index_of_texel(ivec2(gl_FragCoord.xy)) - u_first_slot;
     if (slot >= u_slot_count)
         return;
     ivec2 pixel = pixel_of_slot(slot, u_blocks_per_row);

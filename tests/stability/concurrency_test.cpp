@@ -62,7 +62,7 @@ bool same(const std::vector<Occlusion>& a, const std::vector<Occlusion>& b)
 std::vector<Occlusion> solved(const Engine& engine, const Scene& scene)
 {
     const World world = at_vertices(scene);
-    return engine.solve(world.geometry, world.receivers, world.definition);
+    return engine.prepare(world.geometry)(world.receivers, engine.settings);
 }
 
 std::vector<Scene> three_scenes()

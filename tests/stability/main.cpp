@@ -101,12 +101,13 @@ int run(bool quick, const std::vector<std::string>& texts)
             continue;
         const std::string title = item.group + ": " + item.name;
         const Trial trial = prepare(item.make());
+        Built built;
         std::fputs(title_of(item, trial).c_str(), stdout);
         table_of_others += title_of(item, trial);
         for (std::size_t e = 0; e < engines.size(); ++e) {
             const bool skipped = item.slow && engines[e].skips_slow;
             const Finding finding =
-                skipped ? Finding() : judge(trial, engines[e], item.disks_excused);
+                skipped ? Finding() : judge(trial, engines[e], item.disks_excused, built);
             const std::string cell = skipped ? kNotRun : cell_of(finding);
             if (e < kColumns)
                 std::fputs(cell.c_str(), stdout);
