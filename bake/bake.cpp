@@ -5,12 +5,12 @@
 #include "engines/threads.h"
 #include "files/scene_io.h"
 #include "surfels/errors.h"
+#include "surfels/extension.h"
 #include "surfels/stopwatch.h"
 
 #include <glm/vec3.hpp>
 
 #include <algorithm>
-#include <cctype>
 
 namespace surfelao {
 namespace {
@@ -22,14 +22,6 @@ void enter(const StageProgress& progress, std::string_view stage)
 {
     if (progress && !progress(stage, 0.0))
         throw Cancelled();
-}
-
-std::string lower_extension(const fs::path& path)
-{
-    std::string extension = path.extension().string();
-    for (char& c : extension)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
 }
 
 double mean_occlusion_of(std::span<const Receiver> receivers, std::span<const Occlusion> occlusion)

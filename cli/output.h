@@ -1,15 +1,57 @@
-/// output.h: reports to files or to standard output.
+/// output.h: which files a run reads and writes, so that nothing that its user owns is lost.
+///
+/// The rule of all commands: a file that is read is never written, under whatever name; a file that
+/// the run did not make is replaced only where its user named it (`-o FILE`, `--json FILE`) or said
+/// so (`--overwrite`); every file that was written is named at the end.
 #pragma once
 
+#include <filesystem>
+#include <iosfwd>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace surfelao {
+
+/// The files of one run, told before any work.
+class FilePlan {
+public:
+    /// A file that is read. Of a mesh what it refers to as well (files/sidecars.h).
+    void reads(const std::filesystem::path& file);
+
+    /// A file that is going to be written; `what` names the result in messages ("--json"). Throws
+    /// UsageError when that would replace a file that is read, also through links and other
+    /// spellings of its path, or another result of this run.
+    void writes(const std::filesystem::path& file, const std::string& what);
+
+    /// The same for a report. Nothing for none and for "-".
+    void writes_report(const std::optional<std::string>& file, const std::string& what);
+
+private:
+    using Identity = std::pair<unsigned long long, unsigned long long>;  ///< device and inode
+    static std::optional<Identity> identity_of(const std::filesystem::path& file);
+    void refuse_sidecar(const std::filesystem::path& file, Identity identity) const;
+
+    std::map<Identity, std::filesystem::path> read_;
+    std::map<std::filesystem::path, std::string> written_;  ///< what, by canonical path
+};
+
+/// For names that the user did not give: throws InputError when a file stands there that no earlier
+/// run of `command` made (files/maker_mark.h).
+void refuse_foreign(const std::filesystem::path& file, std::string_view command);
 
 /// Refuses a report file that could not be written, before any work. Nothing for none and for "-".
 void check_report(const std::optional<std::string>& file);
 
 /// Writes the file atomically; "-" = standard output.
 void write_report(const std::string& file, const std::string& text);
+
+/// "wrote FILE", one line each: on standard output, or on standard error where the former belongs
+/// to a report.
+void print_written(std::span<const std::filesystem::path> files, bool report_on_stdout);
 
 }  // namespace surfelao

@@ -5,12 +5,12 @@
 #include "files/gltf_asset.h"
 #include "files/gltf_uri.h"
 #include "surfels/errors.h"
+#include "surfels/extension.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -402,14 +402,6 @@ void embed(json& document, const GltfAsset& asset, bool same_folder)
                                 });
 }
 
-bool is_binary(const fs::path& path)
-{
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension == ".glb";
-}
-
 bool in_one_folder(const fs::path& a, const fs::path& b)
 {
     std::error_code error;
@@ -428,7 +420,7 @@ std::string gltf_contents(const fs::path& path, const Scene& scene,
     SURFELAO_CHECK(occlusion.size() == scene.positions.size());
 
     json document = asset->document;
-    const bool binary = is_binary(path);
+    const bool binary = lower_extension(path) == ".glb";
     std::string bytes;
     if (binary)
         bytes = gather(document, *asset);

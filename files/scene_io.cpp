@@ -8,8 +8,8 @@
 #include "files/stl_io.h"
 #include "surfels/atomic_file.h"
 #include "surfels/errors.h"
+#include "surfels/extension.h"
 
-#include <algorithm>
 #include <string>
 
 namespace surfelao {
@@ -21,10 +21,7 @@ enum class FileType { obj, ply, off, stl, gltf, glb, unknown };
 
 FileType type_of(const fs::path& path)
 {
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    });
+    const std::string extension = lower_extension(path);
     constexpr std::pair<const char*, FileType> kTypes[] = {
         {".obj", FileType::obj}, {".ply", FileType::ply},   {".off", FileType::off},
         {".stl", FileType::stl}, {".gltf", FileType::gltf}, {".glb", FileType::glb}};
@@ -74,6 +71,11 @@ Scene read_scene(const fs::path& path)
     Scene scene = read_any(path);
     scene.name = path.filename().string();
     return scene;
+}
+
+bool is_mesh_name(const fs::path& path)
+{
+    return type_of(path) != FileType::unknown;
 }
 
 void check_output(const fs::path& input, const fs::path& output)

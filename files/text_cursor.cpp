@@ -57,7 +57,7 @@ TextCursor::TextCursor(std::string_view file_name, std::string_view text, TextRu
         throw InputError(std::string(file_name) +
                          ": is UTF-16 or UTF-32 text, but must be plain or UTF-8 text");
     }
-    if (start.starts_with("\xEF\xBB\xBF"))
+    if (start.starts_with(kByteOrderMark))
         at_ += 3;
 }
 

@@ -14,6 +14,9 @@ namespace surfelao {
 /// replaced by '?'.
 [[nodiscard]] std::string quoted(std::string_view word);
 
+/// What a UTF-8 text may begin with.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 /// What a text format knows beside words and lines.
 struct TextRules {
     char comment = '\0';        ///< from here to the end of the line is nothing; '\0': no comments

@@ -3,6 +3,7 @@
 #include "image/image_module.h"
 #include "surfels/atomic_file.h"
 #include "surfels/errors.h"
+#include "surfels/extension.h"
 
 #include <dlfcn.h>
 
@@ -36,14 +37,6 @@ const ImageModule& module()
 {
     static const ImageModule& opened = open_module();
     return opened;
-}
-
-std::string lower_extension(const std::filesystem::path& path)
-{
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
 }
 
 /// One line without a full stop, whatever a library wrote.
