@@ -56,6 +56,7 @@ struct EngineChoice {
     /// gpu: where it computes; must outlive what is prepared, and prepare() and solve() make it
     /// current in the calling thread. Null: a context of its own.
     const GlContext* context = nullptr;
+    bool operator==(const EngineChoice&) const = default;
 };
 
 /// What is asked, and how exactly.
@@ -65,10 +66,13 @@ struct SolveSettings {
     int passes = 2;            ///< disks: >= 1 (tree/disks/disks.h)
     float strength = 1.0f;     ///< disks: >= 0
     std::uint32_t rays = 256;  ///< rays: 1 to kMostRays
+    bool operator==(const SolveSettings&) const = default;
 };
 
 /// An engine with its settings: one row of a table, or what a command line asks for.
-struct EngineSettings : EngineChoice, SolveSettings {};
+struct EngineSettings : EngineChoice, SolveSettings {
+    bool operator==(const EngineSettings&) const = default;
+};
 
 /// Seconds of preparing.
 struct PrepareSeconds {
@@ -132,6 +136,7 @@ struct DistanceLimit {
     double value = std::numeric_limits<double>::infinity();  ///< > 0, the file's units or percent
     bool percent = false;                                    ///< of the bounding-box diagonal
     Falloff falloff = Falloff::none;                         ///< `none` where there is no limit
+    bool operator==(const DistanceLimit&) const = default;
 };
 
 /// The definition in the unit frame. Throws InputError where the limit vanishes beside the scene.

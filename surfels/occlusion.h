@@ -48,6 +48,7 @@ struct Definition {
     Falloff falloff = Falloff::none;  ///< must be `none` where max_distance is infinite
     float offset = 1e-4f;             ///< > 0, in diagonals
     Kernel kernel = Kernel::cosine;
+    bool operator==(const Definition&) const = default;
 };
 
 /// The weight in [0, 1] of a hit at distance t >= 0; 0 at and beyond max_distance.

@@ -389,9 +389,7 @@ void Renderer::draw_frame(const Framebuffer& target, const Camera& camera,
     impl_->draw_background(frame);
     // first: an eye above the ground sees everything of the model before it, one below sees no
     // ground
-    const bool is_lit = options.colors == Colors::visibility || options.colors == Colors::rays ||
-                        options.colors == Colors::environment;
-    if (options.ground && is_lit)
+    if (shows_ground(options))
         impl_->draw_ground(frame);
     if (impl_->upload->splat_count > 0) {
         switch (options.surface) {

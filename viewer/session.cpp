@@ -2,10 +2,13 @@
 
 #include "files/scene_io.h"
 #include "reference/reference_cache.h"
+#include "surfels/errors.h"
+#include "surfels/stopwatch.h"
+#include "viewer/solve_model.h"
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
+#include <span>
 #include <utility>
 
 namespace surfelao {
@@ -13,22 +16,55 @@ namespace {
 
 constexpr int kDraftShare = 16;  // of the rays
 
-double seconds_since(std::chrono::steady_clock::time_point start)
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 /// The rough answer's settings; the same ones where the engine has none rougher.
-SessionSettings draft_of(SessionSettings settings, const EngineTraits& traits)
+EngineSettings draft_of(EngineSettings settings)
 {
-    if (traits.most_quality > 0.0f)
-        settings.quality = std::min(settings.quality, 0.0f);
-    if (traits.has_rays)
-        settings.rays = std::max(1, settings.rays / kDraftShare);
+    if (settings.engine == Engine::rays)
+        settings.rays = std::max(1u, settings.rays / kDraftShare);
+    else
+        settings.quality = std::min(settings.quality, kDraft);
     return settings;
 }
 
 }  // namespace
+
+/// The engine at hand and what it was prepared for.
+struct Session::Engines {
+    const GlContext* lent = nullptr;
+    std::optional<GlContext> own;
+    std::shared_ptr<const Model> model;
+    std::optional<Prepared> prepared;
+    std::optional<double> untold_s;  ///< seconds of preparing, until a whole answer has come of it
+
+    /// Where the GPU's engines compute.
+    const GlContext* context()
+    {
+        if (lent != nullptr)
+            return lent;
+        if (!own)
+            own.emplace(GlContext::create());
+        return &*own;
+    }
+
+    void prepare_for(const std::shared_ptr<const Model>& wanted, const EngineChoice& choice)
+    {
+        if (model == wanted && prepared && prepared->choice() == choice)
+            return;
+        prepared.reset();  // before the next one is built: both may be large
+        model = wanted;
+        prepared.emplace(prepare(wanted->geometry, choice));
+        untold_s = prepared->seconds().surfels + prepared->seconds().tree;
+    }
+
+    /// In the thread that has used them.
+    void end()
+    {
+        prepared.reset();
+        own.reset();
+        if (lent != nullptr)
+            lent->release();
+    }
+};
 
 struct Session::Read {
     std::uint64_t number = 0;
@@ -41,7 +77,8 @@ struct Session::Read {
 
 struct Session::Answer {
     std::uint64_t number = 0;
-    Solved solved;
+    Solution solution;
+    std::optional<double> build_s;
     bool is_draft = false;
 };
 
@@ -51,18 +88,10 @@ struct Session::Traced {
     double seconds = 0.0;
 };
 
-Definition definition_of(const SessionSettings& settings)
+Session::Session(const GlContext* device)
+    : engines_(std::make_unique<Engines>()), solver_([this] { engines_->end(); })
 {
-    Definition definition;
-    if (settings.max_distance_percent > 0.0f) {
-        definition.max_distance = settings.max_distance_percent / 100.0f;
-        definition.falloff = settings.smooth_falloff ? Falloff::smooth : Falloff::none;
-    }
-    return definition;
-}
-
-Session::Session(Services services) : services_(std::move(services))
-{
+    engines_->lent = device;
 }
 Session::~Session() = default;
 
@@ -72,7 +101,7 @@ void Session::open(const std::filesystem::path& path, UpAxis up)
     opening_ = true;
     const std::uint64_t number = ++solve_number_;
     solver_.start([this, number, path, up](const Progress&) {
-        const auto start = std::chrono::steady_clock::now();
+        Stopwatch watch;
         auto read = std::make_unique<Read>();
         read->number = number;
         read->path = path;
@@ -83,7 +112,7 @@ void Session::open(const std::filesystem::path& path, UpAxis up)
         } catch (const std::exception& error) {
             read->failure = error.what();
         }
-        read->seconds = seconds_since(start);
+        read->seconds = watch.lap();
         const std::lock_guard lock(mailbox_);
         read_ = std::move(read);
     });
@@ -93,8 +122,7 @@ void Session::solve(const SessionSettings& settings)
 {
     if (settings == settings_)
         return;
-    const bool other_question = settings.max_distance_percent != settings_.max_distance_percent ||
-                                settings.smooth_falloff != settings_.smooth_falloff;
+    const bool other_question = settings.max_distance != settings_.max_distance;
     settings_ = settings;
     if (!state_.model || opening_)
         return;  // the next model is solved with them
@@ -107,20 +135,28 @@ void Session::start_solve()
 {
     was_cancelled_ = false;
     const std::uint64_t number = ++solve_number_;
-    const EngineTraits& traits = services_.engines[settings_.engine];
-    std::vector<SessionSettings> steps = {draft_of(settings_, traits), settings_};
+    EngineSettings whole = settings_.engine;
+    whole.definition =
+        definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry.frame);
+    std::vector<EngineSettings> steps = {draft_of(whole), whole};
     if (steps[0] == steps[1])
         steps.pop_back();
     solver_.start([this, number, steps, model = state_.model](const Progress& progress) {
         try {
+            EngineChoice choice = steps[0];
+            choice.context = choice.device == Device::gpu ? engines_->context() : nullptr;
+            engines_->prepare_for(model, choice);
             for (std::size_t i = 0; i < steps.size(); ++i) {
                 auto answer = std::make_unique<Answer>();
                 answer->number = number;
                 answer->is_draft = i + 1 < steps.size();
-                answer->solved = services_.solve(*model, steps[i], progress);
+                answer->build_s = engines_->untold_s;
+                answer->solution =
+                    solve_model(*engines_->prepared, *model, steps[i], true, progress);
                 const std::lock_guard lock(mailbox_);
                 answer_ = std::move(answer);
             }
+            engines_->untold_s.reset();
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& error) {
@@ -148,15 +184,17 @@ void Session::start_reference()
         tracer_.cancel();
         return;
     }
-    const ReferenceOptions options{definition_of(settings_), reference_rays_};
+    const ReferenceOptions options{
+        definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry.frame),
+        reference_rays_};
     tracer_.start([this, number, options, model = state_.model](const Progress& progress) {
         try {
-            const auto start = std::chrono::steady_clock::now();
+            Stopwatch watch;
             auto traced = std::make_unique<Traced>();
             traced->number = number;
             traced->reference =
                 trace_reference(model->geometry, model->receivers, options, progress);
-            traced->seconds = seconds_since(start);
+            traced->seconds = watch.lap();
             const std::lock_guard lock(mailbox_);
             traced_ = std::move(traced);
         } catch (const Cancelled&) {
@@ -195,7 +233,7 @@ void Session::measure()
             reference.push_back(state_.reference[v]);
         }
     }
-    state_.error = services_.measure(answer, reference);
+    state_.error = error_statistics(answer, reference);
 }
 
 Session::Changes Session::update()
@@ -203,13 +241,13 @@ Session::Changes Session::update()
     std::unique_ptr<Read> read;
     std::unique_ptr<Answer> answer;
     std::unique_ptr<Traced> traced;
+    std::string failure;
     {
         const std::lock_guard lock(mailbox_);
         read = std::move(read_);
         answer = std::move(answer_);
         traced = std::move(traced_);
-        if (!failure_.empty())
-            state_.message = std::exchange(failure_, {});
+        failure = std::exchange(failure_, {});
     }
     Changes changes;
     if (read && read->number == solve_number_ && opening_) {
@@ -227,11 +265,12 @@ Session::Changes Session::update()
         start_solve();
     }
     if (answer && answer->number == solve_number_) {
-        state_.occlusion = std::move(answer->solved.occlusion);
+        state_.occlusion = std::move(answer->solution.occlusion);
+        ++state_.answer_count;
         state_.is_draft = answer->is_draft;
         was_cancelled_ = was_cancelled_ && answer->is_draft;
-        state_.build_s = answer->solved.build_s;
-        state_.solve_s = answer->solved.solve_s;
+        state_.build_s = answer->build_s;
+        state_.solve_s = answer->solution.seconds;
         state_.message.clear();
         changes.occlusion = true;
     }
@@ -241,13 +280,25 @@ Session::Changes Session::update()
         for (std::size_t v = 0; v < has_answer_.size(); ++v)
             has_answer_[v] =
                 geometry.normals[v] != glm::vec3(0.0f) && traced->reference.well_defined(v);
+        state_.reference_s.reset();
+        if (!traced->reference.from_cache)
+            state_.reference_s = traced->seconds;
         state_.reference = std::move(traced->reference.occlusion);
-        state_.reference_s = traced->seconds;
         changes.reference = true;
     }
     if (changes.occlusion || changes.reference)
         measure();
+    if (!failure.empty())  // it came after the answers that were taken with it
+        state_.message = std::move(failure);
     return changes;
+}
+
+void Session::save(const std::filesystem::path& path) const
+{
+    SURFELAO_CHECK(!state_.occlusion.empty());
+    check_output(state_.path, path);
+    write_scene(path, *state_.scene,
+                std::span(state_.occlusion).first(state_.scene->positions.size()));
 }
 
 }  // namespace surfelao
