@@ -80,6 +80,8 @@ def significant(value, digits=2):
 def table(head, rows):
     """Markdown; a column that is None in every row is left out."""
     rows = [list(row) for row in rows]
+    if not rows:
+        raise ValueError("no rows")
     shown = [i for i in range(len(head)) if any(row[i] is not None for row in rows)]
     lines = [head, ["---"] * len(head), *rows]
     text = ""
@@ -399,7 +401,8 @@ def frame_rates(figures):
                "covering radius", "report, radius")
     return table(["vertices", *columns],
                  [[thousands(row["vertices"]), *(
-                     "" if row[key] is None else row[key] for key in columns)]
+                     "" if row[key] is None else row[key] if key.startswith("report")
+                     else significant(row[key]) for key in columns)]
                   for row in figures["drawing"]["rows"]])
 
 
