@@ -1,0 +1,348 @@
+"""figure_views.py: from docs/figures/*.json to Markdown; each @view is a name for fill_figures.py.
+
+A view takes the figures and the words behind its name in the marker, and returns text. A table's
+column whose key no row has is left out, and keys that no view asks for do no harm: a new column of
+the program needs one line here to be shown.
+"""
+
+import json
+import math
+import re
+
+VIEWS = {}
+
+TARGETS = {"010": "at_010", "005": "at_005"}  # RMSE at which the frontier compares
+QUALITIES = ("quality -1", "draft", "quality 0.5", "good", "quality 1.5", "best", "quality 3")
+ASKED = ("command", "commit", "version", "processor", "threads")
+
+
+def view(function):
+    VIEWS[function.__name__] = function
+    return function
+
+
+class Figures:
+    """The parts of docs/figures, read when asked for: figures["gpu"] is gpu.json."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.parts = {}
+
+    def __getitem__(self, name):
+        if name not in self.parts:
+            part = json.loads((self.folder / f"{name}.json").read_text())
+            for key in ASKED:
+                if key not in part:
+                    raise ValueError(f"{name}.json does not say its {key}")
+            self.parts[name] = part
+        return self.parts[name]
+
+    def __contains__(self, name):
+        return (self.folder / f"{name}.json").exists()
+
+    def unused(self):
+        return sorted(path.name for path in self.folder.glob("*.json") if path.stem not in self.parts)
+
+
+# ---- words and numbers
+
+
+def fixed(value, digits):
+    return f"{value:.{digits}f}"
+
+
+def short(value, digits, sign=""):
+    """.0031 and +.0004: without the zero in front."""
+    text = f"{value:{sign}.{digits}f}"
+    return text.replace("0.", ".", 1) if abs(value) < 1 else text
+
+
+def thousands(number):
+    return f"{number:,}"
+
+
+def joined(words):
+    words = list(words)
+    return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:]))) if words else "none"
+
+
+def significant(value, digits=2):
+    """2e-7, 0.0031, 54: as short as it can be said."""
+    if value == 0:
+        return "0"
+    if abs(value) < 0.0005:
+        mantissa, exponent = f"{value:.0e}".split("e")
+        return f"{mantissa}e{int(exponent)}"
+    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    return f"{value:,.{decimals}f}"
+
+
+def table(head, rows):
+    """Markdown; a column that is None in every row is left out."""
+    rows = [list(row) for row in rows]
+    shown = [i for i in range(len(head)) if any(row[i] is not None for row in rows)]
+    lines = [head, ["---"] * len(head), *rows]
+    text = ""
+    for number, line in enumerate(lines):
+        cells = ["" if line[i] is None else str(line[i]) for i in shown]
+        text += "|---" * len(shown) + "|\n" if number == 1 else "| " + " | ".join(cells) + " |\n"
+    return text.replace("|  |", "| |")
+
+
+def quantile(values, at):
+    """Linear between the two nearest, as bake/statistics.h."""
+    values = sorted(values)
+    place = at * (len(values) - 1)
+    low = math.floor(place)
+    high = min(low + 1, len(values) - 1)
+    return values[low] + (place - low) * (values[high] - values[low])
+
+
+# ---- speed against error: frontier.json, and frontier_avx2.json by the AVX2 kernels
+
+
+def scenes_of(figures, group="all", part="frontier"):
+    """all; models: without the generated ones of data/; data."""
+    scenes = figures[part]["scenes"]
+    if group == "models":
+        return [scene for scene in scenes if scene["group"] != "data"]
+    return [scene for scene in scenes if group in ("all", scene["group"])]
+
+
+def scene_of(figures, name, part="frontier"):
+    for scene in figures[part]["scenes"]:
+        if scene["name"] == name:
+            return scene
+    raise KeyError(name)
+
+
+def row_of(scene, engine, setting):
+    """None where the scene was not run so."""
+    for row in scene["rows"]:
+        if row["engine"] == engine and row["setting"] == setting:
+            return row
+    return None
+
+
+def ratio_of(scene, engine, target, cost="solve"):
+    """Embree's time over ours at an RMSE of .010 or .005; (ratio, extrapolated) or None.
+    cost: solve, builds (with_builds) or files (with_files)."""
+    ratios = scene["ratios"].get(engine, {})
+    if cost != "solve":
+        ratios = ratios.get(f"with_{cost}", {})
+    found = ratios.get(TARGETS[target])
+    return (found["ratio"], found["extrapolated"]) if found else None
+
+
+def ratio_text(found, bold_below_one=True):
+    if not found:
+        return None
+    text = fixed(found[0], 1)
+    if bold_below_one and float(text) < 1:
+        text = f"**{text}**"
+    return text + ("*" if found[1] else "")
+
+
+def counted_ratios(figures, target, cost, group, part="frontier", engine="masks"):
+    found = [ratio_of(scene, engine, target, cost) for scene in scenes_of(figures, group, part)]
+    return [ratio for ratio, extrapolated in filter(None, found) if not extrapolated]
+
+
+@view
+def scenes(figures, group="all"):
+    """scenes [GROUP]: how many scenes the frontier has. GROUP: all, models, data"""
+    return str(len(scenes_of(figures, group)))
+
+
+@view
+def scene(figures, name, key):
+    """scene NAME vertices|triangles: of a scene of the frontier"""
+    return thousands(scene_of(figures, name)[key])
+
+
+@view
+def row(figures, scene, engine, setting, key, digits="4"):
+    """row SCENE ENGINE SETTING KEY [DIGITS]: one figure of a scene at a setting ("_" for spaces)"""
+    found = row_of(scene_of(figures, scene), engine, setting.replace("_", " "))
+    if found is None:
+        raise KeyError(f"{scene} {engine} {setting}")
+    return fixed(found[key], int(digits))
+
+
+@view
+def ratio(figures, scene, target, cost="solve", part="frontier"):
+    """ratio SCENE 010|005 [solve|builds|files] [PART]: Embree's time over that of masks"""
+    return ratio_text(ratio_of(scene_of(figures, scene, part), "masks", target, cost), False)
+
+
+@view
+def ratio_quantile(figures, at, target, cost="solve", group="all", part="frontier"):
+    """ratio_quantile 0.5 010|005 [COST] [GROUP] [PART]: of Embree's time over that of masks"""
+    return fixed(quantile(counted_ratios(figures, target, cost, group, part), float(at)), 1)
+
+
+@view
+def ratios_below_one(figures, target, cost="solve", group="all", part="frontier"):
+    """ratios_below_one 010|005 [COST] [GROUP] [PART]: "pandora (0.9) and engine (0.9)", or none"""
+    losers = []
+    for scene in scenes_of(figures, group, part):
+        found = ratio_of(scene, "masks", target, cost)
+        if found and float(fixed(found[0], 1)) < 1:
+            losers.append(f"{scene['name']} ({fixed(found[0], 1)})")
+    return joined(losers)
+
+
+@view
+def embree_wins(figures, group="all", engine="masks"):
+    """embree_wins [GROUP] [ENGINE]: where rays are faster at our error, setting by setting"""
+    lists = []
+    for setting in QUALITIES:
+        losers = []
+        for scene in scenes_of(figures, group):
+            found = row_of(scene, engine, setting)
+            if found and found.get("embree_ratio") and float(fixed(found["embree_ratio"], 1)) < 1:
+                losers.append(f"{scene['name']} ({fixed(found['embree_ratio'], 1)})")
+        if losers:
+            lists.append(f"at {setting} on {joined(losers)}")
+    return "; ".join(lists) if lists else "nowhere"
+
+
+@view
+def range_of(figures, engine, setting, key, digits="4", group="all"):
+    """range_of ENGINE SETTING KEY [DIGITS] [GROUP]: "0.0015 to 0.0075", over the scenes"""
+    values = [found[key] for found in (row_of(scene, engine, setting.replace("_", " "))
+                                       for scene in scenes_of(figures, group)) if found]
+    return f"{fixed(min(values), int(digits))} to {fixed(max(values), int(digits))}"
+
+
+@view
+def largest(figures, engine, setting, key, digits="4", group="all"):
+    """largest ENGINE SETTING KEY [DIGITS] [GROUP]: the largest by size, and of which scene"""
+    value, name = max((abs(found[key]), scene["name"]) for scene, found in (
+        (scene, row_of(scene, engine, setting.replace("_", " ")))
+        for scene in scenes_of(figures, group)) if found)
+    return f"{fixed(value, int(digits))} ({name})"
+
+
+def row_cell(row):
+    """Microseconds a vertex, RMSE and, of our engines, bias, 95th percentile, maximum; ratio."""
+    if row is None:
+        return None
+    text = f"{fixed(row['us_per_vertex'], 2)} us, {fixed(row['rmse'], 4)}"
+    if row["engine"] != "rays":
+        text += f", {row['bias']:+.4f}, {fixed(row['p95'], 3)}, {fixed(row['max'], 2)}"
+    if row.get("embree_ratio") is not None:
+        text += f"; x{fixed(row['embree_ratio'], 1)}" + ("*" if row["extrapolated"] else "")
+    return text
+
+
+@view
+def every_model(figures):
+    """Every scene, masks, disks and rays: time, RMSE, bias, percentile, maximum, ratio"""
+    columns = (("masks", "draft"), ("masks", "good"), ("disks", "good"),
+               ("rays", "64 rays"), ("rays", "256 rays"))
+    return table(["scene", *(" ".join((engine, setting.split()[0])) for engine, setting in columns)],
+                 [[scene["name"], *(row_cell(row_of(scene, *column)) for column in columns)]
+                  for scene in scenes_of(figures, "models")])
+
+
+@view
+def how_fast(figures):
+    """README: error at good and Embree's time at that error over ours, masks and disks"""
+    rows = []
+    for scene in scenes_of(figures, "models"):
+        masks, disks = row_of(scene, "masks", "good"), row_of(scene, "disks", "good")
+        rows.append([
+            scene["name"], thousands(scene["triangles"]),
+            f"{fixed(masks['rmse'], 4)}, {fixed(masks['max'], 2)}", fixed(masks["embree_ratio"], 1),
+            fixed(disks["rmse"], 4) if disks else None,
+            fixed(disks["embree_ratio"], 1) if disks else None])
+    return table(["model", "triangles", "masks, good: RMSE, maximum",
+                  "Embree's time at that RMSE over ours", "disks, good: RMSE", "Embree over ours"],
+                 rows)
+
+
+@view
+def bent_normals(figures):
+    """Angle of bent normals to the reference's, mean and 95th percentile"""
+    columns = (("masks", "draft"), ("masks", "good"), ("masks", "best"), ("rays", "4 rays"))
+
+    def cell(row):
+        return row and f"{fixed(row['bent_mean_deg'], 2)}, {fixed(row['bent_p95_deg'], 1)}"
+    return table(["scene", "draft", "good", "best", "4 rays"],
+                 [[scene["name"], *(cell(row_of(scene, *column)) for column in columns)]
+                  for scene in scenes_of(figures, "models")])
+
+
+@view
+def build_times(figures):
+    """Time of building the masks' tree over that of Embree's"""
+    return table(["scene", "triangles", "our build over Embree's"],
+                 [[scene["name"], thousands(scene["triangles"]), fixed(scene["build_over_embree"], 2)]
+                  for scene in scenes_of(figures, "models") if scene.get("build_over_embree")])
+
+
+@view
+def frontier_table(figures):
+    """Every scene: ratio at RMSE .010 and .005, with builds, by AVX2; errors at good and best"""
+    avx2 = figures["frontier_avx2"] if "frontier_avx2" in figures else {"scenes": []}
+    by_avx2 = {scene["name"]: scene for scene in avx2["scenes"]}
+
+    def errors(row):
+        return row and (f"{short(row['rmse'], 4)} {short(row['bias'], 4, '+')} "
+                        f"{short(row['max'], 2)}")
+    rows = []
+    for scene in scenes_of(figures):
+        other = by_avx2.get(scene["name"])
+        rows.append([
+            scene["name"],
+            *(ratio_text(ratio_of(scene, "masks", target, cost))
+              for cost in ("solve", "builds") for target in TARGETS),
+            *(other and ratio_text(ratio_of(other, "masks", target)) for target in TARGETS),
+            errors(row_of(scene, "masks", "good")), errors(row_of(scene, "masks", "best"))])
+    return table(["scene", "at RMSE .010", "at .005", ".010 with builds", ".005 with builds",
+                  "AVX2, .010", "AVX2, .005", "good: RMSE, bias, max", "best: RMSE, bias, max"], rows)
+
+
+@view
+def how_measured(figures, part):
+    """how_measured PART: processor, threads, version and commit of a part"""
+    found = figures[part]
+    threads = f"{found['threads']} thread{'s' if found['threads'] != 1 else ''}"
+    return f"{found['processor']}, {threads}, version {found['version']} ({found['commit']})"
+
+
+@view
+def command(figures, part):
+    """command PART: the command that made it"""
+    return f"`{figures[part]['command']}`"
+
+
+# ---- other parts
+
+
+@view
+def demo(figures):
+    """What ./run demo prints"""
+    return "\n".join(["```text", *figures["demo"]["lines"], "```"])
+
+
+# ---- single figures
+
+
+@view
+def recorded(figures, name):
+    """recorded NAME: a figure of recorded.json, measured once by hand, with how and when there"""
+    return figures["recorded"]["figures"][name]["text"]
+
+
+@view
+def constant(figures, name):
+    """constant kName: the value of a constexpr in the sources"""
+    root = figures.folder.parent.parent
+    for folder in ("surfels", "files", "image", "tree", "reference", "gpu", "engines", "bake"):
+        for path in sorted((root / folder).rglob("*.h")) + sorted((root / folder).rglob("*.cpp")):
+            found = re.search(rf"\b{name}\s*=\s*([-+\d.e']+)f?\b", path.read_text())
+            if found:
+                return found.group(1).rstrip(".")
+    raise KeyError(name)
