@@ -56,16 +56,6 @@ layout(location = 2) out uvec4 out_loose0;
 layout(location = 3) out uvec4 out_loose1;
 layout(location = 4) out uint out_at;
 
-const uint  kSheet           = 0x80000000u;  // these five as in tree/masks/kernel.h
-const uint  kSolid           = 0x40000000u;
-const uint  kHollow          = 0x20000000u;
-const uint  kTriangle        = 0x10000000u;
-const uint  kNext            = 0x0FFFFFFFu;
-const float kHollowGrowth    = 1.1;
-const float kImportanceFloor = 0.1;
-const float kFaceReach       = 1.4143;  // a ball's radius to the planes that bound it, sqrt(2)
-const float kTinyLength2     = 1e-30;
-
 // Negative where the point lies beyond one of the four planes that bound the half face.
 vec4 within_half(vec3 p)
 {
@@ -77,7 +67,7 @@ vec4 within_half(vec3 p)
 vec3 normal_of(vec3 axis_a, vec3 axis_b)
 {
     vec3 n = cross(axis_a, axis_b);
-    return n * inversesqrt(max(dot(n, n), kTinyLength2));
+    return n * inversesqrt(max(dot(n, n), kMaskTiny));
 }
 
 void main()
@@ -98,7 +88,7 @@ void main()
     vec4  cone     = texelFetch(u_groups, slot / 16 * 3 + 1);
     vec2  rest     = texelFetch(u_groups, slot / 16 * 3 + 2).xy;
     float cone_sin = rest.x;
-    float sag      = min(rest.y, 1e9);
+    float sag      = min(rest.y, kMaskLargestSag);
 
     uvec4 words0 = uvec4(0u);
     uvec4 words1 = uvec4(0u);
@@ -129,7 +119,7 @@ void main()
             float open_radius = axis_a.w;
             // how high above any of the group's horizons it may reach, and so how much it may weigh
             vec3  to_node   = ball.xyz - group.xyz;
-            float distance2 = max(dot(to_node, to_node), 1e-30);
+            float distance2 = max(dot(to_node, to_node), kMaskTiny);
             float inverse   = inversesqrt(distance2);
             float distance  = distance2 * inverse;
             float height    = dot(to_node, cone.xyz);
@@ -141,16 +131,16 @@ void main()
             float top       = base + min(ball.w, ball.w * tilt + thickness) + sag;
             float nearest   = distance - ball.w;
             vec4  within    = within_half(u_face * (ball.xyz - position));
-            bool  before    = all(greaterThan(within, vec4(-kFaceReach * ball.w)));
+            bool  before    = all(greaterThan(within, vec4(-kMaskFaceReach * ball.w)));
             bool  alive     = before && top > max(u_graze * (nearest - group.w), 0.0) &&
                          nearest - group.w < u_max_distance;
-            float relax     = inversesqrt(clamp(top * inverse, kImportanceFloor, 1.0));
+            float relax     = inversesqrt(clamp(top * inverse, kMaskImportanceFloor, 1.0));
             float cluster   = min(u_cluster * relax, u_cluster_limit);
             shared = group.w < u_share * relax * nearest;
             float from_all = shared ? distance : distance - group.w;
             found = alive && (open_radius <= u_exact_radius || open_radius < cluster * from_all);
             if (!alive)
-                at = int(axis_b.w & kNext);
+                at = int(axis_b.w & kMaskFirstChild);
             else if (!found)
                 ++at;
         } while (!found && at < u_node_count && steps < u_step_limit);
@@ -159,9 +149,9 @@ void main()
 
         uvec4 third    = texelFetch(u_nodes, at * 4 + 2);
         uvec4 last     = texelFetch(u_nodes, at * 4 + 3);
-        bool  triangle = (last.w & kTriangle) != 0u;
+        bool  triangle = (last.w & kMaskTriangle) != 0u;
         bool  exact    = uintBitsToFloat(third.w) <= u_exact_radius;
-        bool  loose    = !exact && (last.w & kSheet) != 0u;
+        bool  loose    = !exact && (last.w & kMaskSheet) != 0u;
         vec4  ball     = uintBitsToFloat(texelFetch(u_nodes, at * 4));
         vec3  center   = u_face * (ball.xyz - position);
         float radius   = ball.w;
@@ -171,8 +161,8 @@ void main()
         vec3  normal   = normal_of(axis_a, axis_b);
         float away     = dot(normal, ball.xyz - group.xyz);
         float own_away = shared ? away : dot(normal, ball.xyz - position);
-        bool  dropped = u_one_sided != 0 && (last.w & kSolid) != 0u && own_away < 0.0;
-        float grow    = loose && (last.w & kHollow) != 0u && away < 0.0 ? kHollowGrowth : 1.0;
+        bool  dropped = u_one_sided != 0 && (last.w & kMaskSolid) != 0u && own_away < 0.0;
+        float grow    = loose && (last.w & kMaskHollow) != 0u && away < 0.0 ? kMaskHollowGrowth : 1.0;
         vec3  skew = u_face * uintBitsToFloat(texelFetch(u_nodes, at * 4 + 1).xyz);
         axis_a     = u_face * axis_a;
         axis_b     = u_face * axis_b;
@@ -183,7 +173,7 @@ void main()
         float least = u_graze * u_graze * (dot(center, center) - radius * radius);
         axis_a *= grow;
         axis_b *= grow;
-        at = int(last.w & kNext);
+        at = int(last.w & kMaskFirstChild);
 
         // planes through the receiver and each edge, turned inward; a triangle's first counts twice
         vec3 c0 = center + skew + axis_a;
@@ -204,7 +194,7 @@ void main()
 
         // planes beyond the limit are dropped, polygons that cross it cut to a cone
         normal = cross(c1 - c0, c2 - c0);
-        normal *= inversesqrt(max(dot(normal, normal), kTinyLength2));
+        normal *= inversesqrt(max(dot(normal, normal), kMaskTiny));
         float height = dot(normal, c0);
         if (height < 0.0) {
             normal = -normal;

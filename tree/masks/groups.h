@@ -14,8 +14,6 @@
 
 namespace surfelao {
 
-constexpr std::uint32_t kMaskGroupSize = 16;  ///< receivers in a leaf group at most
-
 /// Groups own ranges of `order` and of the columns.
 struct MaskGroups {
     std::vector<MaskGroup> groups;   ///< groups[0] is the root; empty without receivers

@@ -6,6 +6,8 @@
 /// picked by the linker for all.
 #pragma once
 
+#include "tree/masks/constants.h"
+
 #include <cstddef>
 #include <cstdint>
 
@@ -44,18 +46,6 @@ struct MaskGroup {
     std::uint32_t begin, end;   ///< receivers, in the order of the tree
     std::uint32_t first_child;  ///< two, side by side; 0 = leaf of at most 16 receivers
 };
-
-/// In MaskNode::links: the node is a patch without gaps, whose neighbours likely continue it.
-constexpr std::uint32_t kMaskSheet = 0x80000000u;
-/// The node is exact and part of a small closed body: what of it faces a receiver is covered by
-/// what faces away (tree/masks/solids.h).
-constexpr std::uint32_t kMaskSolid = 0x40000000u;
-/// The patch is hollow on the side where its normal points.
-constexpr std::uint32_t kMaskHollow = 0x20000000u;
-/// The node has three corners only.
-constexpr std::uint32_t kMaskTriangle = 0x10000000u;
-/// The rest: the first of two children side by side; 0 = leaf.
-constexpr std::uint32_t kMaskFirstChild = 0x0fffffffu;
 
 /// A growing array of plain values.
 template <typename T>

@@ -4,6 +4,7 @@
 /// what a mask is worth (sums, fill), one group (solve).
 #pragma once
 
+#include "tree/masks/constants.h"
 #include "tree/masks/kernel.h"
 #include "tree/masks/raster.h"
 #include "tree/masks/simd.h"
@@ -13,20 +14,8 @@ namespace {
 
 static_assert(sizeof(MaskShared::mask) == kMaskPairWords * sizeof(std::uint32_t));
 
-constexpr float kImportanceFloor = 0.1f;  ///< directions weigh at least this in the opening tests
-constexpr float kFillFrom = 0.3f;         ///< no filling below this occlusion ...
-constexpr float kFillRange = 0.6f;        ///< ... and full weight this much above
-constexpr float kFillShare = 1.3f;        ///< cracks of one bit stand for the wider ones too
-constexpr float kCloseFrom = 0.95f;       ///< the same for cracks of two bits
-constexpr float kCloseRange = 0.04f;
-constexpr int kOpenBits = 4;  ///< a place with no more of them open is closed: 0.003 of the weight
-constexpr std::size_t kDrawnBetweenChecks = 64;  ///< polygons
-constexpr float kHollowGrowth =
-    1.1f;  ///< of a hollow front, whose clusters tilt away from each other
+constexpr float kInversePi = 0.31830989f;
 constexpr std::uint32_t kGrown = 0x80000000u;  ///< in a list: the polygon's rim is larger
-constexpr float kLargestMove = 0.03f;  ///< what the change of the shared part tends to at most
-constexpr float kTinyComponent =
-    1e-30f;  ///< stands for 0 in divisions; edge normals are above 1e-20
 
 struct Vector16 {
     Float16 x, y, z;
@@ -106,16 +95,15 @@ SURFELAO_MASK_INLINE Int16 cone_bits(const MaskRaster& raster, float na, float n
     const Float16 shift = load(raster.row_shift);
     const Float16 zero = all(0.0f);
     float a = nu * nu - k * k;
-    constexpr float kFlat = 1e-7f;  // a parabola is as good as a hyperbola next to it
-    if (a > -kFlat && a < kFlat)
-        a = a < 0.0f ? -kFlat : kFlat;
+    if (a > -kMaskConeFlat && a < kMaskConeFlat)
+        a = a < 0.0f ? -kMaskConeFlat : kMaskConeFlat;
     const Float16 p = fma(all(nv), v, all(na));
     const Float16 root2 = fma(p, p, fma(v, v, all(1.0f)) * all(a));
     const Float16 root = sqrt(max(root2, zero)) * all(k);
     const Float16 b = p * all(nu);
-    const Float16 scale = all(16.0f / a);
-    const Float16 first = fms(root - b, scale, shift) + all(16.0f);
-    const Float16 second = fms(zero - root - b, scale, shift) + all(16.0f);
+    const Float16 scale = all(kMaskHalfColumns / a);
+    const Float16 first = fms(root - b, scale, shift) + all(kMaskHalfColumns);
+    const Float16 second = fms(zero - root - b, scale, shift) + all(kMaskHalfColumns);
     if (a < 0.0f) {
         const Int16 between = bits_from(first) & ~bits_from(second);
         return select((root2 > zero) & (p > zero), between, all(0u));
@@ -178,7 +166,7 @@ void draw(const MaskRaster& raster, float max_distance, const float* corner,
     if (max_distance < __builtin_inff()) {
         const Float16 limit = all(max_distance);
         Vector16 normal = cross(c[1] - c[0], c[2] - c[0]);
-        const Float16 length2 = max(dot(normal, normal), all(kTinyComponent));
+        const Float16 length2 = max(dot(normal, normal), all(kMaskTiny));
         const Float16 inverse = inverse_sqrt(length2);
         Float16 height = dot(normal, c[0]) * inverse;
         const Int16 behind = sign_of(height);
@@ -214,11 +202,11 @@ void draw(const MaskRaster& raster, float max_distance, const float* corner,
         for (int i = 0; i < kCorners; ++i) {
             const Float16 normal[3] = {n[i].x, n[i].y, n[i].z};
             const Int16 sign = sign_of(normal[kU]);
-            const Float16 size = max(flip(normal[kU], sign), all(kTinyComponent));
-            const Float16 scale = flip(reciprocal(size) * all(-16.0f), sign);
+            const Float16 size = max(flip(normal[kU], sign), all(kMaskTiny));
+            const Float16 scale = flip(reciprocal(size) * all(-kMaskHalfColumns), sign);
             store(slope[kAxis][i], normal[kV] * scale);
-            store(start[2 * kAxis][i], fma(normal[kAxis], scale, all(16.0f)));
-            store(start[2 * kAxis + 1][i], all(16.0f) - normal[kAxis] * scale);
+            store(start[2 * kAxis][i], fma(normal[kAxis], scale, all(kMaskHalfColumns)));
+            store(start[2 * kAxis + 1][i], all(kMaskHalfColumns) - normal[kAxis] * scale);
             store(below[kAxis][i], select(nonzero(sign), all(~0u), all(0u)));
         }
     };
@@ -293,9 +281,9 @@ public:
                             select(counts, v.z, zero)};
         };
         r = choose(r);
-        const Float16 inverse = inverse_sqrt(max(dot(r, r), all(kTinyComponent)));
+        const Float16 inverse = inverse_sqrt(max(dot(r, r), all(kMaskTiny)));
         r = r * inverse;
-        area = choose(area) * (inverse * inverse * all(0.31830989f));
+        area = choose(area) * (inverse * inverse * all(kInversePi));
         const Int16 away = sign_of(dot(area, r));
         const Float16 along = flip(dot(area, r), away);
         const Float16 direction[3] = {r.x, r.y, r.z};
@@ -410,7 +398,7 @@ struct Node16 {
     SURFELAO_MASK_INLINE Vector16 normal() const
     {
         const Vector16 n = cross(axis_a(), axis_b());
-        return n * inverse_sqrt(max(dot(n, n), all(kTinyComponent)));
+        return n * inverse_sqrt(max(dot(n, n), all(kMaskTiny)));
     }
 };
 
@@ -501,7 +489,7 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         // how high above any of the group's horizons the node may reach, and so how much it may
         // weigh
         const Vector16 to_node = node.center() - origin;
-        const Float16 distance2 = max(dot(to_node, to_node), all(1e-30f));
+        const Float16 distance2 = max(dot(to_node, to_node), all(kMaskTiny));
         const Float16 inverse = inverse_sqrt(distance2);
         const Float16 distance = distance2 * inverse;
         const Float16 height = dot(to_node, axis);
@@ -519,7 +507,7 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         const Lanes alive = active &
                             (top > max(all(settings.graze) * (nearest - group_radius), zero)) &
                             (nearest - group_radius < all(settings.max_distance));
-        const Float16 weight = min(max(top * inverse, all(kImportanceFloor)), all(1.0f));
+        const Float16 weight = min(max(top * inverse, all(kMaskImportanceFloor)), all(1.0f));
         const Float16 relax = inverse_sqrt(weight);
 
         const Float16 cluster = min(all(settings.cluster) * relax, all(settings.cluster_limit));
@@ -528,7 +516,7 @@ void walk(const MaskWorld& world, const MaskGroup& group, MaskBuffer<std::uint32
         const Lanes sheet = without(negative(node.links()), exact);
         // a front that is hollow goes on beyond its rim
         const Lanes hollow = nonzero(node.links() & all(kMaskHollow)) & (away < zero);
-        const Float16 grow = select(sheet & hollow, all(kHollowGrowth), all(1.0f));
+        const Float16 grow = select(sheet & hollow, all(kMaskHollowGrowth), all(1.0f));
         const Lanes small = exact | (node.open_radius() < cluster * distance);
         const Lanes far = group_radius < share * relax * nearest;
         const Lanes shared = alive & small & far;
@@ -802,9 +790,9 @@ void horizon(const MaskRaster& raster, const float* n, std::uint32_t* above)
         const float na = face % 2 == 0 ? n[a] : -n[a];
         const bool turned = n[u] < 0.0f;
         float size = turned ? -n[u] : n[u];
-        size = size > kTinyComponent ? size : kTinyComponent;
-        const float scale = (turned ? 16.0f : -16.0f) / size;
-        const Int16 from = row_bits(raster, n[v] * scale, 16.0f + na * scale);
+        size = size > kMaskTiny ? size : kMaskTiny;
+        const float scale = (turned ? kMaskHalfColumns : -kMaskHalfColumns) / size;
+        const Int16 from = row_bits(raster, n[v] * scale, kMaskHalfColumns + na * scale);
         store(above + kMaskFaceWords * face, turned ? ~from : from);
     }
 }
@@ -820,7 +808,7 @@ bool is_closed(const MaskRaster& raster, const std::uint32_t* closed, const floa
     const int axis = x > y && x > z ? 0 : y > z ? 1 : 2;
     const int ahead = 2 * axis + (n[axis] < 0.0f ? 1 : 0);
     const Int16 holes = ~load(closed + kMaskFaceWords * ahead);
-    if (__builtin_popcount(bits(nonzero(holes))) > kOpenBits)
+    if (__builtin_popcount(bits(nonzero(holes))) > kMaskOpenBits)
         return false;
     int open = 0;
     for (int face = 0; face < kMaskFaces; ++face) {
@@ -831,7 +819,7 @@ bool is_closed(const MaskRaster& raster, const std::uint32_t* closed, const floa
         store(rows, ~close(raster, filled, loose));
         for (const std::uint32_t row : rows)
             open += __builtin_popcount(row);
-        if (open > kOpenBits)
+        if (open > kMaskOpenBits)
             return false;
     }
     return true;
@@ -878,7 +866,7 @@ Visible visible_of(const MaskRaster& raster, const MaskShared& shared, const flo
     return {openness, share < 1.0f ? share : 1.0f};
 }
 
-/// Draws the listed polygons from `begin` to `end`, no more than kDrawnBetweenChecks, for those
+/// Draws the listed polygons from `begin` to `end`, no more than kMaskDrawnBetweenChecks, for those
 /// receivers in `active` above whose horizon they reach: where the highest corner, seen as far away
 /// as the centre is, or a little nearer, stands higher than the grazing strip.
 template <int kCorners, bool kLoose>
@@ -896,8 +884,8 @@ SURFELAO_MASK_INLINE void draw_near(const MaskWorld& world, const MaskBuffer<std
         return world.nodes + kLanes * static_cast<std::size_t>(listed & ~kGrown);
     };
     // first which, then the drawing: what the one finds cannot be foreseen
-    std::uint32_t found[kDrawnBetweenChecks];
-    std::uint32_t seen[kDrawnBetweenChecks];
+    std::uint32_t found[kMaskDrawnBetweenChecks];
+    std::uint32_t seen[kMaskDrawnBetweenChecks];
     std::size_t count = 0;
     for (std::size_t i = begin; i < end; ++i) {
         const float* const fields = fields_of(list.data[i]);
@@ -926,7 +914,7 @@ SURFELAO_MASK_INLINE void draw_near(const MaskWorld& world, const MaskBuffer<std
             above = without(
                 above, dot(cross(node.axis_a(), node.axis_b()), node.center() - position) < zero);
         Vector16 corner[kCorners];
-        const float grow = kLoose && (found[i] & kGrown) != 0 ? kHollowGrowth : 1.0f;
+        const float grow = kLoose && (found[i] & kGrown) != 0 ? kMaskHollowGrowth : 1.0f;
         corners_of<kCorners>(node, pack(position, above), all(grow), corner);
         stream.add(corner, pack(receivers.target, above), count_of(above));
     }
@@ -958,7 +946,7 @@ void draw_lists(const MaskWorld& world, const MaskScratch& scratch, const Receiv
                 active[i] = 0;
         }
     };
-    std::size_t before_check = kDrawnBetweenChecks;
+    std::size_t before_check = kMaskDrawnBetweenChecks;
     const auto draw_list = [&](const MaskBuffer<std::uint32_t>& list, auto& stream) {
         for (std::size_t begin = 0; begin < list.count;) {
             const std::size_t left = list.count - begin;
@@ -969,7 +957,7 @@ void draw_lists(const MaskWorld& world, const MaskScratch& scratch, const Receiv
             if (before_check == 0) {
                 if (world.settings.fill)
                     leave_out_closed();
-                before_check = kDrawnBetweenChecks;
+                before_check = kMaskDrawnBetweenChecks;
             }
         }
     };
@@ -1030,7 +1018,7 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
         first_moments(raster, open, above, of_open, of_above);
         const float weight = of_above.along(n);
         float openness = of_open.along(n) / weight;
-        const float fill_weight = (1.0f - openness - kFillFrom) / kFillRange;
+        const float fill_weight = (1.0f - openness - kMaskFillFrom) / kMaskFillRange;
         if (world.settings.fill && fill_weight > 0.0f && openness > 0.0f) {
             alignas(64) std::uint32_t filled[kMaskWords];
             for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
@@ -1040,9 +1028,9 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
                 store(open + w, openings(~closed, load(filled + w)));
             }
             const float cracks = openness - first_moments(raster, open).along(n) / weight;
-            openness -= (fill_weight < 1.0f ? fill_weight : 1.0f) * kFillShare * cracks;
+            openness -= (fill_weight < 1.0f ? fill_weight : 1.0f) * kMaskFillShare * cracks;
 
-            const float close_weight = (1.0f - openness - kCloseFrom) / kCloseRange;
+            const float close_weight = (1.0f - openness - kMaskCloseFrom) / kMaskCloseRange;
             if (world.settings.close > 0.0f && close_weight > 0.0f && openness > 0.0f) {
                 for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
                     store(open + w, ~close(raster, load(filled + w), load(mask + kMaskWords + w)));
@@ -1057,7 +1045,7 @@ void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* 
         const float change = bare * visible.share * changes[i];
         const float size = change < 0.0f ? -change : change;
         if (size < __builtin_inff())
-            openness -= change / (1.0f + size / kLargestMove);
+            openness -= change / (1.0f + size / kMaskLargestMove);
         openness = openness < 0.0f ? 0.0f : openness > 1.0f ? 1.0f : openness;
         answers.occlusion[i] = 1.0f - openness;
         const Second second = second_moments(raster, open);

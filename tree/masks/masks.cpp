@@ -1,5 +1,6 @@
 #include "tree/masks/masks.h"
 
+#include "tree/masks/constants.h"
 #include "tree/masks/groups.h"
 #include "tree/masks/kernel.h"
 #include "tree/masks/limits.h"
@@ -42,7 +43,7 @@ void reserve(MaskBuffer<std::uint32_t>& buffer, std::size_t count)
 {
     if (count <= buffer.capacity)
         return;
-    const std::size_t capacity = std::max<std::size_t>(2 * buffer.capacity, count + 1024);
+    const std::size_t capacity = std::max<std::size_t>(2 * buffer.capacity, count + kMaskListSlack);
     auto* data = allocate_zeros<std::uint32_t>(capacity);
     std::copy_n(buffer.data, buffer.count, data);
     const std::size_t kept = buffer.count;
@@ -73,17 +74,6 @@ const MaskKernel* kernel_of(MaskKernelSet set)
     }
 }
 
-/// The family at whole qualities, from MaskOptions::kCoarsest on.
-struct FamilyPoint {
-    float cluster, share_leaf, share_inner, graze;
-};
-constexpr FamilyPoint kFamily[] = {{0.9f, 0.6f, 0.32f, 0.24f},     {0.9f, 0.3f, 0.2f, 0.18f},
-                                   {0.7f, 0.1f, 0.07f, 0.13f},     {0.25f, 0.045f, 0.04f, 0.09f},
-                                   {0.17f, 0.015f, 0.015f, 0.03f}, {0.1f, 0.007f, 0.007f, 0.015f}};
-constexpr float kRelaxedCluster = 0.9f;  ///< a larger rectangle could swallow its receiver
-/// Cracks shrink with the clusters: up to this s none is two bits wide, from twice that many are.
-constexpr float kNarrowCracks = 0.35f;
-
 float between(float a, float b, float t)
 {
     return a * std::pow(b / a, t);
@@ -105,34 +95,33 @@ MaskSettings mask_settings(const MaskOptions& options)
         return settings;
     settings.exact_radius = std::numeric_limits<float>::min();
     const float place = options.quality - MaskOptions::kCoarsest;
-    const auto i = std::min(static_cast<std::size_t>(place), std::size(kFamily) - 2);
+    const auto i = std::min(static_cast<std::size_t>(place), std::size(kMaskFamily) - 2);
     const float t = place - static_cast<float>(i);
-    const FamilyPoint &a = kFamily[i], &b = kFamily[i + 1];
+    const MaskFamilyPoint &a = kMaskFamily[i], &b = kMaskFamily[i + 1];
     settings.cluster = between(a.cluster, b.cluster, t);
-    settings.cluster_limit = std::max(settings.cluster, kRelaxedCluster);
+    settings.cluster_limit = std::max(settings.cluster, kMaskRelaxedCluster);
     settings.share_leaf = between(a.share_leaf, b.share_leaf, t);
     settings.share_inner = between(a.share_inner, b.share_inner, t);
     settings.graze = between(a.graze, b.graze, t);
-    settings.close = std::clamp(settings.cluster / kNarrowCracks - 1.0f, 0.0f, 1.0f);
+    settings.close = std::clamp(settings.cluster / kMaskNarrowCracks - 1.0f, 0.0f, 1.0f);
     return settings;
 }
 
 /// A falloff is a mean over hits within several limits: with H(w) the weight of the distance t,
 /// H = integral over h in [0, 1] of (t < distance at which the weight is h). Midpoints of as many
 /// steps; a hit's weight is off by half a step at most.
-constexpr int kFalloffSteps = 8;
 
 std::vector<float> distance_limits(const Definition& definition)
 {
     if (definition.falloff == Falloff::none)
         return {definition.max_distance};
     std::vector<float> limits;
-    for (int step = 0; step < kFalloffSteps; ++step) {
-        const float weight = (static_cast<float>(step) + 0.5f) / kFalloffSteps;
+    for (int step = 0; step < kMaskFalloffSteps; ++step) {
+        const float weight = (static_cast<float>(step) + 0.5f) / kMaskFalloffSteps;
         // hit_weight falls steadily: bisection keeps its formula in one place
         float near = 0.0f;
         float far = definition.max_distance;
-        for (int i = 0; i < 24; ++i) {
+        for (int i = 0; i < kMaskFalloffHalvings; ++i) {
             const float middle = 0.5f * (near + far);
             (hit_weight(definition, middle) > weight ? near : far) = middle;
         }
@@ -199,8 +188,6 @@ public:
     }
 
 private:
-    static constexpr std::uint32_t kParallelReceivers = 64;  ///< smaller groups stay on one thread
-
     void visit(std::uint32_t index, const std::uint32_t* in, std::size_t in_count,
                const MaskShared& from_above, std::size_t level)
     {
@@ -215,7 +202,7 @@ private:
             visit(group.first_child + child, list, count, shared, level + 1);
         };
         Workspace& workspace = workspaces_.local();
-        if (group.end - group.begin > kParallelReceivers) {
+        if (group.end - group.begin > kMaskParallelReceivers) {
             // a thread that waits may take up other groups meanwhile: this list is nobody else's
             MaskBuffer<std::uint32_t> list;
             kernel_.descend(world_, group, in, in_count, list, shared, workspace.scratch);

@@ -1,7 +1,7 @@
 #include "tree/masks/patch.h"
 
 #include "tree/lanes.h"
-#include "tree/masks/kernel.h"
+#include "tree/masks/constants.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -14,54 +14,6 @@
 
 namespace surfelao {
 namespace {
-
-/// A node that is not flat is opened as if its radius were larger by this factor times 1 -
-/// flatness.
-constexpr float kFlatnessPenalty = 5.0f;
-
-/// A flat node that is no exact quadrilateral has a rim that its rectangle misses, and what it is
-/// made of is exact and cheap: it is opened as if its radius were larger by this factor. Nothing
-/// from a flatness of 1 - 1/kFlatSlope down.
-constexpr float kFlatPenalty = 1.0f;
-constexpr float kFlatSlope = 1e4f;
-
-/// Rectangles of flat nodes are drawn a little larger on the sides where the tree was cut: there
-/// the neighbours continue the same plane, and the rim closes the cracks. Elsewhere the surface
-/// ends. None from a flatness of 1 - 1/kDilationSlope down.
-constexpr float kDilation = 0.12f;
-constexpr float kDilationSlope = 40.0f;
-/// A side is cut where a cut is no farther from the middle than so many times the side is.
-constexpr float kCutReach = 1.5f;
-
-/// The rectangle of a bulging patch lies deeper than the centroid by this share of the mean of n.(x
-/// - center): so the outline of a body made of rectangles has the body's own mean width. With an
-/// arc of half-angle f on a circle of radius 1, n arcs around it and plates as long as the chords
-/// at depth d, the hull's perimeter is n (2 sin f + 2 ((1 - d) sin f - sin f cos f)) for small f;
-/// it is 2 pi (Cauchy: perimeter over pi is the mean width) at d = f^2 / 3. The centroid is at f^2
-/// / 6, the mean of n.(x - center) is f^2 / 3: one half of it for a cylinder; where the surface
-/// bends both ways alike each has its mean, and one quarter remains.
-constexpr float kBulgeDepth = 0.35f;
-
-/// A rectangle's area follows from its second moments; a disk's is 1.05 times as large as that, and
-/// no convex shape's is larger. What is above this factor overlaps itself.
-constexpr float kSpreadMargin = 1.1f;
-
-/// Triangles that tile a rectangle to within this share of its area and size are one rectangle.
-constexpr float kWhole = 1e-4f;
-
-/// A patch counts as a sheet without gaps where it is at least this flat and fills this share of
-/// the rectangle that its second moments describe. Cracks are filled, and rims drawn, at sheets
-/// only: between leaves there are none.
-constexpr float kSheetFlatness = 0.8f;
-constexpr float kSheetCover = 0.75f;
-
-/// A patch with gaps would be drawn as one rectangle in their midst: it is opened as if its radius
-/// were larger by this factor times what its cover lacks of a sheet's.
-constexpr float kGapPenalty = 5.0f;
-
-/// A patch is hollow where the integral of n.(x - center) is below minus this share of area times
-/// radius; inside of a sphere it is minus half of the patch's radius over the sphere's.
-constexpr float kHollow = 0.02f;
 
 /// The same bytes, four floats at a time.
 using PatchRows = std::array<Lanes, sizeof(MaskPatch) / sizeof(Lanes)>;
@@ -163,27 +115,29 @@ void set_rectangles(Columns& of)
     of.axis_y = cosine * ty + sine * by;
     of.axis_z = cosine * tz + sine * bz;
     const Lanes wide = mean + deviation;
-    const Lanes narrow = most(mean - deviation, 1e-12f * mean);
+    const Lanes narrow = most(mean - deviation, kMaskNarrowest * mean);
     const Lanes spread_area = 12.0f * root(wide * narrow);
 
     const Lanes flatness = of.area > 0.0f ? least(one, of.seen_area / of.area) : zero;
     const Lanes cover = spread_area > 0.0f ? of.area / spread_area : one;
-    of.open_radius = of.radius *
-                     (1.0f + kFlatnessPenalty * (1.0f - flatness) +
-                      kGapPenalty * most(zero, kSheetCover - cover)) *
-                     (1.0f + kFlatPenalty * most(zero, 1.0f - kFlatSlope * (1.0f - flatness)));
-    of.may_be_whole =
-        (flatness > 1.0f - kWhole) & (absolute(spread_area - of.area) < 10.0f * kWhole * of.area);
+    of.open_radius =
+        of.radius *
+        (1.0f + kMaskFlatnessPenalty * (1.0f - flatness) +
+         kMaskGapPenalty * most(zero, kMaskSheetCover - cover)) *
+        (1.0f + kMaskFlatPenalty * most(zero, 1.0f - kMaskFlatSlope * (1.0f - flatness)));
+    of.may_be_whole = (flatness > 1.0f - kMaskWhole) &
+                      (absolute(spread_area - of.area) < kMaskWholeMoments * kMaskWhole * of.area);
 
     // sheets that lie on each other count once: their spread tells how wide they are together
-    const Lanes quarter = 0.25f * least(of.seen_area, kSpreadMargin * spread_area);
+    const Lanes quarter = 0.25f * least(of.seen_area, kMaskSpreadMargin * spread_area);
     const LaneMask any = (quarter > 0.0f) & (narrow > 0.0f);
     const Lanes length_u = least(root(quarter * root(wide / narrow)), of.radius);
     const Lanes length_v = quarter / length_u;
     const Lanes diagonal = root(length_u * length_u + length_v * length_v);
     const Lanes shrink = least(one, of.radius / diagonal);
-    of.sheet = (flatness > kSheetFlatness) & (of.area > kSheetCover * spread_area) & any;
-    of.rim = of.sheet ? kDilation * most(zero, 1.0f - kDilationSlope * (1.0f - flatness)) : zero;
+    of.sheet = (flatness > kMaskSheetFlatness) & (of.area > kMaskSheetCover * spread_area) & any;
+    of.rim =
+        of.sheet ? kMaskDilation * most(zero, 1.0f - kMaskDilationSlope * (1.0f - flatness)) : zero;
     of.length_u = any ? length_u * shrink : zero;
     of.length_v = any ? length_v * shrink : zero;
 }
@@ -227,7 +181,7 @@ Vector grow_to_cuts(Vector& axis, const Room& room, Lanes rim)
     LaneMask ahead{}, behind{};
     for (std::size_t k = 0; k < 3; ++k) {
         const Lanes along = along_scene_axis(axis, k);
-        const Lanes reach = kCutReach * absolute(along);
+        const Lanes reach = kMaskCutReach * absolute(along);
         ahead |= (along > 0.0f ? room.above[k] : room.below[k]) < reach;
         behind |= (along > 0.0f ? room.below[k] : room.above[k]) < reach;
     }
@@ -260,9 +214,10 @@ bool make_whole_along(glm::vec3 axis, const MaskPatch& patch, const MaskCorners&
     const auto differ = [](float a, float b, float limit) {
         return !(std::abs(a - b) <= limit * b);
     };
-    if (half.z > kWhole * patch.radius || differ(patch.area, 4.0f * half.x * half.y, kWhole) ||
-        differ(along2, half.x * half.x / 3.0f, 10.0f * kWhole) ||
-        differ(across2, half.y * half.y / 3.0f, 10.0f * kWhole))
+    if (half.z > kMaskWhole * patch.radius ||
+        differ(patch.area, 4.0f * half.x * half.y, kMaskWhole) ||
+        differ(along2, half.x * half.x / 3.0f, kMaskWholeMoments * kMaskWhole) ||
+        differ(across2, half.y * half.y / 3.0f, kMaskWholeMoments * kMaskWhole))
         return false;
     const glm::vec3 middle = 0.5f * (low + high);
     node.center = patch.center + middle.x * axis + middle.y * across;
@@ -445,7 +400,8 @@ void show_patches(std::span<MaskPatchNode> nodes)
         Vector along = axis * of.length_u;
         Vector across = half_cross(normal, axis) * (2.0f * of.length_v);
         const Room room = room_of(nodes.subspan(begin, count), center);
-        const Lanes depth = of.area > 0.0f ? kBulgeDepth * most(zero, patch[4][3]) / of.area : zero;
+        const Lanes depth =
+            of.area > 0.0f ? kMaskBulgeDepth * most(zero, patch[4][3]) / of.area : zero;
         const Vector move =
             grow_to_cuts(along, room, of.rim) + grow_to_cuts(across, room, of.rim) - normal * depth;
         const Vector middle = center + move;
@@ -465,7 +421,7 @@ void show_patches(std::span<MaskPatchNode> nodes)
                 std::bit_cast<MaskNode>(NodeRows{node[0][i], node[1][i], node[2][i], node[3][i]});
             out.node->links = columns.sheet[i] != 0 ? kMaskSheet : 0;
             const MaskPatch& of_node = *out.patch;
-            if (of_node.bulge < -kHollow * of_node.area * of_node.radius)
+            if (of_node.bulge < -kMaskHollowBulge * of_node.area * of_node.radius)
                 out.node->links |= kMaskHollow;
             out.may_be_whole = columns.may_be_whole[i] != 0;
         }
@@ -476,7 +432,7 @@ void make_whole(const MaskPatch& patch, const MaskCorners& corners, MaskNode& no
 {
     const glm::vec3 u = node.axis_a - node.axis_b, v = node.axis_a + node.axis_b;
     if (make_whole_along(glm::normalize(u), patch, corners, node) ||
-        glm::dot(u, u) > 1.2f * glm::dot(v, v))
+        glm::dot(u, u) > kMaskSquare * glm::dot(v, v))
         return;
     // a square has no axes of its own: its triangles' edges lie along them
     const glm::vec3 a = corners.at(0, 0), b = corners.at(1, 0), c = corners.at(2, 0);

@@ -1,6 +1,7 @@
 #include "tree/masks/solids.h"
 
 #include "surfels/union_find.h"
+#include "tree/masks/constants.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -17,7 +18,7 @@ namespace {
 bool is_star_solid(const Geometry& geometry, std::span<const std::uint32_t> triangles)
 {
     // an edge's two ends in one number
-    std::array<std::uint64_t, 3 * kMostOfSolid> forward, backward;
+    std::array<std::uint64_t, 3 * kMaskMostOfSolid> forward, backward;
     std::size_t edges = 0;
     glm::vec3 sum(0.0f);
     for (const std::uint32_t triangle : triangles) {
@@ -62,7 +63,7 @@ std::vector<std::uint8_t> small_solids(const Geometry& geometry)
     // the triangles of small bodies side by side
     std::vector<std::uint32_t> members;
     for (std::uint32_t t = 0; t < count; ++t) {
-        if (size[body[t]] <= kMostOfSolid)
+        if (size[body[t]] <= kMaskMostOfSolid)
             members.push_back(t);
     }
     std::stable_sort(members.begin(), members.end(),

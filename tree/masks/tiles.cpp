@@ -1,5 +1,7 @@
 #include "tree/masks/tiles.h"
 
+#include "tree/masks/constants.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -10,20 +12,6 @@
 
 namespace surfelao {
 namespace {
-
-/// How far corners of a pair may lie beside one plane and beside a convex outline: a share of the
-/// longer diagonal, but never more than a small share of the receivers' usual distance from their
-/// surface, in the unit frame.
-constexpr float kFlat = 1e-3f;
-constexpr float kFlatLength = 2e-5f;
-
-/// The normals of two flat triangles differ by more only where they are slivers.
-constexpr float kLeastCosine = 0.9999f;
-
-/// The edges around so many vertices are looked at first: where fewer than this share of them are
-/// flat, pairs are not worth looking for.
-constexpr std::uint32_t kExaminedVertices = 64;
-constexpr float kFlatShare = 0.2f;
 
 class Tiler {
 public:
@@ -62,7 +50,7 @@ private:
 
     bool may_be_flat(std::uint32_t s, std::uint32_t t) const
     {
-        return glm::dot(normals_[s], normals_[t]) > kLeastCosine;
+        return glm::dot(normals_[s], normals_[t]) > kMaskPairCosine;
     }
 
     void pair_next()
@@ -88,7 +76,7 @@ private:
             bool inward;
         };
         const std::size_t vertices = geometry_.positions.size();
-        const std::size_t stride = vertices / kExaminedVertices + 1;
+        const std::size_t stride = vertices / kMaskPairSample + 1;
         std::vector<std::uint8_t> examined(vertices, 0);
         for (std::size_t v = 0; v < vertices; v += stride)
             examined[geometry_.welded[v]] = 1;
@@ -120,7 +108,7 @@ private:
                 flat += may_be_flat(a.triangle, b.triangle) ? 1 : 0;
             }
         }
-        return static_cast<float>(flat) > kFlatShare * static_cast<float>(edges);
+        return static_cast<float>(flat) > kMaskPairFlatShare * static_cast<float>(edges);
     }
 
     void pair_others()
@@ -192,7 +180,8 @@ private:
         const glm::vec3 normal = glm::cross(c - a, d - b);
         const float area = glm::length(normal);
         const float across = glm::length(d - b);
-        const float slack = std::min(kFlat * std::max(glm::length(c - a), across), kFlatLength);
+        const float slack =
+            std::min(kMaskPairSlack * std::max(glm::length(c - a), across), kMaskPairSlackLength);
         const auto beside = [&](glm::vec3 before, glm::vec3 at, glm::vec3 after) {
             return glm::dot(glm::cross(at - before, after - at), normal) < -slack * across * area;
         };

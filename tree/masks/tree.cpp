@@ -1,7 +1,7 @@
 #include "tree/masks/tree.h"
 
 #include "tree/lanes.h"
-#include "tree/masks/kernel.h"
+#include "tree/masks/constants.h"
 #include "tree/masks/masks.h"
 #include "tree/masks/patch.h"
 #include "tree/masks/solids.h"
@@ -24,20 +24,6 @@
 
 namespace surfelao {
 namespace {
-
-/// A unit of normal counts as this many diagonals of the node when it is split: neighbours that
-/// look elsewhere are parted before they become one rectangle.
-constexpr float kNormalExtent = 0.5f;
-/// Walls that meet in an edge: normals at the ends, to within this share, of an extent of at least
-/// so much. They are parted whatever the diagonal is: a rectangle for two of them fills no edge.
-constexpr float kEndShare = 0.1f;
-constexpr float kSharpExtent = 0.5f;
-
-/// Subtrees of up to this many triangles are built as one, in the cache, their radius and thickness
-/// measured at the corners; above, these follow from the children's.
-constexpr std::size_t kBundle = 32;
-
-constexpr std::size_t kParallelNode = 2048;  ///< smaller subtrees are built by one thread
 
 /// Where the splits look: centroid and unit normal of one triangle, in the scene's own axes: what
 /// is built along them is cut along them.
@@ -101,7 +87,7 @@ struct Plane {
 /// few keys.
 bool at_ends(std::span<const Key> keys, std::size_t axis, float low, float high)
 {
-    const float margin = kEndShare * (high - low);
+    const float margin = kMaskEdgeEnds * (high - low);
     return std::all_of(keys.begin(), keys.end(), [=](const Key& key) {
         return key.at[axis] < low + margin || key.at[axis] > high - margin;
     });
@@ -115,7 +101,7 @@ Plane plane_of(const Extent& extent, std::span<const Key> keys)
     std::array<float, 6> square;
     for (std::size_t i = 0; i < 6; ++i)
         square[i] = (high[i] - low[i]) * (high[i] - low[i]);
-    const float unit = kNormalExtent * kNormalExtent * (square[0] + square[1] + square[2]);
+    const float unit = kMaskNormalExtent * kMaskNormalExtent * (square[0] + square[1] + square[2]);
     std::size_t axis = 0;
     float longest = square[0];
     for (std::size_t i = 1; i < 6; ++i) {
@@ -127,14 +113,14 @@ Plane plane_of(const Extent& extent, std::span<const Key> keys)
         std::size_t turned = 3;
         for (std::size_t i = 4; i < 6; ++i)
             turned = square[i] > square[turned] ? i : turned;
-        if (square[turned] > kSharpExtent * kSharpExtent &&
+        if (square[turned] > kMaskEdgeExtent * kMaskEdgeExtent &&
             at_ends(keys, turned, low[turned], high[turned]))
             axis = turned;
     }
     return {axis, 0.5f * (low[axis] + high[axis])};
 }
 
-/// Nodes over up to kBundle triangles while they are built. Node 0 is the root; children stand
+/// Nodes over up to kMaskBundle triangles while they are built. Node 0 is the root; children stand
 /// side by side, after their parent.
 struct Bundle {
     struct Node {
@@ -142,17 +128,17 @@ struct Bundle {
         std::uint8_t first_child;  ///< 0 = triangle
         std::uint8_t side;         ///< of `keys`: they go to and fro from level to level
     };
-    static constexpr std::size_t kNodes = 2 * kBundle - 1;
-    static constexpr std::size_t kStride = kBundle + MaskCorners::kSlack;
+    static constexpr std::size_t kNodes = 2 * kMaskBundle - 1;
+    static constexpr std::size_t kStride = kMaskBundle + MaskCorners::kSlack;
 
-    std::array<std::array<Key, kBundle>, 2> keys;
+    std::array<std::array<Key, kMaskBundle>, 2> keys;
     std::array<Node, kNodes> nodes;
-    std::array<std::uint8_t, kBundle> leaf;   ///< the node of each triangle
-    std::array<std::uint8_t, kBundle> inner;  ///< parents first
-    std::array<float, 12 * kStride> corners;  ///< columns, as in MaskCorners
+    std::array<std::uint8_t, kMaskBundle> leaf;   ///< the node of each triangle
+    std::array<std::uint8_t, kMaskBundle> inner;  ///< parents first
+    std::array<float, 12 * kStride> corners;      ///< columns, as in MaskCorners
     std::array<MaskPatch, kNodes> patches;
     std::array<MaskCuts, kNodes> cuts;
-    std::array<MaskPatchNode, kBundle> shown;
+    std::array<MaskPatchNode, kMaskBundle> shown;
 };
 
 /// What looks elsewhere need not be beside what it was parted from.
@@ -229,7 +215,7 @@ private:
                          int side, const MaskCuts& cuts)
     {
         const std::size_t count = end - begin;
-        if (count <= kBundle)
+        if (count <= kMaskBundle)
             return build_bundle(index, first, begin, end, side, cuts);
 
         MaskCuts left_cuts = cuts, right_cuts = cuts;
@@ -243,7 +229,7 @@ private:
         const auto build_right = [&] {
             right = build_node(first + 1, right_first, middle, end, 1 - side, right_cuts);
         };
-        if (count > kParallelNode) {
+        if (count > kMaskParallelNode) {
             tbb::parallel_invoke(build_left, build_right);
         } else {
             build_left();

@@ -1,5 +1,7 @@
 #include "tree/masks/winding.h"
 
+#include "tree/masks/constants.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -70,7 +72,7 @@ std::vector<Neighbour> neighbours_of(const Geometry& geometry)
 bool is_winding_mixed(const Geometry& geometry)
 {
     const std::size_t count = geometry.triangles.size();
-    const std::size_t stride = count / kExamined + 1;
+    const std::size_t stride = count / kMaskTurnedSample + 1;
     std::size_t examined = 0, away = 0;
     for (std::size_t i = 0; i < count; i += stride) {
         const glm::uvec3 t = geometry.triangles[i];
@@ -82,7 +84,7 @@ bool is_winding_mixed(const Geometry& geometry)
                 glm::dot(normal, geometry.normals[t.y]) < 0.0f &&
                 glm::dot(normal, geometry.normals[t.z]) < 0.0f;
     }
-    return static_cast<double>(away) > kMixedShare * static_cast<double>(examined);
+    return static_cast<double>(away) > kMaskTurnedShare * static_cast<double>(examined);
 }
 
 void wind_alike(Geometry& geometry)
