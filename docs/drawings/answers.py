@@ -1,4 +1,5 @@
 """Drawings of masks.md about cracks between clusters."""
+from mask_constants import value_of
 from raster import COLUMNS, ROW_SHIFT, ROWS, bits_of, polygon_rows, set_of_bits
 from svg import BLUE, GREEN, ORANGE, RED, Drawing, Panel
 
@@ -120,16 +121,18 @@ def crack_weights(numbers):
            [(0, "0"), (0.65, ".65"), (1, "1"), (1.3, "1.3")], "occlusion of the mask")
     places = [i / 200 for i in range(201)]
 
-    def weight(occlusion, start, reach):
+    def weight(occlusion, rule):
+        start, reach = value_of(f"kMask{rule}From"), value_of(f"kMask{rule}Range")
         return max(0.0, min(1.0, (occlusion - start) / reach))
-    p.path([(a, 1.3 * weight(a, 0.3, 0.6)) for a in places], stroke=ORANGE, width=2.5)
+    share = value_of("kMaskFillShare")
+    p.path([(a, share * weight(a, "Fill")) for a in places], stroke=ORANGE, width=2.5)
     for s, dash in ((0.7, None), (0.525, "6 3"), (0.35, "2 3")):
-        c = max(0.0, min(1.0, s / 0.35 - 1))
-        p.path([(a, c * weight(a, 0.95, 0.04)) for a in places], stroke=GREEN, width=2, dash=dash)
+        c = max(0.0, min(1.0, s / value_of("kMaskNarrowCracks") - 1))
+        p.path([(a, c * weight(a, "Close")) for a in places], stroke=GREEN, width=2, dash=dash)
     p.text((0.30, 0.72), "cracks of one bit", color=ORANGE)
     p.text((0.50, 0.14), "of two bits: s = .7, .525, .35", color=GREEN)
     p.title("How much a crack counts as closed")
-    numbers["fill weight at half"] = 1.3 * weight(0.5, 0.3, 0.6)
+    numbers["fill weight at half"] = share * weight(0.5, "Fill")
     return d
 
 

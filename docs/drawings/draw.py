@@ -2,14 +2,16 @@
 """Makes the drawings of docs/masks.md: draw.py FOLDER
 
 Writes an SVG for each drawing and numbers.json, the worked numbers of the text. All is computed
-from the formulas of tree/masks. Pure Python, no packages; equal bytes on every run.
+from the formulas and the constants of tree/masks. Pure Python, no packages; equal bytes on every
+run.
 tests/check_drawings.sh compares the committed files with a new run.
 """
 import json
 import os
 import sys
 
-sys.dont_write_bytecode = True  # before the modules beside this file are read
+sys.dont_write_bytecode = True  # before the modules are read
+sys.path.append(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))  # mask_constants
 
 import answers
 import nodes

@@ -1,9 +1,11 @@
 """Drawings of masks.md about the tree: rectangles from moments, depth, rims, pairs, splits."""
 import math
 
+import mask_constants
 from svg import BLUE, FAINT, GREEN, GRID, INK, ORANGE, RED, Drawing, Panel
 
-K_BULGE_DEPTH, K_DILATION, K_CUT_REACH, K_SPREAD_MARGIN = 0.35, 0.12, 1.5, 1.1
+DILATION, CUT_REACH, SPREAD_MARGIN = (mask_constants.value_of("kMask" + name)
+                                      for name in ("Dilation", "CutReach", "SpreadMargin"))
 
 
 class Patch:
@@ -36,7 +38,7 @@ class Patch:
         self.radius = max(math.dist(self.center, p) for polygon in polygons for p in polygon)
         self.spread_area = 12 * math.sqrt(self.wide * self.narrow)
         self.cover = self.area / self.spread_area
-        quarter = 0.25 * min(self.area, K_SPREAD_MARGIN * self.spread_area)
+        quarter = 0.25 * min(self.area, SPREAD_MARGIN * self.spread_area)
         u = min(math.sqrt(quarter * math.sqrt(self.wide / self.narrow)), self.radius)
         v = quarter / u
         shrink = min(1.0, self.radius / math.hypot(u, v))
@@ -174,13 +176,13 @@ def grow_to_cuts(axis, center, low, high):
     """tree/masks/patch.cpp: half axis and move of the middle."""
     ahead = behind = False
     for k in range(2):
-        reach = K_CUT_REACH * abs(axis[k])
+        reach = CUT_REACH * abs(axis[k])
         below, above = center[k] - low[k], high[k] - center[k]
         if axis[k] <= 0:
             below, above = above, below
         ahead |= above < reach
         behind |= below < reach
-    forward, backward = (0.5 * K_DILATION * side for side in (ahead, behind))
+    forward, backward = (0.5 * DILATION * side for side in (ahead, behind))
     grown = 1 + forward + backward
     return (axis[0] * grown, axis[1] * grown), (axis[0] * (forward - backward),
                                                 axis[1] * (forward - backward))

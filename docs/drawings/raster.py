@@ -1,6 +1,7 @@
 """Drawings of masks.md about the bits: directions, weights, polygons, limits."""
 import math
 
+from mask_constants import value_of
 from svg import BLUE, FAINT, GREEN, GRID, INK, ORANGE, RED, TINTS, Drawing, Panel
 
 ROWS, COLUMNS = 16, 32
@@ -281,16 +282,19 @@ def falloff(numbers):
            "distance of the hit over the limit D", "weight of a hit")
     places = [i / 400 for i in range(401)]
     # tree/masks/masks.cpp: limits where the weight passes the midpoints of eight steps
-    limits = [math.sqrt(1.0 - math.sqrt((step + 0.5) / 8.0)) for step in range(8)]
-    p.path([(t, sum(1 for limit in limits if t < limit) / 8.0) for t in places], stroke=BLUE)
+    steps = int(value_of("kMaskFalloffSteps"))
+    limits = [math.sqrt(1.0 - math.sqrt((step + 0.5) / steps)) for step in range(steps)]
+
+    def stepped(t):
+        return sum(1 for limit in limits if t < limit) / steps
+    p.path([(t, stepped(t)) for t in places], stroke=BLUE)
     p.path([(t, (1 - t * t) ** 2) for t in places], stroke=ORANGE, width=2)
     for limit in limits:
         p.dot((limit, 0), 3.5, fill=BLUE)
     p.text((0.45, 0.88), "(1 - (t/D)^2)^2", color=ORANGE)
     p.text((0.45, 0.77), "mean over eight limits (dots)", color=BLUE)
     numbers["falloff limits"] = limits
-    numbers["falloff error"] = max(
-        abs(sum(1 for limit in limits if t < limit) / 8.0 - (1 - t * t) ** 2) for t in places)
+    numbers["falloff error"] = max(abs(stepped(t) - (1 - t * t) ** 2) for t in places)
     return d
 
 

@@ -1,13 +1,13 @@
 """Drawings of masks.md about groups of receivers: horizons, tests, sharing, its change."""
 import math
 
+import mask_constants
 from raster import exact_share
 from svg import BLUE, FAINT, GREEN, INK, ORANGE, RED, Drawing, Panel
 
-# tree/masks: the family at whole qualities from -1 on: s, r, u, g
-FAMILY = [(0.9, 0.6, 0.32, 0.24), (0.9, 0.3, 0.2, 0.18), (0.7, 0.1, 0.07, 0.13),
-          (0.25, 0.045, 0.04, 0.09), (0.17, 0.015, 0.015, 0.03), (0.1, 0.007, 0.007, 0.015)]
-K_IMPORTANCE_FLOOR, K_LARGEST_MOVE, K_GROUP = 0.1, 0.03, 16
+FAMILY = [row[1:] for row in mask_constants.family()]  # s, r, u, g at qualities from -1 on
+LARGEST_MOVE = mask_constants.value_of("kMaskLargestMove")
+GROUP = mask_constants.value_of("kMaskGroupSize")
 
 
 def ground(x):
@@ -157,7 +157,7 @@ def sharing_tree(numbers):
     points = [curve((i + 0.37) / 128) for i in range(128)]
 
     def build(group):
-        if len(group) <= K_GROUP:
+        if len(group) <= GROUP:
             return [(group, [])]
         axis = 0 if (max(p[0] for p in group) - min(p[0] for p in group)
                      >= max(p[1] for p in group) - min(p[1] for p in group)) else 1
@@ -181,7 +181,7 @@ def sharing_tree(numbers):
     for group, color in zip(chain, colors):
         c = tuple(sum(x[k] for x in group) / len(group) for k in range(2))
         radius = max(math.dist(x, c) for x in group)
-        share = r if len(group) <= K_GROUP else u
+        share = r if len(group) <= GROUP else u
         p.ring(c, radius, stroke=color, width=1.5)
         p.dots(group, 3 if color != FAINT else 2, color)
         p.dot(c, 4, fill=color)
@@ -225,7 +225,7 @@ def gradient(numbers):
     corrected = []
     for x in xs:
         change = share * slope * (x - center)
-        corrected.append(base + change / (1 + abs(change) / K_LARGEST_MOVE))
+        corrected.append(base + change / (1 + abs(change) / LARGEST_MOVE))
     p = Panel(d, 70, 50, 420, 220, (xs[0], xs[-1]), (0.02, 0.08))
     p.axes([(-0.6, "-.6"), (0, "0"), (0.6, ".6"), (1.2, "1.2"), (1.8, "1.8")],
            [(0.02, ".02"), (0.04, ".04"), (0.06, ".06"), (0.08, ".08")], "place x of a receiver")
@@ -249,7 +249,7 @@ def gradient(numbers):
     q.title("What of it is used: x / (1 + |x| / .03)")
     places = [-0.1 + 0.002 * i for i in range(101)]
     q.path([(-0.06, -0.06), (0.06, 0.06)], stroke=FAINT, dash="4 3")
-    q.path([(x, x / (1 + abs(x) / K_LARGEST_MOVE)) for x in places], stroke=ORANGE, width=2)
+    q.path([(x, x / (1 + abs(x) / LARGEST_MOVE)) for x in places], stroke=ORANGE, width=2)
     return d
 
 
@@ -264,6 +264,7 @@ def family(numbers):
         for q in range(6):
             p.dot((q - 1, math.log10(FAMILY[q][k])), 3, fill=color)
         p.text((at[0], math.log10(at[1])), name, color=color)
+    numbers["graze share good"] = FAMILY[2][3] ** 2
     for q, name in ((0, "draft"), (1, "good"), (2, "best")):
         p.text((q, 0.1), name, size=12, anchor="middle", dy=-6)
     return d
