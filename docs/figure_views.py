@@ -86,7 +86,7 @@ def table(head, rows):
     for number, line in enumerate(lines):
         cells = ["" if line[i] is None else str(line[i]) for i in shown]
         text += "|---" * len(shown) + "|\n" if number == 1 else "| " + " | ".join(cells) + " |\n"
-    return text.replace("|  |", "| |")
+    return text
 
 
 def quantile(values, at):
@@ -327,13 +327,172 @@ def demo(figures):
     return "\n".join(["```text", *figures["demo"]["lines"], "```"])
 
 
+@view
+def scaling(figures, engine):
+    """scaling masks|disks: costs on growing meshes"""
+    rows = figures["scaling"][engine]["rows"]
+    columns = (("vertices", "vertices", lambda v: thousands(v)),
+               ("build us/vertex", "build, us a vertex", lambda v: fixed(v, 2)),
+               ("solve us/vertex", "solve, us a vertex", lambda v: fixed(v, 2)),
+               ("brute force us/vertex", "brute force, us a vertex", lambda v: thousands(round(v))),
+               ("RMS to it", "RMS difference to it", lambda v: fixed(v, 4)),
+               ("build peak bytes/triangle", "build, bytes a triangle", str),
+               ("solve peak bytes/vertex", "solve, bytes a vertex", str),
+               ("work", "work", str))
+    return table([head for _, head, _ in columns],
+                 [[None if row.get(key) is None else text(row[key]) for key, _, text in columns]
+                  for row in rows])
+
+
+@view
+def scaling_exponent(figures, engine):
+    """scaling_exponent masks|disks: solving grows with vertices to the power of this"""
+    return fixed(figures["scaling"][engine]["exponent"], 2)
+
+
+@view
+def device(figures, part="gpu"):
+    """device gpu|drawing: the GPU that made the part's figures"""
+    return figures[part]["device"]
+
+
+@view
+def gpu_disks(figures):
+    """Disks on the GPU against disks on the CPU: speed and difference"""
+    rows = [(row["scene"], row["vertices"], row) for row in figures["gpu"]["bodies"]
+            if row["engine"] == "disks"]
+    rows += [(row["scene"], row["vertices"], row["disks"]) for row in figures["gpu"]["models"]
+             if "disks" in row]
+    return table(["scene", "vertices", "speed of GPU / CPU", "RMS difference", "largest"],
+                 [[name, thousands(vertices), fixed(row["speed GPU / CPU"], 2),
+                   significant(row["RMS difference"]), significant(row["largest"])]
+                  for name, vertices, row in rows])
+
+
+@view
+def gpu_masks(figures):
+    """Masks on the GPU against the CPU: difference, both errors, speed"""
+    def error(found):
+        return found and f"{fixed(found['rmse'], 4)} ({fixed(found['max'], 3)})"
+    return table(["scene", "vertices", "GPU - CPU, RMS", "largest", "error CPU", "error GPU",
+                  "speed of GPU / CPU"],
+                 [[row["scene"], thousands(row["vertices"]),
+                   significant(row["masks"]["RMS difference"]), significant(row["masks"]["largest"]),
+                   error(row.get("cpu")), error(row.get("gpu")),
+                   fixed(row["masks"]["speed GPU / CPU"], 3)]
+                  for row in figures["gpu"]["models"] if "masks" in row])
+
+
+@view
+def gpu_grids(figures):
+    """The report's table 1: solves a second on grids, by brute force and by the tree"""
+    return table(["vertices", "report, triangles", "brute force", "tree", "tree over brute force"],
+                 [[thousands(row["vertices"]), row["report, frames/s"],
+                   significant(row["GPU brute force"]), significant(row["GPU tree"]),
+                   significant(row["GPU: tree / brute force"])] for row in figures["gpu"]["grids"]])
+
+
+@view
+def frame_rates(figures):
+    """The report's table 2: frames a second of triangles and splats"""
+    columns = ("triangles", "report", "splats", "report, covering", "affine", "points",
+               "covering radius", "report, radius")
+    return table(["vertices", *columns],
+                 [[thousands(row["vertices"]), *(
+                     "" if row[key] is None else row[key] for key in columns)]
+                  for row in figures["drawing"]["rows"]])
+
+
+@view
+def odd_files(figures):
+    """docs/readers.md, as tests/odd_files.sh prints it"""
+    baked, refused = figures["readers"]["baked"], figures["readers"]["refused"]
+    return (f"Baked, {len(baked)} files, with vertices and triangles (polygons are cut into as many\n"
+            "triangles as corners less two):\n\n"
+            + table(["file", "vertices", "triangles", "what is odd"],
+                    [[row["file"], row["vertices"], row["triangles"], row["what is odd"] or ""]
+                     for row in baked])
+            + f"\nRefused, {len(refused)} files, each with the whole sentence behind the file's name:"
+              "\n\n"
+            + table(["file", "sentence"], [[row["file"], row["sentence"]] for row in refused]))
+
+
+@view
+def odd_files_count(figures, kind="all"):
+    """odd_files_count all|baked|refused: files of assimp-testmodels"""
+    lists = ("baked", "refused") if kind == "all" else (kind,)
+    return str(sum(len(figures["readers"][name]) for name in lists))
+
+
+@view
+def stability_table(figures, device):
+    """stability_table cpu|gpu: RMS and worst error of every hard case, as `stability` prints it"""
+    part = figures["stability"]
+    chosen = [i for i, engine in enumerate(part["engines"])
+              if engine["name"].startswith("GPU") == (device == "gpu")]
+    engines = [part["engines"][i] for i in chosen]
+    lines = [f"{'case':52} {'truth':>5} {'points':>6} {'undef':>5}"
+             + "".join(f"  {engine['name']:13}" for engine in engines),
+             f"{'bound (rms worst)':52} {'':5} {'':6} {'':5}"
+             + "".join(f"  {engine['bound_rms']:5.3f} {engine['bound_worst']:5.3f}  "
+                       for engine in engines)]
+    for case in part["cases"]:
+        line = (f"{case['group'] + ': ' + case['name']:52} {case['truth']:>5} "
+                f"{case['points']:6} {case['undefined']:5}")
+        for i in chosen:
+            error = case["errors"][i]
+            line += f"  {error[0]:5.3f} {error[1]:5.3f} {error[2]:1}" if error else "      -     -  "
+        lines.append(line)
+    return "\n".join(["```text", *(line.rstrip() for line in lines), "```"])
+
+
+@view
+def stability_summary(figures):
+    """Engine by engine: cases passed, excused, failed, and the worst error held to a bound"""
+    return table(["engine", "pass", "excused", "undefined", "FAIL", "largest RMS", "worst receiver"],
+                 [[engine["name"], engine["pass"], engine["excused"], engine["undefined"],
+                   engine["fail"], fixed(engine["largest_rms"], 4),
+                   f"{fixed(engine['largest_worst'], 4)} ({engine['worst_case']})"]
+                  for engine in figures["stability"]["engines"]])
+
+
+@view
+def stability_count(figures, what):
+    """stability_count cases|receivers|undefined|fail"""
+    part = figures["stability"]
+    counts = {"cases": len(part["cases"]),
+              "receivers": sum(case["points"] for case in part["cases"]),
+              "undefined": sum(case["undefined"] for case in part["cases"]),
+              "fail": sum(engine["fail"] for engine in part["engines"])}
+    return thousands(counts[what])
+
+
+@view
+def stability_failures(figures):
+    """The cases that failed, or Nothing"""
+    part = figures["stability"]
+    failed = [f"{case['group']}: {case['name']} ({engine['name']})" for case in part["cases"]
+              for engine, error in zip(part["engines"], case["errors"]) if error and error[2] == "!"]
+    return "; ".join(failed) if failed else "Nothing"
+
+
+@view
+def stability_excused_range(figures, prefix="disks"):
+    """stability_excused_range PREFIX: RMS of the cases that engines of this name are excused from"""
+    part = figures["stability"]
+    values = [error[0] for case in part["cases"] for engine, error in zip(part["engines"], case["errors"])
+              if engine["name"].startswith(prefix) and error and error[2] == "~"]
+    return f"{fixed(min(values), 2)} to {fixed(max(values), 2)}"
+
+
 # ---- single figures
 
 
 @view
 def recorded(figures, name):
     """recorded NAME: a figure of recorded.json, measured once by hand, with how and when there"""
-    return figures["recorded"]["figures"][name]["text"]
+    text = figures["recorded"]["figures"][name]["text"]
+    return text if isinstance(text, str) else "\n".join(text)
 
 
 @view

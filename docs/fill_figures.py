@@ -35,30 +35,32 @@ import figure_views  # noqa: E402
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 STATED = ROOT / "docs/figures/stated.txt"
 
-BLOCK = re.compile(r"(^<!-- figures (.+?) -->\n)(.*?)(^<!-- end -->$)", re.M | re.S)
-INLINE = re.compile(r"(<!--=(.+?)-->)(.*?)(<!--/-->)", re.S)
+BLOCK = re.compile(r"(^<!-- figures ([^\n]+?) -->\n)((?:(?!<!-- ).)*?)(^<!-- end -->$)", re.M | re.S)
+INLINE = re.compile(r"(<!--=([^\n]+?)-->)((?:(?!<!--).)*?)(<!--/-->)", re.S)
+STATED_BLOCK = re.compile(r"^<!-- stated: [^\n]+ -->\n(?:(?!<!-- end).)*?^<!-- end -->$", re.M | re.S)
 HISTORY = re.compile(r"^<!-- history: .+-->$", re.M)
 
 UNITS = (r"(?:[mun]?s|%|times|[KMG]i?B|kB|bytes|degrees?|deg|seconds?|milliseconds?|microseconds?"
          r"|minutes?|hours?)")
 MEASURED = re.compile(
     r"(?<![\w.])[-+]?(?:"
-    r"(?:\d[\d,]*)?\.\d+(?:e[-+]?\d+)?"        # 0.0031, .005, 1.5e-4
-    r"|\d+e[-+]?\d+"                           # 1e-4
-    rf"|\d[\d,]*\s?{UNITS}(?![\w/])"           # 12 ms, 8 %, 37 MiB
+    rf"(?:\d[\d,]*)?\.\d+(?:e[-+]?\d+)?(?:\s?{UNITS}(?![\w/]))?"  # 0.0031, .005, 1.5e-4, 4.1 s
+    r"|\d+e[-+]?\d+"                                              # 1e-4
+    rf"|\d[\d,]*\s?{UNITS}(?![\w/])"                              # 12 ms, 8 %, 37 MiB
     r")(?![\d.]*\.\d)")                        # but no version 1.2.3
 
 # what holds no figures, in the order in which it is taken out
-SILENT = [re.compile(pattern, re.M | re.S) for pattern in (
+CODE = [re.compile(pattern, re.M | re.S) for pattern in (
     r"^```.*?^```[^\n]*$",
-    r"(?<=\n\n)(?:    [^\n]*\n|\n(?=    ))+",                   # an indented block of code
-    r"^<!-- stated: [^\n]+ -->\n.*?^<!-- end -->$",
+    r"(?<=\n\n)(?:    [^\n]*\n|\n(?=    ))+",
+    r"`[^`]+`",
+)]
+SILENT = [*CODE, STATED_BLOCK, *(re.compile(pattern, re.M | re.S) for pattern in (
     r"^[^\n]+<!-- stated: [^\n]+-->[^\n]*$",
     r"<!--.*?-->",
-    r"`[^`]+`",
     r"\$\$.*?\$\$|\$[^$\n]+\$",
     r"!?\[[^\]]*\]\([^)]*\)|https?://\S+",
-)]
+))]
 
 
 def pages():
@@ -126,11 +128,10 @@ def without_source(text, phrases, used):
 
 
 def stray_markers(text):
-    rest = blank(blank(text, BLOCK), INLINE)
-    rest = blank(rest, re.compile(r"^<!-- stated: [^\n]+ -->\n.*?^<!-- end -->$", re.M | re.S))
-    for pattern in SILENT[:2] + [SILENT[5]]:
-        rest = blank(rest, pattern)
-    return [match.start() for match in re.finditer(r"<!-- figures |<!-- end -->|<!--=|<!--/", rest)]
+    for pattern in (BLOCK, INLINE, STATED_BLOCK, *CODE):
+        text = blank(text, pattern)
+    return [match.start() for match in
+            re.finditer(r"<!-- figures |<!-- end -->|<!--=|<!--/|^<!-- stated:", text, re.M)]
 
 
 def main(arguments):

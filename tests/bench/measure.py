@@ -105,19 +105,24 @@ def rounded(value):
     return [rounded(item) for item in value] if isinstance(value, list) else value
 
 
+def holds_objects(value):
+    if isinstance(value, dict):
+        return True
+    return isinstance(value, list) and any(map(holds_objects, value))
+
+
 def dump(value, indent=0):
-    """JSON with a line for each object or list that holds no other: a figure's change is one line."""
-    nested = isinstance(value, (dict, list)) and (indent == 0 or any(
-        isinstance(item, (dict, list)) for item in
-        (value.values() if isinstance(value, dict) else value)))
-    lines = isinstance(value, list) and len(value) > 3 and all(isinstance(x, str) for x in value)
-    if not (nested or lines):
+    """JSON with a line for each object without objects in it: one row of a table is one line."""
+    items = list(value.values() if isinstance(value, dict) else value) \
+        if isinstance(value, (dict, list)) else []
+    text = isinstance(value, list) and len(items) > 3 and all(isinstance(x, str) for x in items)
+    if not items or not (indent == 0 or text or any(map(holds_objects, items))):
         return json.dumps(value, ensure_ascii=False)
     space = " " * (indent + 1)
     if isinstance(value, dict):
         parts = [f"{json.dumps(key)}: {dump(item, indent + 1)}" for key, item in value.items()]
     else:
-        parts = [dump(item, indent + 1) for item in value]
+        parts = [dump(item, indent + 1) for item in items]
     left, right = "{}" if isinstance(value, dict) else "[]"
     return left + "\n" + ",\n".join(space + part for part in parts) + "\n" + " " * indent + right
 
@@ -226,10 +231,11 @@ def part_gpu(build):
     grids, bodies = tables_of(text)
     rows = []
     for path, name in chosen:
+        info = json.loads(run(build / "bin/surfelao", "info", path, "--json", "-"))
+        if info["vertices"] > LARGEST_ON_GPU:
+            continue
         scene, command = compare(build, [path], "--engines", "masks", "--devices", "cpu,gpu",
                                  "--qualities", "good", "--rounds", "1", "--sample", SAMPLE)
-        if scene["vertices"] > LARGEST_ON_GPU:
-            continue
         row = {"scene": name, "vertices": scene["vertices"]}
         for line in scene["rows"]:
             if line["engine"] == "masks":
