@@ -64,3 +64,37 @@ def drawn(figures, key, digits="3"):
 def drawn_percent(figures, key, digits="1"):
     """drawn_percent KEY [DIGITS]: the same, a share in percent"""
     return fixed(100 * drawn_number(figures, key), int(digits))
+
+
+def instructions(row):
+    """Vector instructions of sixteen lanes per receiver, by the costs that masks.md derives."""
+    polygons = row["drawn"] + row["shared"]
+    return (row["visits"] * 180 / 16 + row["listed"] * 40 / 16 + polygons * 350 / 16
+            + polygons * row["faces"] * (6 * 4 + 3)
+            + 150 * (2 + row["filled"] + row["closed"]) + 100)
+
+
+@view
+def mask_counts(figures):
+    """Nodes, polygons and faces per receiver, scene by scene, and instructions per time"""
+    rows = []
+    for row in figures["mask_counts"]["rows"]:
+        scene = next((s for s in figures["frontier"]["scenes"] if s["name"] == row["scene"]), None)
+        timed = [r for r in scene["rows"] if r["engine"] == "masks" and r["setting"] == row["setting"]
+                 and "us_per_vertex" in r] if scene else []
+        rows.append([f"{row['scene']}, {row['setting']}", fixed(row["visits"], 0),
+                     fixed(row["listed"], 0), fixed(row["drawn"], 0), fixed(row["shared"], 1),
+                     fixed(row["faces"], 2), fixed(row["filled"], 2), fixed(row["closed"], 2),
+                     f"{instructions(row):,.0f}",
+                     fixed(instructions(row) / timed[0]["us_per_vertex"], 0) if timed else ""])
+    return table(["", "V", "P", "Q", "S", "F", "filled", "closed", "instructions",
+                  "over measured us, two threads"], rows)
+
+
+@view
+def mask_count(figures, scene, setting, key, digits="0"):
+    """mask_count SCENE SETTING KEY|instructions [DIGITS]: one of them"""
+    for row in figures["mask_counts"]["rows"]:
+        if (row["scene"], row["setting"]) == (scene, setting):
+            return f"{instructions(row) if key == 'instructions' else row[key]:,.{int(digits)}f}"
+    raise KeyError(f"{scene} {setting}")

@@ -108,6 +108,10 @@ def bulge_depth(numbers):
                     "arc mean width at centroid": perimeter(at_centroid) / math.pi,
                     "arc mean width deeper": perimeter(exact) / math.pi,
                     "arc mean bulge": 1 - (math.sin(f) / f) ** 2})
+    for name, share in (("half bulge", 0.5), ("engine", mask_constants.value_of("kMaskBulgeDepth"))):
+        depth = at_centroid + share * numbers["arc mean bulge"]
+        numbers[f"arc {name} depth"] = depth
+        numbers[f"arc {name} mean width"] = perimeter(depth) / math.pi
     for i, (title, depth) in enumerate((("Plates through the centroids", at_centroid),
                                         ("Plates deeper", exact))):
         p = Panel(d, 30 + 280 * i, 60, 260, 260, (-1.2, 1.2), (-1.2, 1.2))
