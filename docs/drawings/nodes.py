@@ -93,6 +93,23 @@ def moments_rectangle(numbers):
     return d
 
 
+def open_radius(numbers):
+    d = Drawing(560, 320)
+    flat_penalty, flat_slope, penalty = (mask_constants.value_of("kMask" + name) for name in (
+        "FlatPenalty", "FlatSlope", "FlatnessPenalty"))
+    p = Panel(d, 60, 40, 460, 220, (-6, 0), (0.8, 6.2))
+    p.axes([(e, f"1e{e}" if e else "1") for e in range(-6, 1)],
+           [(k, str(k)) for k in (1, 2, 3, 4, 5, 6)], "1 - flatness")
+    p.title("Open radius of a node without gaps, in radii")
+    places = [10 ** (-6 + 6 * i / 240) for i in range(241)]
+    p.path([(math.log10(b), (1 + penalty * b) * (1 + flat_penalty * max(0.0, 1 - flat_slope * b)))
+            for b in places], stroke=BLUE, width=2.5)
+    p.text((-5.9, 2.3), "flat: parts are exact and cheap")
+    p.text((-4.0, 1.45), "bends a little: one rectangle", color=BLUE)
+    p.text((-1.1, 4.9), "bends: opened early", anchor="end")
+    return d
+
+
 def bulge_depth(numbers):
     d = Drawing(860, 420)
     n = 6
@@ -347,5 +364,5 @@ def solid(numbers):
     return d
 
 
-DRAWINGS = {"moments_rectangle": moments_rectangle, "bulge_depth": bulge_depth, "rims": rims,
+DRAWINGS = {"moments_rectangle": moments_rectangle, "open_radius": open_radius, "bulge_depth": bulge_depth, "rims": rims,
             "flat_pair": flat_pair, "splits": splits, "solid": solid}

@@ -1,5 +1,6 @@
 """Drawings of masks.md about the bits: directions, weights, polygons, limits."""
 import math
+import random
 
 from mask_constants import value_of
 from svg import BLUE, FAINT, GREEN, GRID, INK, ORANGE, RED, TINTS, Drawing, Panel
@@ -162,6 +163,14 @@ def polygon_rows_drawing(numbers):
     numbers.update({"quad bits": len(bits), "quad share": counted, "quad exact": exact,
                     "quad error": counted - exact})
     p.text((-1, -1), f"{len(bits)} bits, share {counted:.4f}; Lambert's formula {exact:.4f}", dy=28)
+    anywhere = random.Random(1)
+    triangles = [[(1.0, anywhere.uniform(-1, 1), anywhere.uniform(-1, 1)) for _ in range(3)]
+                 for _ in range(400)]
+    errors = [share_of(bits_of(polygon_rows(t)), normal) - exact_share(t, normal)
+              for t in triangles]
+    numbers["triangle rms error"] = math.sqrt(sum(e * e for e in errors) / len(errors))
+    numbers["triangle mean share"] = (sum(exact_share(t, normal) for t in triangles)
+                                      / len(triangles))
 
     d.text(500, 40, "Edges are half-planes, the polygon their AND", bold=True)
     planes = edge_planes(QUAD)
@@ -298,5 +307,34 @@ def falloff(numbers):
     return d
 
 
-DRAWINGS = {"visibility": visibility, "raster_face": raster_face,
+def steps(numbers):
+    d = Drawing(860, 330)
+
+    def box(x, y, title, words, color, w=150):
+        d.rect(x, y, w, 62, stroke=color, fill="#ffffff", width=1.5)
+        d.text(x + w / 2, y + 25, title, color, 13, "middle", True)
+        d.text(x + w / 2, y + 46, words, INK, 11, "middle")
+
+    box(20, 40, "triangles", "unit frame, welded", INK)
+    box(210, 40, "tiles", "flat pairs (5)", BLUE)
+    box(400, 40, "tree", "nodes as rectangles (4, 5)", BLUE, 190)
+    box(20, 220, "receivers", "points with normals", INK)
+    box(210, 220, "groups", "16 neighbours, cones (6)", ORANGE, 170)
+    box(630, 40, "walk", "which nodes, for whom (6)", GREEN, 200)
+    box(630, 130, "shared masks", "drawn once for a group (3, 7)", GREEN, 200)
+    box(630, 220, "own masks", "lists, 16 receivers (3, 6)", GREEN, 200)
+    box(410, 220, "answers", "sums (2), cracks (8)", RED, 180)
+    for a, b in (((170, 71), (210, 71)), ((360, 71), (400, 71)), ((590, 71), (630, 71)),
+                 ((170, 251), (210, 251)), ((730, 102), (730, 130)), ((730, 192), (730, 220))):
+        d.arrow(a, b)
+    d.path([(295, 220), (295, 161), (605, 161), (605, 85)])
+    d.arrow((605, 85), (630, 85))
+    d.arrow((630, 251), (590, 251))
+    d.text(20, 130, "once per scene", BLUE, 12)
+    d.text(20, 312, "once per set of receivers", ORANGE, 12)
+    d.text(630, 312, "per solve; numbers: sections", GREEN, 12)
+    return d
+
+
+DRAWINGS = {"steps": steps, "visibility": visibility, "raster_face": raster_face,
             "polygon_rows": polygon_rows_drawing, "limit_cone": limit_cone, "falloff": falloff}
