@@ -1,5 +1,6 @@
 """mask_constants.py: tree/masks/constants.inc, the numbers of the mask engine, for scripts."""
 
+import functools
 import pathlib
 import re
 
@@ -7,6 +8,7 @@ TABLE = pathlib.Path(__file__).resolve().parent.parent / "tree/masks/constants.i
 ROW = re.compile(r"^SURFELAO_MASK_(CONSTANT|FLAG|QUALITY)\((.*)\)$")
 
 
+@functools.cache
 def read():
     """[(section, [row])]; a row: name, value (as written, without suffix) and its fields by name.
     Rows of the family are named quality, their value is a list: quality, s, r, u, g."""

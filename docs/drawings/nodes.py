@@ -219,8 +219,8 @@ def rims(numbers):
     d = Drawing(860, 360)
     nodes = split_nodes(sheet_tiles(), 3)
     outline = [(1.5 * math.cos(math.pi * k / 60), math.sin(math.pi * k / 60)) for k in range(120)]
-    probes = [(-1.7 + 3.4 * (i + 0.5) / 170, -1.2 + 2.4 * (j + 0.5) / 120)
-              for i in range(170) for j in range(120)]
+    probes = [(-1.7 + 3.4 * (i + 0.5) / 119, -1.2 + 2.4 * (j + 0.5) / 84)
+              for i in range(119) for j in range(84)]
     on_sheet = [(x / 1.5) ** 2 + y * y < 1 for x, y in probes]
     for i, title in enumerate(("Rectangles of eight nodes", "12 % larger where the tree was cut")):
         p = Panel(d, 30 + 420 * i, 50, 380, 268, (-1.7, 1.7), (-1.2, 1.2))
