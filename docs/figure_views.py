@@ -61,6 +61,11 @@ def thousands(number):
     return f"{number:,}"
 
 
+def cell(row, key, digits):
+    """A row's figure, or None where there is no such row or it lacks the figure."""
+    return fixed(row[key], digits) if row and row.get(key) is not None else None
+
+
 def joined(words):
     words = list(words)
     return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:]))) if words else "none"
@@ -80,6 +85,8 @@ def significant(value, digits=2):
 def table(head, rows):
     """Markdown; a column that is None in every row is left out."""
     rows = [list(row) for row in rows]
+    if not rows:
+        raise ValueError("no rows")
     shown = [i for i in range(len(head)) if any(row[i] is not None for row in rows)]
     lines = [head, ["---"] * len(head), *rows]
     text = ""
@@ -254,9 +261,8 @@ def how_fast(figures):
         masks, disks = row_of(scene, "masks", "good"), row_of(scene, "disks", "good")
         rows.append([
             scene["name"], thousands(scene["triangles"]),
-            f"{fixed(masks['rmse'], 4)}, {fixed(masks['max'], 2)}", fixed(masks["embree_ratio"], 1),
-            fixed(disks["rmse"], 4) if disks else None,
-            fixed(disks["embree_ratio"], 1) if disks else None])
+            f"{fixed(masks['rmse'], 4)}, {fixed(masks['max'], 2)}", cell(masks, "embree_ratio", 1),
+            cell(disks, "rmse", 4), cell(disks, "embree_ratio", 1)])
     return table(["model", "triangles", "masks, good: RMSE, maximum",
                   "Embree's time at that RMSE over ours", "disks, good: RMSE", "Embree over ours"],
                  rows)
@@ -267,10 +273,10 @@ def bent_normals(figures):
     """Angle of bent normals to the reference's, mean and 95th percentile"""
     columns = (("masks", "draft"), ("masks", "good"), ("masks", "best"), ("rays", "4 rays"))
 
-    def cell(row):
+    def angles(row):
         return row and f"{fixed(row['bent_mean_deg'], 2)}, {fixed(row['bent_p95_deg'], 1)}"
     return table(["scene", "draft", "good", "best", "4 rays"],
-                 [[scene["name"], *(cell(row_of(scene, *column)) for column in columns)]
+                 [[scene["name"], *(angles(row_of(scene, *column)) for column in columns)]
                   for scene in scenes_of(figures, "models")])
 
 
@@ -278,7 +284,7 @@ def bent_normals(figures):
 def build_times(figures):
     """Time of building the masks' tree over that of Embree's"""
     return table(["scene", "triangles", "our build over Embree's"],
-                 [[scene["name"], thousands(scene["triangles"]), fixed(scene["build_over_embree"], 2)]
+                 [[scene["name"], thousands(scene["triangles"]), cell(scene, "build_over_embree", 2)]
                   for scene in scenes_of(figures, "models") if scene.get("build_over_embree")])
 
 
@@ -306,10 +312,11 @@ def frontier_table(figures):
 
 @view
 def how_measured(figures, part):
-    """how_measured PART: processor, threads, version and commit of a part"""
+    """how_measured PART: processor, threads, version and commit of a part, and its note"""
     found = figures[part]
     threads = f"{found['threads']} thread{'s' if found['threads'] != 1 else ''}"
-    return f"{found['processor']}, {threads}, version {found['version']} ({found['commit']})"
+    note = f"; {found['note']}" if "note" in found else ""
+    return f"{found['processor']}, {threads}, version {found['version']} ({found['commit']}{note})"
 
 
 @view
@@ -399,7 +406,8 @@ def frame_rates(figures):
                "covering radius", "report, radius")
     return table(["vertices", *columns],
                  [[thousands(row["vertices"]), *(
-                     "" if row[key] is None else row[key] for key in columns)]
+                     "" if row[key] is None else row[key] if key.startswith("report")
+                     else significant(row[key]) for key in columns)]
                   for row in figures["drawing"]["rows"]])
 
 
@@ -499,11 +507,11 @@ def recorded(figures, name):
 def constant(figures, name):
     """constant kName: the value of a constexpr in the sources"""
     root = figures.folder.parent.parent
-    for folder in ("surfels", "files", "image", "tree", "reference", "gpu", "engines", "bake"):
-        for path in sorted((root / folder).rglob("*.h")) + sorted((root / folder).rglob("*.cpp")):
-            found = re.search(rf"\b{name}\s*=\s*([-+\d.e']+)f?\b", path.read_text())
+    for folder in ("surfels", "tree", "reference", "gpu", "engines", "bake"):
+        for path in (path for kind in ("*.h", "*.cpp") for path in sorted((root / folder).rglob(kind))):
+            found = re.search(rf"constexpr \w+ {name} = ([-\d.e]+)f?;", path.read_text())
             if found:
-                return found.group(1).rstrip(".")
+                return found.group(1)
     raise KeyError(name)
 
 

@@ -89,6 +89,12 @@ def stated_phrases():
     return phrases
 
 
+def first_difference(found, wanted):
+    """The first lines of two different texts that differ."""
+    found, wanted = found.split("\n") + [""], wanted.split("\n") + [""]
+    return next(((a, b) for a, b in zip(found, wanted) if a != b), ("", ""))
+
+
 def fill(text, figures, complain):
     """The text with every marker's content written anew."""
     def written(match, frame):
@@ -104,7 +110,9 @@ def fill(text, figures, complain):
             complain(match.start(), f"{match.group(2)}: {error}")
             return match.group()
         if content != match.group(3):
-            complain(match.start(), f"{match.group(2)}: the text is not what the figures say")
+            found, wanted = first_difference(match.group(3), content)
+            complain(match.start(), f"{match.group(2)}: the text is not what the figures say: "
+                                    f"\"{found}\", wanted \"{wanted}\"")
         return match.group(1) + content + match.group(4)
 
     # right to left, so that the offsets of complaints stay those of the page
@@ -150,7 +158,7 @@ def main(arguments):
         name = page.relative_to(ROOT)
         complaints = []
         new = fill(old, figures, lambda offset, fault: complaints.append((line_of(old, offset), fault)))
-        complaints = [fault for fault in complaints if check or "not what" not in fault[1]]
+        complaints = [fault for fault in complaints if check or "the text is not" not in fault[1]]
         for offset in stray_markers(old):
             complaints.append((line_of(old, offset), "a marker without its other half"))
         if not HISTORY.search(old):

@@ -162,13 +162,13 @@ def tables_of(text):
 # ---- parts: each returns what its file holds
 
 
-def compare(build, paths, *options):
-    """The JSON of `surfelao compare`, and its command without paths."""
+def compare(build, path, *options):
+    """The JSON of `surfelao compare`, and its command without the path."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "compare.json"
         words = [str(word) for word in options]
-        shown = f"surfelao compare {'MODELS' if '--frontier' in words else 'MODEL'} {' '.join(words)}"
-        run(build / "bin/surfelao", "compare", *paths, *words, "-o", folder, "--json", file, shown=shown)
+        shown = f"surfelao compare MODEL {' '.join(words)}"
+        run(build / "bin/surfelao", "compare", path, *words, "-o", folder, "--json", file, shown=shown)
         return json.loads(file.read_text()), shown
 
 
@@ -184,15 +184,15 @@ def condensed(scene, name, group):
 
 
 def frontier(build, *options):
-    chosen = models()
-    result, command = compare(build, [path for path, _, _ in chosen], "--frontier", *options,
-                              "--sample", SAMPLE, "--rounds", ROUNDS)
-    failed = [scene["error"] for scene in result["scenes"] if "error" in scene]
-    if failed:
-        raise RuntimeError("; ".join(failed))
-    return {**provenance(build, command),
-            "scenes": [condensed(scene, name, group)
-                       for scene, (_, name, group) in zip(result["scenes"], chosen)]}
+    """Scene by scene: all engines of one take turns in one process."""
+    scenes = []
+    for path, name, group in models():
+        start = time.monotonic()
+        result, command = compare(build, path, "--frontier", *options, "--sample", SAMPLE,
+                                  "--rounds", ROUNDS)
+        scenes.append(condensed(result["scenes"][0], name, group))
+        print(f"    {name}: {time.monotonic() - start:.0f} s", file=sys.stderr, flush=True)
+    return {**provenance(build, command), "scenes": scenes}
 
 
 def part_frontier(build):
@@ -234,7 +234,7 @@ def part_gpu(build):
         info = json.loads(run(build / "bin/surfelao", "info", path, "--json", "-"))
         if info["vertices"] > LARGEST_ON_GPU:
             continue
-        scene, command = compare(build, [path], "--engines", "masks", "--devices", "cpu,gpu",
+        scene, command = compare(build, path, "--engines", "masks", "--devices", "cpu,gpu",
                                  "--qualities", "good", "--rounds", "1", "--sample", SAMPLE)
         row = {"scene": name, "vertices": scene["vertices"]}
         for line in scene["rows"]:
