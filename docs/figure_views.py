@@ -513,3 +513,6 @@ def constant(figures, name):
             if found:
                 return found.group(1)
     raise KeyError(name)
+
+
+import mask_views  # noqa: E402, F401 - more views, in a file of their own
