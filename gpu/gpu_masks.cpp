@@ -7,7 +7,7 @@
 #include "tree/masks/limits.h"
 #include "tree/masks/raster.h"
 #include "tree/masks/tree.h"
-#include "tree/receiver_group.h"
+#include "tree/receiver_groups.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -95,15 +95,6 @@ std::vector<glm::vec4> raster_moments()
     return texels;
 }
 
-std::vector<Receiver> in_mask_frame(std::span<const Receiver> receivers)
-{
-    std::vector<Receiver> turned;
-    turned.reserve(receivers.size());
-    for (const Receiver& receiver : receivers)
-        turned.push_back({kMaskFrame * receiver.position, kMaskFrame * receiver.normal});
-    return turned;
-}
-
 class Solver {
 public:
     Solver(const GlContext& context, const MaskTree& tree, const MaskOptions& options)
@@ -119,21 +110,19 @@ public:
     std::vector<Occlusion> solve(std::span<const Receiver> receivers, std::span<const float> limits,
                                  const Progress& progress)
     {
-        const std::vector<Receiver> turned = in_mask_frame(receivers);
-        const std::vector<ReceiverGroup> groups = group_receivers(turned);
-        ProgressMeter meter(progress, groups.size() * limits.size() * kMaskFaces * kHalves);
+        const ReceiverGroups groups = group_receivers(receivers, kMaskFrame);
+        const std::span<const std::uint32_t> leaves(groups.leaves);
+        ProgressMeter meter(progress, leaves.size() * limits.size() * kMaskFaces * kHalves);
         std::vector<glm::vec4> sums(receivers.size());
-        for (std::size_t first = 0; first < groups.size(); first += kBatchGroups) {
-            const auto batch =
-                std::span(groups).subspan(first, std::min(kBatchGroups, groups.size() - first));
-            Batch work(context_, batch);
+        for (std::size_t first = 0; first < leaves.size(); first += kBatchGroups) {
+            const auto batch = leaves.subspan(first, std::min(kBatchGroups, leaves.size() - first));
+            const std::uint32_t begin = groups.groups[batch.front()].begin;
+            const std::uint32_t end = groups.groups[batch.back()].end;
+            Batch work(context_, groups, batch);
             for (const float limit : limits) {
                 const std::vector<glm::vec4> values = solve_batch(work, limit, meter);
-                for (std::size_t slot = 0; slot < batch.size() * kGroupSize; ++slot) {
-                    const ReceiverGroup& group = batch[slot / kGroupSize];
-                    if (slot % kGroupSize < group.count)
-                        sums[group.receiver[slot % kGroupSize]] += values[slot];
-                }
+                for (std::uint32_t i = begin; i < end; ++i)
+                    sums[groups.order[i]] += values[i - begin];
             }
         }
         std::vector<Occlusion> result;
@@ -150,14 +139,15 @@ public:
 private:
     /// What all walks of one batch use.
     struct Batch {
-        Batch(const GlContext& context, std::span<const ReceiverGroup> groups)
-            : group_texels(upload_groups(context, groups)),
-              halves{ReceiverGrid(context, groups, half_values()),
-                     ReceiverGrid(context, groups, half_values())},
+        Batch(const GlContext& context, const ReceiverGroups& groups,
+              std::span<const std::uint32_t> leaves)
+            : group_texels(upload_groups(context, groups, leaves)),
+              halves{ReceiverGrid(context, groups, leaves, half_values()),
+                     ReceiverGrid(context, groups, leaves, half_values())},
               sums(context, {.width = halves[0].rect().width,
                              .height = halves[0].rect().height,
                              .colors = std::vector<TexelFormat>(4, TexelFormat::rgba32f)}),
-              rows(make_rows(context, groups.size() * kGroupSize, {TexelFormat::rgba32f}))
+              rows(make_rows(context, leaves.size() * kGroupSize, {TexelFormat::rgba32f}))
         {
         }
 

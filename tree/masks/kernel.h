@@ -6,6 +6,8 @@
 /// picked by the linker for all.
 #pragma once
 
+#include "tree/receiver_group.h"
+
 #include <cstddef>
 #include <cstdint>
 
@@ -33,17 +35,8 @@ struct MaskSettings {
 /// Throws std::invalid_argument for options out of their range.
 [[nodiscard]] MaskSettings mask_settings(const MaskOptions& options);
 
-/// Neighbouring receivers: all points within `radius` of `center`, all normals within the cone, no
-/// receiver's tangent plane passes more than `rise` below the parallel plane through the centre.
-struct MaskGroup {
-    float center[3];
-    float radius;
-    float axis[3];
-    float cone_cos, cone_sin;
-    float rise;
-    std::uint32_t begin, end;   ///< receivers, in the order of the tree
-    std::uint32_t first_child;  ///< two, side by side; 0 = leaf of at most 16 receivers
-};
+/// Leaves hold at most 16 receivers.
+using MaskGroup = ReceiverGroup;
 
 /// In MaskNode::links: the node is a patch without gaps, whose neighbours likely continue it.
 constexpr std::uint32_t kMaskSheet = 0x80000000u;
