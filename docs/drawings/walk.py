@@ -7,7 +7,7 @@ from svg import BLUE, FAINT, GREEN, INK, ORANGE, RED, Drawing, Panel
 
 FAMILY = [row[1:] for row in mask_constants.family()]  # s, r, u, g at qualities from -1 on
 LARGEST_MOVE = mask_constants.value_of("kMaskLargestMove")
-GROUP = mask_constants.value_of("kMaskGroupSize")
+GROUP = 16  # kGroupSize of tree/receiver_groups.h
 
 
 def ground(x):

@@ -22,7 +22,7 @@
 #include "tree/disks/disks.h"
 #include "tree/disks/gather.h"
 #include "tree/masks/masks.h"
-#include "tree/receiver_group.h"
+#include "tree/receiver_groups.h"
 
 #include <tbb/global_control.h>
 

@@ -6,20 +6,21 @@
 /// picked by the linker for all.
 ///
 /// Words, one meaning each, here and in shaders/masks_*:
-///   mask       a bit per direction around a receiver, or around a group for what its receivers
-///   share lane       one of the values of a vector: Float4 (tree/lanes.h), Float16
-///   (tree/masks/simd.h) exact      a node whose triangles tile the quadrilateral that it shows:
-///   leaves, whole rectangles cluster    a node that is drawn in place of its triangles though it
-///   is not exact sheet      a cluster so flat and without gaps that its neighbours likely continue
-///   it: its rim is
-///              not where the surface ends (kMaskSheet)
-///   shared, listed, handed, opened   what becomes of a node: drawn for the group, drawn for each
-///   of
-///              its receivers, left to the groups below, replaced by its children
-///   crack      a clear bit between set ones of which a sheet set one
+///
+///     mask      a bit per direction around a receiver, or around a group for what it shares
+///     lane      one of the values of a vector: Float4 (lanes.h), Float16 (simd.h)
+///     exact     a node whose triangles tile the quadrilateral that it shows: leaves, rectangles
+///     cluster   a node that is drawn in place of its triangles though it is not exact
+///     sheet     a cluster so flat and without gaps that its neighbours likely continue it: its
+///               rim is not where the surface ends (kMaskSheet)
+///     crack     a clear bit between set ones of which a sheet set one
+///
+/// A node is shared (drawn for the group), listed (drawn for each of its receivers), handed (left
+/// to the groups below) or opened (replaced by its children).
 #pragma once
 
 #include "tree/masks/constants.h"
+#include "tree/receiver_group.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -51,17 +52,8 @@ struct MaskSettings {
 /// max_distance is left 0: it changes from limit to limit (limits.h).
 [[nodiscard]] MaskSettings mask_settings(const MaskOptions& options);
 
-/// Neighbouring receivers: all points within `radius` of `center`, all normals within the cone, no
-/// receiver's tangent plane passes more than `rise` below the parallel plane through the centre.
-struct MaskGroup {
-    float center[3];
-    float radius;
-    float axis[3];
-    float cone_cos, cone_sin;
-    float rise;
-    std::uint32_t begin, end;   ///< receivers, in the order of the tree
-    std::uint32_t first_child;  ///< two, side by side; 0 = leaf of at most 16 receivers
-};
+/// Leaves hold at most 16 receivers.
+using MaskGroup = ReceiverGroup;
 
 /// A growing array of plain values.
 template <typename T>

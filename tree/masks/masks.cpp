@@ -2,11 +2,11 @@
 
 #include "surfels/errors.h"
 #include "tree/masks/constants.h"
-#include "tree/masks/groups.h"
 #include "tree/masks/kernel.h"
 #include "tree/masks/limits.h"
 #include "tree/masks/raster.h"
 #include "tree/masks/tree.h"
+#include "tree/receiver_groups.h"
 
 #include <glm/geometric.hpp>
 
@@ -138,7 +138,7 @@ public:
                  mask_settings(options)},
           has_triangles_(!tree.nodes.empty()),
           receivers_(receivers),
-          groups_(group_for_masks(receivers)),
+          groups_(group_receivers(receivers, kMaskFrame)),
           limits_(distance_limits(options.definition)),
           progress_(progress, groups_.order.size() * limits_.size()),
           answers_(receivers.size())
@@ -169,7 +169,7 @@ private:
     void visit(std::uint32_t index, const std::uint32_t* in, std::size_t in_count,
                const MaskShared& from_above, std::size_t level)
     {
-        const MaskGroup& group = groups_.groups[index];
+        const ReceiverGroup& group = groups_.groups[index];
         if (group.first_child == 0) {
             solve_leaf(group, in, in_count, from_above);
             return;
@@ -199,7 +199,7 @@ private:
         }
     }
 
-    void solve_leaf(const MaskGroup& group, const std::uint32_t* in, std::size_t in_count,
+    void solve_leaf(const ReceiverGroup& group, const std::uint32_t* in, std::size_t in_count,
                     const MaskShared& from_above)
     {
         MaskReceivers columns{};
@@ -224,7 +224,7 @@ private:
     MaskWorld world_;
     bool has_triangles_;
     std::span<const Receiver> receivers_;
-    MaskGroups groups_;
+    ReceiverGroups groups_;
     std::vector<float> limits_;
     ProgressMeter progress_;
     std::vector<Occlusion> answers_;

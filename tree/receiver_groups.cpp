@@ -1,7 +1,6 @@
-#include "tree/masks/groups.h"
+#include "tree/receiver_groups.h"
 
 #include "tree/lanes.h"
-#include "tree/masks/tree.h"
 #include "tree/part.h"
 
 #include <glm/geometric.hpp>
@@ -16,7 +15,14 @@
 namespace surfelao {
 namespace {
 
-/// Where a receiver stands, in the mask frame.
+/// Receivers; smaller groups are made in less time than it takes to hand them to another thread.
+constexpr std::size_t kParallelGroup = 2048;
+
+/// Keys among which a pivot is chosen at most: mostly it is then within a sixteenth of the place
+/// that is looked for.
+constexpr std::size_t kSample = 63;
+
+/// Where a receiver stands, in the frame of the groups.
 struct alignas(16) Key {
     std::array<float, 3> at;
     std::uint32_t receiver;
@@ -29,8 +35,8 @@ void select(std::span<Key> keys, std::size_t rank, std::size_t axis, std::span<K
 {
     while (rank > 0 && rank < keys.size()) {
         // the place that has the rank in a sample
-        std::array<float, kMaskPivotSample> sample;
-        const std::size_t count = std::clamp(keys.size() / 8, std::size_t{1}, kMaskPivotSample);
+        std::array<float, kSample> sample;
+        const std::size_t count = std::clamp(keys.size() / 8, std::size_t{1}, kSample);
         for (std::size_t i = 0; i < count; ++i)
             sample[i] = keys[(2 * i + 1) * keys.size() / (2 * count)].at[axis];
         const auto middle =
@@ -74,15 +80,18 @@ struct Sums {
 
 class Grouper {
 public:
-    explicit Grouper(std::span<const Receiver> receivers) : receivers_(receivers) {}
+    Grouper(std::span<const Receiver> receivers, const glm::mat3& frame)
+        : receivers_(receivers), frame_(frame)
+    {
+    }
 
-    MaskGroups build()
+    ReceiverGroups build()
     {
         keys_.resize(receivers_.size());
         for_blocks(std::span(keys_), [&](std::span<Key> block, std::size_t) {
             for (Key& key : block) {
                 const auto receiver = static_cast<std::uint32_t>(&key - keys_.data());
-                const glm::vec3 p = kMaskFrame * receivers_[receiver].position;
+                const glm::vec3 p = frame_ * receivers_[receiver].position;
                 key = {{p.x, p.y, p.z}, receiver};
             }
         });
@@ -97,11 +106,12 @@ public:
         out_.order.resize(keys_.size());
         for (auto* columns : {&out_.position, &out_.normal}) {
             for (RawVector<float>& column : *columns) {
-                column.resize(keys_.size() + kMaskGroupSize);
-                std::fill_n(column.end() - kMaskGroupSize, kMaskGroupSize, 0.0f);
+                column.resize(keys_.size() + kGroupSize);
+                std::fill_n(column.end() - kGroupSize, kGroupSize, 0.0f);
             }
         }
-        out_.groups.resize(2 * leaf_count(keys_.size()) - 1);
+        out_.leaves.resize(leaf_count(keys_.size()));
+        out_.groups.resize(2 * out_.leaves.size() - 1);
         build_group(0, 1, 0, keys_.size());
         return std::move(out_);
     }
@@ -109,26 +119,27 @@ public:
 private:
     static std::size_t leaf_count(std::size_t receivers)
     {
-        return (receivers + kMaskGroupSize - 1) / kMaskGroupSize;
+        return (receivers + kGroupSize - 1) / kGroupSize;
     }
 
     /// Group `index` over keys [begin, end); its descendants stand at [first, first + 2
     /// (leaves-1)).
     Sums build_group(std::size_t index, std::size_t first, std::size_t begin, std::size_t end)
     {
-        MaskGroup& group = out_.groups[index];
+        ReceiverGroup& group = out_.groups[index];
         group.begin = static_cast<std::uint32_t>(begin);
         group.end = static_cast<std::uint32_t>(end);
         group.first_child = 0;
         const std::size_t leaves = leaf_count(end - begin);
         Sums sums;
         if (leaves == 1) {
+            out_.leaves[begin / kGroupSize] = static_cast<std::uint32_t>(index);
             sums = finish_leaf(begin, end);
         } else {
             group.first_child = static_cast<std::uint32_t>(first);
             // in two at the median of the longest extent, so that all leaves but the last are full
             const std::size_t left_leaves = leaves / 2;
-            const std::size_t middle = begin + left_leaves * kMaskGroupSize;
+            const std::size_t middle = begin + left_leaves * kGroupSize;
             select(std::span(keys_).subspan(begin, end - begin), middle - begin,
                    longest_axis(begin, end), std::span(spare_).subspan(begin, end - begin));
             const std::size_t left_first = first + 2;
@@ -138,7 +149,7 @@ private:
             const auto right = [&] {
                 right_sums = build_group(first + 1, right_first, middle, end);
             };
-            if (end - begin > kMaskParallelGroup) {
+            if (end - begin > kParallelGroup) {
                 tbb::parallel_invoke(left, right);
             } else {
                 left();
@@ -176,7 +187,7 @@ private:
         Sums sums;
         for (std::size_t i = begin; i < end; ++i) {
             const Key& key = keys_[i];
-            const glm::vec3 normal = kMaskFrame * receivers_[key.receiver].normal;
+            const glm::vec3 normal = frame_ * receivers_[key.receiver].normal;
             out_.order[i] = key.receiver;
             for (std::size_t k = 0; k < 3; ++k) {
                 out_.position[k][i] = key.at[k];
@@ -189,7 +200,7 @@ private:
     }
 
     /// The centre is the centroid of the points: the box's lies inside of the body, and darkens.
-    void bound(MaskGroup& group, const Sums& sums) const
+    void bound(ReceiverGroup& group, const Sums& sums) const
     {
         const glm::vec3 center(sums.position / static_cast<double>(group.end - group.begin));
         const double length = glm::length(sums.normal);
@@ -225,15 +236,16 @@ private:
     }
 
     std::span<const Receiver> receivers_;
+    glm::mat3 frame_;
     RawVector<Key> keys_, spare_;
-    MaskGroups out_;
+    ReceiverGroups out_;
 };
 
 }  // namespace
 
-MaskGroups group_for_masks(std::span<const Receiver> receivers)
+ReceiverGroups group_receivers(std::span<const Receiver> receivers, const glm::mat3& frame)
 {
-    return Grouper(receivers).build();
+    return Grouper(receivers, frame).build();
 }
 
 }  // namespace surfelao
