@@ -28,10 +28,10 @@ constexpr std::size_t kBatchGroups = 16384;
 /// Nodes that a receiver looks at in one draw; see disks_gather.frag.
 constexpr int kStepLimit = 8192;
 
-/// What one walk draws: rows 0 to 7 or 8 to 15 of a face. A whole face and what of it clusters have
+/// What one walk draws: rows 0 to 7 or 8 to 15 of a face. A whole face and what of it sheets have
 /// set would be more outputs than a device must have.
 constexpr int kHalves = 2;
-constexpr std::array<const char*, 4> kHalfOutputs = {"words0", "words1", "loose0", "loose1"};
+constexpr std::array<const char*, 4> kHalfOutputs = {"words0", "words1", "sheets0", "sheets1"};
 
 /// The tree in preorder, kMaskFirstChild replaced by the node after the subtree.
 std::vector<MaskNode> in_preorder(const MaskTree& tree)

@@ -5,7 +5,7 @@
 // tree/masks/raster.h, the axis turned round for the three backward faces. Sixteen words, one a row,
 // as four uvec4, the quarters of a face: row 4 q + i is component i of quarter q.
 //
-// CPU twin   tree/masks/raster.cpp (the same numbers to the last bit), tree/masks/kernel_body.h
+// CPU twin   tree/masks/raster.cpp (the same numbers to the last bit), tree/masks/kernel_raster.h
 const vec4 kRowV[4] = vec4[4](
     vec4(-0.906347156, -0.741650522, -0.599376917, -0.472964764),
     vec4(-0.357805729, -0.25048697, -0.148335993, -0.0491268486),
@@ -44,7 +44,7 @@ uvec4 bits_of(Side side, int q)
 }
 
 // The bits of quarter q whose rays meet a plane within the limit: n.d >= k |d| for the plane's
-// normal n, k = its distance / limit, 0 <= k < 1 (cone_bits in tree/masks/kernel_body.h says why).
+// normal n, k = its distance / limit, 0 <= k < 1 (cone_bits in tree/masks/kernel_raster.h says why).
 uvec4 cone_bits(vec3 n, float k, int q)
 {
     float a = n.y * n.y - k * k;

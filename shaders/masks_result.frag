@@ -13,7 +13,7 @@
 //            u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
 // Writes     out_result      RGBA32F: bent normal, mask frame, any length, zero where all is closed |
 //                            occlusion (surfels/occlusion.h)
-// CPU twin   solve in tree/masks/kernel_body.h
+// CPU twin   openness_of in tree/masks/kernel_solve.h
 uniform sampler2D u_share;
 uniform sampler2D u_bent;
 uniform sampler2D u_bent_filled;

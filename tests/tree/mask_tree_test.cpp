@@ -1,6 +1,7 @@
 #include "tree/masks/tree.h"
 
 #include "scenes.h"
+#include "surfels/errors.h"
 #include "surfels/geometry.h"
 #include "tree/masks/kernel.h"
 #include "tree/masks/masks.h"
@@ -131,6 +132,20 @@ TEST(MaskTree, TessellatedRectangleIsOneRectangle)
         const float u = glm::length(root.axis_a - root.axis_b);
         const float v = glm::length(root.axis_a + root.axis_b);
         EXPECT_NEAR(std::max(u, v) / std::min(u, v), 3.0f, 1e-3f) << cells;
+    }
+}
+
+// A link has 28 bits; such a tree itself would take 16 GiB.
+TEST(MaskTree, MoreLeavesThanLinksCanCountAreRefused)
+{
+    EXPECT_NO_THROW(check_mask_tiles(kMostMaskTiles, 2 * kMostMaskTiles));
+    try {
+        check_mask_tiles(kMostMaskTiles + 1, 200'000'000);
+        ADD_FAILURE() << "nothing thrown";
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(),
+                     "too many triangles for masks: 200000000, at most 134217728, a flat pair "
+                     "counting as one");
     }
 }
 

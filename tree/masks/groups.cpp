@@ -154,14 +154,14 @@ private:
     std::size_t longest_axis(std::size_t begin, std::size_t end) const
     {
         // the fourth lane is the receiver and of no meaning
-        Lanes low = std::bit_cast<Lanes>(keys_[begin]);
-        Lanes high = low;
+        Float4 low = std::bit_cast<Float4>(keys_[begin]);
+        Float4 high = low;
         for (std::size_t i = begin + 1; i < end; ++i) {
-            const Lanes at = std::bit_cast<Lanes>(keys_[i]);
+            const Float4 at = std::bit_cast<Float4>(keys_[i]);
             low = least(low, at);
             high = most(high, at);
         }
-        const Lanes length = high - low;
+        const Float4 length = high - low;
         std::size_t axis = 0;
         for (std::size_t k = 1; k < 3; ++k) {
             if (length[k] > length[axis])
@@ -197,17 +197,17 @@ private:
             length > 0.0 ? glm::vec3(sums.normal / length)
                          : glm::vec3(out_.normal[0][group.begin], out_.normal[1][group.begin],
                                      out_.normal[2][group.begin]);
-        Lanes radius2 = all_lanes(0.0f);
-        Lanes rise = all_lanes(-std::numeric_limits<float>::max());
-        Lanes cone_cos = all_lanes(1.0f);
-        for (std::uint32_t i = group.begin; i < group.end; i += kLaneCount) {
-            const LaneMask inside = LaneMask{0, 1, 2, 3} < static_cast<std::int32_t>(group.end - i);
-            const Lanes x = load_lanes(&out_.position[0][i]) - center.x;
-            const Lanes y = load_lanes(&out_.position[1][i]) - center.y;
-            const Lanes z = load_lanes(&out_.position[2][i]) - center.z;
-            const Lanes nx = load_lanes(&out_.normal[0][i]);
-            const Lanes ny = load_lanes(&out_.normal[1][i]);
-            const Lanes nz = load_lanes(&out_.normal[2][i]);
+        Float4 radius2 = all_lanes(0.0f);
+        Float4 rise = all_lanes(-std::numeric_limits<float>::max());
+        Float4 cone_cos = all_lanes(1.0f);
+        for (std::uint32_t i = group.begin; i < group.end; i += kFloat4Lanes) {
+            const Bool4 inside = Bool4{0, 1, 2, 3} < static_cast<std::int32_t>(group.end - i);
+            const Float4 x = load_lanes(&out_.position[0][i]) - center.x;
+            const Float4 y = load_lanes(&out_.position[1][i]) - center.y;
+            const Float4 z = load_lanes(&out_.position[2][i]) - center.z;
+            const Float4 nx = load_lanes(&out_.normal[0][i]);
+            const Float4 ny = load_lanes(&out_.normal[1][i]);
+            const Float4 nz = load_lanes(&out_.normal[2][i]);
             // lanes beyond the end change nothing
             radius2 = most(radius2, inside ? x * x + y * y + z * z : radius2);
             rise = most(rise, inside ? -(nx * x + ny * y + nz * z) : rise);

@@ -4,6 +4,19 @@
 /// tree/masks/kernel_body.h with their own flags. Plain data only, and no library code, goes
 /// through this header: an inline function that is compiled with wide instructions must not be
 /// picked by the linker for all.
+///
+/// Words, one meaning each, here and in shaders/masks_*:
+///   mask       a bit per direction around a receiver, or around a group for what its receivers
+///   share lane       one of the values of a vector: Float4 (tree/lanes.h), Float16
+///   (tree/masks/simd.h) exact      a node whose triangles tile the quadrilateral that it shows:
+///   leaves, whole rectangles cluster    a node that is drawn in place of its triangles though it
+///   is not exact sheet      a cluster so flat and without gaps that its neighbours likely continue
+///   it: its rim is
+///              not where the surface ends (kMaskSheet)
+///   shared, listed, handed, opened   what becomes of a node: drawn for the group, drawn for each
+///   of
+///              its receivers, left to the groups below, replaced by its children
+///   crack      a clear bit between set ones of which a sheet set one
 #pragma once
 
 #include "tree/masks/constants.h"
@@ -18,21 +31,24 @@ struct MaskOptions;
 
 /// The members of the parameter family and of the definition that the kernels need.
 struct MaskSettings {
-    float cluster;  ///< s: a node is drawn where its radius is below this share of its distance
+    /// s: a node is drawn where its open radius is below this share of its distance.
+    float cluster;
     float cluster_limit;  ///< what unimportant directions may relax s to
-    float
-        share_inner;   ///< u: group radius over distance below which a mask is shared, inner groups
+    /// u: an inner group shares what is so far that group radius over distance is below this.
+    float share_inner;
     float share_leaf;  ///< r: the same for leaf groups
     float max_distance;
     float exact_radius;  ///< nodes with a smaller open_radius are never opened
-    float graze;         ///< polygons whose highest corner lies below this sine of elevation over
-                         ///< the receiver's tangent plane are not drawn
-    bool one_sided;      ///< of small closed bodies only what faces away is drawn
-    bool fill;           ///< close single-bit cracks where much is covered
-    float close;         ///< how much cracks of two bits count as closed where all else is
+    /// g: polygons whose highest corner lies below this sine of elevation over the receiver's
+    /// tangent plane are not drawn.
+    float graze;
+    bool one_sided;  ///< of small closed bodies only what faces away is drawn
+    bool fill;       ///< close single-bit cracks where much is covered
+    float close;     ///< how much cracks of two bits count as closed where all else is
 };
 
-/// Throws std::invalid_argument for options out of their range.
+/// Throws SettingsError for a quality out of its range or a kernel that is not the cosine.
+/// max_distance is left 0: it changes from limit to limit (limits.h).
 [[nodiscard]] MaskSettings mask_settings(const MaskOptions& options);
 
 /// Neighbouring receivers: all points within `radius` of `center`, all normals within the cone, no
@@ -61,7 +77,7 @@ void release(MaskBuffer<std::uint32_t>& buffer);
 /// Working memory of one thread.
 struct MaskScratch {
     MaskBuffer<std::uint32_t> frontier;
-    MaskBuffer<std::uint32_t> clusters;    ///< nodes to be drawn for each receiver of a group
+    MaskBuffer<std::uint32_t> sheets;      ///< nodes to be drawn for each receiver of a group
     MaskBuffer<std::uint32_t> rectangles;  ///< the same, whose rims are where the surface ends
     MaskBuffer<std::uint32_t> triangles;   ///< and with three corners
 };

@@ -1,5 +1,6 @@
 #include "tree/masks/masks.h"
 
+#include "surfels/errors.h"
 #include "tree/masks/constants.h"
 #include "tree/masks/groups.h"
 #include "tree/masks/kernel.h"
@@ -20,7 +21,7 @@
 #include <limits>
 #include <memory>
 #include <new>
-#include <stdexcept>
+#include <string>
 
 namespace surfelao {
 
@@ -84,9 +85,9 @@ float between(float a, float b, float t)
 MaskSettings mask_settings(const MaskOptions& options)
 {
     if (!(options.quality >= MaskOptions::kCoarsest && options.quality <= MaskOptions::kFinest))
-        throw std::invalid_argument("MaskOptions: quality must be between -1 and 4");
+        throw SettingsError("masks: the quality must be between -1 and 4");
     if (options.definition.kernel != Kernel::cosine)
-        throw std::invalid_argument("MaskOptions: masks know the cosine kernel only");
+        throw SettingsError("masks: the kernel must be cosine, for masks know no other");
     MaskSettings settings{};
     settings.fill = !options.exact;
     // within a limit a body's far side may be missing
@@ -107,29 +108,6 @@ MaskSettings mask_settings(const MaskOptions& options)
     return settings;
 }
 
-/// A falloff is a mean over hits within several limits: with H(w) the weight of the distance t,
-/// H = integral over h in [0, 1] of (t < distance at which the weight is h). Midpoints of as many
-/// steps; a hit's weight is off by half a step at most.
-
-std::vector<float> distance_limits(const Definition& definition)
-{
-    if (definition.falloff == Falloff::none)
-        return {definition.max_distance};
-    std::vector<float> limits;
-    for (int step = 0; step < kMaskFalloffSteps; ++step) {
-        const float weight = (static_cast<float>(step) + 0.5f) / kMaskFalloffSteps;
-        // hit_weight falls steadily: bisection keeps its formula in one place
-        float near = 0.0f;
-        float far = definition.max_distance;
-        for (int i = 0; i < kMaskFalloffHalvings; ++i) {
-            const float middle = 0.5f * (near + far);
-            (hit_weight(definition, middle) > weight ? near : far) = middle;
-        }
-        limits.push_back(far);
-    }
-    return limits;
-}
-
 namespace {
 
 /// Buffers of one thread: one list of nodes per level of the group tree on the way down.
@@ -143,7 +121,7 @@ struct Workspace {
     ~Workspace()
     {
         release(scratch.frontier);
-        release(scratch.clusters);
+        release(scratch.sheets);
         release(scratch.rectangles);
         release(scratch.triangles);
         for (MaskBuffer<std::uint32_t>& list : lists)
@@ -278,6 +256,10 @@ std::string_view name_of(MaskKernelSet kernel)
 std::vector<Occlusion> solve_masks(const MaskTree& tree, std::span<const Receiver> receivers,
                                    const MaskOptions& options, const Progress& progress)
 {
+    const std::vector<MaskKernelSet> sets = available_mask_kernels();
+    if (options.kernel != MaskKernelSet::best &&
+        std::ranges::find(sets, options.kernel) == sets.end())
+        throw SettingsError("masks: this processor has no " + std::string(name_of(options.kernel)));
     return Solver(tree, receivers, options, progress).run();
 }
 

@@ -1,5 +1,6 @@
 #include "tree/masks/tree.h"
 
+#include "surfels/errors.h"
 #include "tree/lanes.h"
 #include "tree/masks/constants.h"
 #include "tree/masks/masks.h"
@@ -20,6 +21,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace surfelao {
@@ -35,7 +37,7 @@ struct alignas(16) Key {
 
 struct Extent {
     /// Of `at`; what follows it in a key is carried along and of no meaning.
-    std::array<Lanes, 2> low, high;
+    std::array<Float4, 2> low, high;
 
     Extent()
     {
@@ -45,11 +47,11 @@ struct Extent {
     explicit Extent(std::span<const Key> keys) : Extent()
     {
         for (const Key& key : keys) {
-            const auto at = std::bit_cast<std::array<Lanes, 2>>(key);
+            const auto at = std::bit_cast<std::array<Float4, 2>>(key);
             add({at, at});
         }
     }
-    Extent(const std::array<Lanes, 2>& lowest, const std::array<Lanes, 2>& highest)
+    Extent(const std::array<Float4, 2>& lowest, const std::array<Float4, 2>& highest)
         : low(lowest), high(highest)
     {
     }
@@ -158,7 +160,8 @@ public:
 
     RawVector<MaskNode> build()
     {
-        if (geometry_.triangles.empty())
+        const std::size_t triangles = geometry_.triangles.size();
+        if (triangles == 0)
             return {};
         RawVector<glm::vec3> normals;
         normals.resize(geometry_.triangles.size());
@@ -168,6 +171,7 @@ public:
         });
         tiles_ = tiles_of(geometry_, normals);
         const std::size_t count = tiles_.size();
+        check_mask_tiles(count, triangles);
         positions_.resize(geometry_.positions.size());
         for_blocks(std::span(positions_), [&](std::span<glm::vec3> block, std::size_t i) {
             for (std::size_t v = 0; v < block.size(); ++v)
@@ -404,8 +408,21 @@ private:
 
 }  // namespace
 
+void check_mask_tiles(std::uint64_t tiles, std::uint64_t triangles)
+{
+    // for the GPU the last link is the number of nodes
+    static_assert(2 * kMostMaskTiles - 1 <= kMaskFirstChild);
+    if (tiles > kMostMaskTiles)
+        throw InputError("too many triangles for masks: " + std::to_string(triangles) +
+                         ", at most " + std::to_string(kMostMaskTiles) +
+                         ", a flat pair counting as one");
+}
+
 std::shared_ptr<const MaskTree> build_mask_tree(const Geometry& geometry)
 {
+    // before anything counts them in 32 bits: all may be in pairs
+    const std::size_t triangles = geometry.triangles.size();
+    check_mask_tiles((triangles + 1) / 2, triangles);
     auto tree = std::make_shared<MaskTree>();
     if (is_winding_mixed(geometry)) {
         Geometry alike = geometry;
