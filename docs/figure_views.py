@@ -509,7 +509,7 @@ def constant(figures, name):
     root = figures.folder.parent.parent
     for folder in ("surfels", "tree", "reference", "gpu", "engines", "bake"):
         for path in (path for kind in ("*.h", "*.cpp") for path in sorted((root / folder).rglob(kind))):
-            found = re.search(rf"constexpr \w+ {name} = ([-\d.e]+)f?;", path.read_text())
+            found = re.search(rf"constexpr [\w:]+ {name} = ([-\d.e]+)f?;", path.read_text())
             if found:
                 return found.group(1)
     raise KeyError(name)

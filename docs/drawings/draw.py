@@ -24,7 +24,7 @@ MODULES = [raster, nodes, walk, answers]
 def rounded(value):
     if isinstance(value, list):
         return [rounded(v) for v in value]
-    return value if isinstance(value, int) else float(f"{value:.4g}")
+    return value if isinstance(value, int) else float(f"{value:.5g}")
 
 
 def main():

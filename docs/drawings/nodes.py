@@ -226,7 +226,7 @@ def rims(numbers):
         p = Panel(d, 30 + 420 * i, 50, 380, 268, (-1.7, 1.7), (-1.2, 1.2))
         p.title(title)
         p.area(outline, BLUE, width=1)
-        shown = []
+        shown, forms = [], []
         for tiles, low, high in nodes:
             patch = Patch(tiles)
             center, (along, across) = patch.center, patch.axes()
@@ -235,6 +235,8 @@ def rims(numbers):
                 across, move_b = grow_to_cuts(across, center, low, high)
                 center = (center[0] + move_a[0] + move_b[0], center[1] + move_a[1] + move_b[1])
             shown.append(rectangle(center, along, across))
+            forms.append([*center, along[0] + across[0], along[1] + across[1],
+                          across[0] - along[0], across[1] - along[1]])
         for corners in shown:
             p.path(corners, stroke=ORANGE, fill="#fbd38d", width=1.5, opacity=0.75, close=True)
         cuts = {(axis, value) for _, low, high in nodes for axis in range(2)
@@ -248,6 +250,7 @@ def rims(numbers):
         d.text(30 + 420 * i, 340, f"{100 * missed:.1f} % of the sheet is missed, "
                f"{100 * beyond:.1f} % is drawn beyond it", size=12)
         numbers[f"rims {i} missed"], numbers[f"rims {i} beyond"] = missed, beyond
+    numbers["rims nodes"] = forms  # with rims; mask_derivation_test.cpp compares the engine's
     return d
 
 
