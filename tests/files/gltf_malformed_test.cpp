@@ -15,6 +15,7 @@ namespace {
 using nlohmann::json;
 using test::bytes_of;
 using test::GltfMaker;
+using test::primitive;
 using test::square;
 
 struct Malformed {
@@ -26,11 +27,6 @@ struct Malformed {
 void PrintTo(const Malformed& malformed, std::ostream* stream)
 {
     *stream << malformed.name;
-}
-
-json& primitive(GltfMaker& maker)
-{
-    return maker.document["meshes"][0]["primitives"][0];
 }
 
 json& accessor(GltfMaker& maker, std::size_t index)
