@@ -1,4 +1,5 @@
 // Broken glTF files: each is refused in one sentence that names the element and the fault.
+// long: a table of them
 #include "gltf_maker.h"
 
 #include "files/gltf_io.h"

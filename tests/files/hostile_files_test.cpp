@@ -158,6 +158,7 @@ void use_often(GltfMaker& maker, int count, const json& node)
 
 // ---- the table
 
+// long: a table
 std::vector<Hostile> hostile_files()
 {
     const auto zero = [](int) { return 0.0f; };
