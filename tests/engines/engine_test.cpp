@@ -1,15 +1,16 @@
 #include "engines/engine.h"
 
+#include "differences.h"
 #include "engines/device_solution.h"
 #include "gpu/answers.h"
 #include "gpu/context.h"
 #include "scenes.h"
 #include "surfels/errors.h"
+#include "tests/gpu/contexts.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <thread>
@@ -18,19 +19,6 @@
 namespace surfelao {
 namespace {
 
-bool same_bytes(const std::vector<Occlusion>& a, const std::vector<Occlusion>& b)
-{
-    return a.size() == b.size() &&
-           std::memcmp(a.data(), b.data(), a.size() * sizeof(Occlusion)) == 0;
-}
-
-/// Software, the same everywhere; one for each thread.
-const GlContext& software()
-{
-    thread_local const GlContext context = GlContext::create(GlBackend::osmesa);
-    return context;
-}
-
 /// Every engine on every device where it runs.
 std::vector<EngineChoice> all_choices()
 {
@@ -38,7 +26,8 @@ std::vector<EngineChoice> all_choices()
     for (const Engine engine : {Engine::masks, Engine::disks, Engine::rays}) {
         choices.push_back({.engine = engine});
         if (runs_on(engine, Device::gpu))
-            choices.push_back({.engine = engine, .device = Device::gpu, .context = &software()});
+            choices.push_back(
+                {.engine = engine, .device = Device::gpu, .context = &test_context()});
     }
     return choices;
 }

@@ -1,5 +1,6 @@
 #include "reference/smoothing.h"
 
+#include "differences.h"
 #include "reference/rays.h"
 #include "scenes.h"
 
@@ -9,14 +10,6 @@
 
 namespace surfelao {
 namespace {
-
-double rms_difference(const std::vector<Occlusion>& a, const std::vector<Occlusion>& b)
-{
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        sum += std::pow(a[i].occlusion - b[i].occlusion, 2);
-    return std::sqrt(sum / static_cast<double>(a.size()));
-}
 
 TEST(Smoothing, AConstantStaysItself)
 {

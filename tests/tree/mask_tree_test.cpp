@@ -1,5 +1,6 @@
 #include "tree/masks/tree.h"
 
+#include "differences.h"
 #include "scenes.h"
 #include "surfels/errors.h"
 #include "surfels/geometry.h"
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 namespace surfelao {
@@ -160,10 +160,7 @@ TEST(MaskTree, SameBytesForAnyNumberOfThreads)
     const auto one = build(1);
     for (const std::size_t threads : {2, 5}) {
         const auto more = build(threads);
-        ASSERT_EQ(one->nodes.size(), more->nodes.size());
-        EXPECT_EQ(std::memcmp(one->nodes.data(), more->nodes.data(),
-                              one->nodes.size() * sizeof(MaskNode)),
-                  0);
+        EXPECT_TRUE(same_bytes(one->nodes, more->nodes));
     }
 }
 
