@@ -1,5 +1,7 @@
 #include "reference/rays.h"
 
+#include "surfels/errors.h"
+
 #include <glm/geometric.hpp>
 
 #include <gtest/gtest.h>
@@ -333,6 +335,17 @@ TEST(Rays, ProgressGrowsToTheEndAndFalseCancels)
     EXPECT_GT(last, 0.5);
     const auto cancel = [](double) { return false; };
     EXPECT_THROW(static_cast<void>(trace_occlusion(scene, receivers, {}, cancel)), Cancelled);
+}
+
+TEST(Rays, BadOptionsAreRefused)
+{
+    const Geometry geometry = make_geometry(hills());
+    const RayScene scene(geometry, RayScene::Build::fast);
+    for (const std::uint32_t rays : {0u, kMostRays + 1})
+        EXPECT_THROW(static_cast<void>(trace_occlusion(scene, {}, {.rays = rays})), SettingsError);
+    EXPECT_THROW(
+        static_cast<void>(trace_occlusion(scene, {}, {.definition = {.max_distance = -1.0f}})),
+        SettingsError);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "tree/masks/masks.h"
 
 #include "scenes.h"
+#include "surfels/errors.h"
 
 #include <glm/geometric.hpp>
 
@@ -390,10 +391,10 @@ TEST(MaskWorlds, CancelledWhenTheListenerSaysStop)
 TEST(MaskWorlds, RefusesWhatItDoesNotMeasure)
 {
     const Geometry geometry = make_geometry(scenes::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1));
-    EXPECT_THROW(static_cast<void>(solve(geometry, {}, {.quality = 5.0f})), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(solve(geometry, {}, {.quality = 5.0f})), SettingsError);
     MaskOptions bunnell;
     bunnell.definition.kernel = Kernel::bunnell;
-    EXPECT_THROW(static_cast<void>(solve(geometry, {}, bunnell)), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(solve(geometry, {}, bunnell)), SettingsError);
 }
 
 }  // namespace
