@@ -299,8 +299,7 @@ private:
         scene_.context.finish("averaging visibility");
     }
 
-    TextureBuffer answer(const ReceiverGroups& groups, std::size_t count,
-                         ProgressMeter& meter)
+    TextureBuffer answer(const ReceiverGroups& groups, std::size_t count, ProgressMeter& meter)
     {
         GatherGrid gathered(scene_.context, groups);
         gather(gathered, options_.opening, options_.definition.max_distance, meter);

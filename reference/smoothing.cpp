@@ -8,13 +8,17 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <string>
 
 namespace surfelao {
 
 std::vector<Occlusion> smooth_occlusion(const Geometry& geometry,
                                         std::span<const Occlusion> occlusion)
 {
-    SURFELAO_CHECK(occlusion.size() == geometry.positions.size());
+    require(occlusion.size() == geometry.positions.size(),
+            "smoothing takes one answer per vertex: there are " +
+                std::to_string(geometry.positions.size()) + " vertices and " +
+                std::to_string(occlusion.size()) + " answers");
     // a neighbour is met twice where two triangles share the edge: all inner edges count alike, and
     // borders half as much
     const Buckets<std::uint32_t> corners = corners_around(geometry.triangles, geometry.welded);

@@ -48,8 +48,8 @@ struct MaskSettings {
     float close;     ///< how much cracks of two bits count as closed where all else is
 };
 
-/// Throws SettingsError for a quality out of its range or a kernel that is not the cosine.
-/// max_distance is left 0: it changes from limit to limit (limits.h).
+/// Throws SettingsError for options out of their range. max_distance is left 0: it changes from
+/// limit to limit (limits.h).
 [[nodiscard]] MaskSettings mask_settings(const MaskOptions& options);
 
 /// Leaves hold at most 16 receivers.

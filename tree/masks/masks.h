@@ -69,9 +69,9 @@ struct MaskOptions {
     MaskKernelSet kernel = MaskKernelSet::best;  ///< one of available_mask_kernels(), or best
 };
 
-/// One Occlusion per receiver. All cores, same bytes for any number of threads. Throws Cancelled,
-/// and SettingsError where the quality is out of its range, the definition's kernel is not
-/// Kernel::cosine, or this processor has no such instructions.
+/// One Occlusion per receiver. All cores, same bytes for any number of threads. The definition's
+/// kernel must be Kernel::cosine. Throws SettingsError where an option is out of its range or the
+/// processor lacks the kernel, Cancelled.
 [[nodiscard]] std::vector<Occlusion> solve_masks(const MaskTree& tree,
                                                  std::span<const Receiver> receivers,
                                                  const MaskOptions& options,
