@@ -3,11 +3,11 @@
 #include "bake/json.h"
 #include "bake/peak_memory.h"
 #include "engines/threads.h"
+#include "files/file_type.h"
 #include "files/maker_mark.h"
 #include "files/scene_io.h"
 #include "files/sidecars.h"
 #include "surfels/errors.h"
-#include "surfels/extension.h"
 #include "surfels/number_text.h"
 #include "surfels/stopwatch.h"
 
@@ -130,7 +130,7 @@ std::string json_of(std::span<const BatchEntry> batch)
 fs::path output_in_folder(const fs::path& input, const fs::path& folder)
 {
     fs::path name = input.filename();
-    if (lower_extension(input) == ".stl")
+    if (type_of(input) == FileType::stl)
         name.replace_extension(".ply");
     return folder / name;
 }
@@ -170,7 +170,7 @@ bool is_finished(const BakeSettings& settings)
     if (error || read_mark(settings.output) != mark_of(settings))
         return false;
     std::vector<fs::path> sources;
-    if (lower_extension(settings.input) == ".gltf")
+    if (type_of(settings.input) == FileType::gltf)
         sources = sidecars_of(settings.input);
     sources.push_back(settings.input);
     return std::ranges::all_of(sources, [&](const fs::path& source) {

@@ -1,8 +1,8 @@
 #include "cli/output.h"
 
 #include "cli/commands.h"
+#include "files/file_type.h"
 #include "files/maker_mark.h"
-#include "files/scene_io.h"
 #include "files/sidecars.h"
 #include "surfels/atomic_file.h"
 #include "surfels/errors.h"
@@ -51,7 +51,7 @@ void FilePlan::writes(const fs::path& file, const std::string& what)
             throw UsageError(input->second.string() + " is read and would be overwritten" +
                              (input->second == file ? "." : " by " + file.string() + "."));
         }
-        if (!is_mesh_name(file))  // no sidecar has a mesh's extension
+        if (type_of(file) == FileType::unknown)  // no sidecar has a mesh's extension
             refuse_sidecar(file, *identity);
     }
     std::error_code error;

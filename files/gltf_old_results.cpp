@@ -12,6 +12,9 @@ namespace {
 using nlohmann::json;
 using Indices = std::set<std::size_t>;
 
+/// Most bytes that stand behind the last value of a buffer: a GLB has whole words.
+constexpr std::size_t kPadding = 3;
+
 bool was_baked(const json& document)
 {
     const json::json_pointer place = json::json_pointer("/asset/extras") / kMarkKey;
@@ -100,17 +103,20 @@ void drop_old_results(json& document, std::vector<GltfBuffer>& buffers, const Sc
     const json& first_view = views[*old_views.begin()];
     const std::size_t buffer = first_view.value("buffer", std::size_t{0});
     const std::size_t begin = first_view.value("byteOffset", std::size_t{0});
+    std::size_t end = 0;
     for (std::size_t view = 0; view < views.size(); ++view) {
         const bool is_old = view >= *old_views.begin();
         const bool is_there = views[view].value("buffer", std::size_t{0}) == buffer;
-        const bool is_behind = views[view].value("byteOffset", std::size_t{0}) +
-                                   views[view].value("byteLength", std::size_t{0}) >
-                               begin;
-        if (is_old ? !is_there : is_there && is_behind)
+        const std::size_t view_end = views[view].value("byteOffset", std::size_t{0}) +
+                                     views[view].value("byteLength", std::size_t{0});
+        if (is_old ? !is_there : is_there && view_end > begin)
             return;
+        if (is_old)
+            end = std::max(end, view_end);
     }
     const bool is_whole_buffer = begin == 0;
     if (buffer >= buffers.size() || begin > buffers[buffer].bytes.size() ||
+        end + kPadding < buffers[buffer].bytes.size() ||
         (is_whole_buffer && (buffer == 0 || buffer != buffers.size() - 1)))
         return;
     keep_first(accessors, *old->begin());

@@ -1,13 +1,13 @@
 #include "files/gltf_io.h"
 
 #include "files/file_contents.h"
+#include "files/file_type.h"
 #include "files/gltf_accessor.h"
 #include "files/gltf_asset.h"
 #include "files/gltf_old_results.h"
 #include "files/gltf_uri.h"
 #include "files/maker_mark.h"
 #include "surfels/errors.h"
-#include "surfels/extension.h"
 
 #include <glm/geometric.hpp>
 
@@ -438,7 +438,7 @@ std::string gltf_contents(const fs::path& path, const Scene& scene,
     json document = asset->document;
     std::vector<GltfBuffer> buffers_as_read = asset->buffers;
     drop_old_results(document, buffers_as_read, scene);
-    const bool binary = lower_extension(path) == ".glb";
+    const bool binary = type_of(path) == FileType::glb;
     std::string bytes;
     if (binary)
         bytes = gather(document, buffers_as_read, asset->path);

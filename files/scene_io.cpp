@@ -1,6 +1,7 @@
 #include "files/scene_io.h"
 
 #include "files/file_contents.h"
+#include "files/file_type.h"
 #include "files/gltf_io.h"
 #include "files/obj_io.h"
 #include "files/off_io.h"
@@ -8,7 +9,6 @@
 #include "files/stl_io.h"
 #include "surfels/atomic_file.h"
 #include "surfels/errors.h"
-#include "surfels/extension.h"
 
 #include <string>
 
@@ -16,26 +16,6 @@ namespace surfelao {
 namespace {
 
 namespace fs = std::filesystem;
-
-enum class FileType { obj, ply, off, stl, gltf, glb, unknown };
-
-FileType type_of(const fs::path& path)
-{
-    const std::string extension = lower_extension(path);
-    constexpr std::pair<const char*, FileType> kTypes[] = {
-        {".obj", FileType::obj}, {".ply", FileType::ply},   {".off", FileType::off},
-        {".stl", FileType::stl}, {".gltf", FileType::gltf}, {".glb", FileType::glb}};
-    for (const auto& [name, type] : kTypes) {
-        if (extension == name)
-            return type;
-    }
-    return FileType::unknown;
-}
-
-bool is_gltf(FileType type)
-{
-    return type == FileType::gltf || type == FileType::glb;
-}
 
 std::string unknown_type(const fs::path& path, const std::string& known)
 {
@@ -71,11 +51,6 @@ Scene read_scene(const fs::path& path)
     Scene scene = read_any(path);
     scene.name = path.filename().string();
     return scene;
-}
-
-bool is_mesh_name(const fs::path& path)
-{
-    return type_of(path) != FileType::unknown;
 }
 
 void check_output(const fs::path& input, const fs::path& output)

@@ -20,9 +20,6 @@ namespace surfelao {
 /// memory stay in proportion to the file's size, whatever its counts claim.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path);
 
-/// Whether the extension is one of those that read_scene() knows.
-[[nodiscard]] bool is_mesh_name(const std::filesystem::path& path);
-
 struct WriteOptions {
     bool colors =
         false;  ///< glTF: also write COLOR_0 (visibility as grey). PLY and OBJ always have it
