@@ -1,6 +1,7 @@
 #include "bake/bake.h"
 #include "cli/commands.h"
 #include "cli/engine_options.h"
+#include "cli/output.h"
 #include "cli/progress_bar.h"
 #include "cli/view_options.h"
 #include "engines/threads.h"
@@ -17,7 +18,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <system_error>
 
 namespace surfelao {
 namespace {
@@ -45,12 +45,14 @@ GlBackend backend_of(const std::string& name)
     return name == "osmesa" ? GlBackend::osmesa : GlBackend::automatic;
 }
 
-/// Throws UsageError where both are one file, by whatever paths or links.
-void refuse_input_as_output(const std::string& input, const std::string& output)
+/// Throws UsageError where the picture would replace what is read.
+void check_files(const RenderCommandOptions& options)
 {
-    std::error_code error;
-    if (std::filesystem::equivalent(input, output, error))
-        throw UsageError(input + " would be overwritten by its own result.");
+    FilePlan plan;
+    plan.reads(options.input);
+    if (options.show.environment)
+        plan.reads(*options.show.environment);
+    plan.writes(options.output, "the picture");
 }
 
 int run(const RenderCommandOptions& options)
@@ -165,9 +167,7 @@ void add_render_command(CLI::App& app, Work& work)
         check_kernel(settings_of(options->engine).engine, kernel_of(options->measure));
         static_cast<void>(distance_limit_of(options->measure));
         static_cast<void>(view_options_of(options->show));
-        refuse_input_as_output(options->input, options->output);
-        if (options->show.environment)
-            refuse_input_as_output(*options->show.environment, options->output);
+        check_files(*options);
         work = [options] { return run(*options); };
     });
 }

@@ -18,6 +18,14 @@ std::runtime_error no_window()
                               (text ? text : "the window system gives no reason"));
 }
 
+void hint_context()
+{
+    glfwDefaultWindowHints();
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+}
+
 Inbox& inbox_of(GLFWwindow* window)
 {
     return *static_cast<Inbox*>(glfwGetWindowUserPointer(window));
@@ -64,11 +72,16 @@ void CloseWindow::operator()(GLFWwindow* window) const
     glfwDestroyWindow(window);
 }
 
+WindowHandle open_hidden_window(GLFWwindow* shown)
+{
+    hint_context();
+    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+    return WindowHandle(glfwCreateWindow(1, 1, "surfelao", nullptr, shown));
+}
+
 WindowHandle open_window(int width, int height)
 {
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    hint_context();
     WindowHandle window(glfwCreateWindow(width, height, "surfelao", nullptr, nullptr));
     if (!window)
         throw no_window();

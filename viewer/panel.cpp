@@ -162,14 +162,17 @@ void stage_lines(const SessionState& s)
                     s.error->p95, s.error->max);
 }
 
-void histogram(const SessionState& s)
+/// Of an answer that is still on the device when nothing else runs: drafts are not worth the wait.
+void histogram(const Session& session)
 {
-    if (s.occlusion.empty())
+    const SessionState& s = session.state();
+    if (!s.is_solved || (!session.has_read_answer() && session.solving()))
         return;
+    const std::vector<Occlusion>& occlusion = session.occlusion();
     std::array<std::size_t, kBins> bins{};
     const std::size_t vertices = s.model->geometry.positions.size();
     for (std::size_t v = 0; v < vertices; ++v) {
-        const float position = s.occlusion[v].occlusion * static_cast<float>(kBins);
+        const float position = occlusion[v].occlusion * static_cast<float>(kBins);
         ++bins[std::min(static_cast<std::size_t>(position), bins.size() - 1)];
     }
     // roots, so that the many open vertices do not flatten the rest
@@ -534,18 +537,17 @@ void Panel::widgets(PanelState& state, const Session& session, const PanelFigure
     if (ImGui::CollapsingHeader("Solve", ImGuiTreeNodeFlags_DefaultOpen)) {
         solver_widgets(state);
         if (session.solving() && !session.opening()) {
-            progress_line(shown_state.occlusion.empty() ? "draft" : "solving",
-                          session.solve_progress());
+            progress_line(!shown_state.is_solved ? "draft" : "solving", session.solve_progress());
             input.cancel |= ImGui::Button("cancel");
         } else if (session.was_cancelled() && shown_state.model) {
-            ImGui::TextUnformatted(shown_state.occlusion.empty() ? "cancelled"
-                                   : shown_state.is_draft        ? "cancelled: the draft is shown"
+            ImGui::TextUnformatted(!shown_state.is_solved ? "cancelled"
+                                   : shown_state.is_draft ? "cancelled: the draft is shown"
                                                           : "cancelled: the last answer is shown");
             ImGui::SameLine();
             input.solve_again |= ImGui::SmallButton("solve");
         }
         stage_lines(shown_state);
-        histogram(shown_state);
+        histogram(session);
     }
     if (ImGui::CollapsingHeader("Show", ImGuiTreeNodeFlags_DefaultOpen)) {
         input.view_changed |= view_widgets(state);

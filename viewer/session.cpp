@@ -1,6 +1,7 @@
 #include "viewer/session.h"
 
 #include "files/scene_io.h"
+#include "gpu/answers.h"
 #include "reference/reference_cache.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
@@ -27,6 +28,30 @@ EngineSettings draft_of(EngineSettings settings)
 }
 
 }  // namespace
+
+struct Session::Read {
+    std::uint64_t number = 0;
+    std::string failure;  ///< if not empty, the rest is
+    std::filesystem::path path;
+    std::shared_ptr<const Scene> scene;
+    std::shared_ptr<const Model> model;
+    double seconds = 0.0;
+};
+
+struct Session::Answer {
+    std::uint64_t number = 0;
+    std::shared_ptr<const DeviceSolution> on_device;  ///< its vertices; or null
+    std::vector<Occlusion> occlusion;                 ///< of the others
+    double seconds = 0.0;
+    std::optional<double> build_s;
+    bool is_draft = false;
+};
+
+struct Session::Traced {
+    std::uint64_t number = 0;
+    Reference reference;
+    double seconds = 0.0;
+};
 
 /// The engine at hand and what it was prepared for.
 struct Session::Engines {
@@ -56,6 +81,21 @@ struct Session::Engines {
         untold_s = prepared->seconds().surfels + prepared->seconds().tree;
     }
 
+    void solve(const Model& of, const SolveSettings& settings, const Progress& progress,
+               Answer& answer) const
+    {
+        if (lent != nullptr && prepared->choice().device == Device::gpu) {
+            ModelOnDevice found = solve_model_on_device(*prepared, of, settings, progress);
+            answer.on_device = std::move(found.vertices);
+            answer.occlusion = std::move(found.ground);
+            answer.seconds = found.seconds;
+        } else {
+            Solution found = solve_model(*prepared, of, settings, true, progress);
+            answer.occlusion = std::move(found.occlusion);
+            answer.seconds = found.seconds;
+        }
+    }
+
     /// In the thread that has used them.
     void end()
     {
@@ -64,28 +104,6 @@ struct Session::Engines {
         if (lent != nullptr)
             lent->release();
     }
-};
-
-struct Session::Read {
-    std::uint64_t number = 0;
-    std::string failure;  ///< if not empty, the rest is
-    std::filesystem::path path;
-    std::shared_ptr<const Scene> scene;
-    std::shared_ptr<const Model> model;
-    double seconds = 0.0;
-};
-
-struct Session::Answer {
-    std::uint64_t number = 0;
-    Solution solution;
-    std::optional<double> build_s;
-    bool is_draft = false;
-};
-
-struct Session::Traced {
-    std::uint64_t number = 0;
-    Reference reference;
-    double seconds = 0.0;
 };
 
 Session::Session(const GlContext* device)
@@ -151,8 +169,7 @@ void Session::start_solve()
                 answer->number = number;
                 answer->is_draft = i + 1 < steps.size();
                 answer->build_s = engines_->untold_s;
-                answer->solution =
-                    solve_model(*engines_->prepared, *model, steps[i], true, progress);
+                engines_->solve(*model, steps[i], progress, *answer);
                 const std::lock_guard lock(mailbox_);
                 answer_ = std::move(answer);
             }
@@ -224,12 +241,13 @@ void Session::cancel()
 void Session::measure()
 {
     state_.error.reset();
-    if (state_.reference.empty() || state_.occlusion.empty())
+    if (state_.reference.empty() || !state_.is_solved)
         return;
+    const std::vector<Occlusion>& own = occlusion();
     std::vector<Occlusion> answer, reference;
     for (std::size_t v = 0; v < has_answer_.size(); ++v) {
         if (has_answer_[v]) {
-            answer.push_back(state_.occlusion[v]);
+            answer.push_back(own[v]);
             reference.push_back(state_.reference[v]);
         }
     }
@@ -260,17 +278,25 @@ Session::Changes Session::update()
         state_.scene = read->scene;
         state_.model = read->model;
         state_.read_s = read->seconds;
-        state_.occlusion.clear();
+        state_.is_solved = false;
+        state_.on_device.reset();
+        occlusion_.clear();
         start_reference();
         start_solve();
     }
     if (answer && answer->number == solve_number_) {
-        state_.occlusion = std::move(answer->solution.occlusion);
+        const auto ground = answer->occlusion.end() - kGroundReceivers;
+        ground_.assign(ground, answer->occlusion.end());
+        state_.on_device = std::move(answer->on_device);
+        occlusion_.clear();
+        if (!state_.on_device)
+            occlusion_ = std::move(answer->occlusion);
+        state_.is_solved = true;
         ++state_.answer_count;
         state_.is_draft = answer->is_draft;
         was_cancelled_ = was_cancelled_ && answer->is_draft;
         state_.build_s = answer->build_s;
-        state_.solve_s = answer->solution.seconds;
+        state_.solve_s = answer->seconds;
         state_.message.clear();
         changes.occlusion = true;
     }
@@ -293,12 +319,20 @@ Session::Changes Session::update()
     return changes;
 }
 
+const std::vector<Occlusion>& Session::occlusion() const
+{
+    if (!has_read_answer()) {
+        occlusion_ = read_answers(state_.on_device->answers, state_.on_device->count);
+        occlusion_.insert(occlusion_.end(), ground_.begin(), ground_.end());
+    }
+    return occlusion_;
+}
+
 void Session::save(const std::filesystem::path& path) const
 {
-    SURFELAO_CHECK(!state_.occlusion.empty());
+    SURFELAO_CHECK(state_.is_solved);
     check_output(state_.path, path);
-    write_scene(path, *state_.scene,
-                std::span(state_.occlusion).first(state_.scene->positions.size()));
+    write_scene(path, *state_.scene, std::span(occlusion()).first(state_.scene->positions.size()));
 }
 
 }  // namespace surfelao

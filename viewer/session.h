@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bake/statistics.h"
+#include "engines/device_solution.h"
 #include "engines/engine.h"
 #include "gpu/context.h"
 #include "surfels/occlusion.h"
@@ -35,16 +36,18 @@ struct SessionState {
     std::filesystem::path path;          ///< of the model shown
     std::shared_ptr<const Scene> scene;  ///< null until a file was read
     std::shared_ptr<const Model> model;
-    std::vector<Occlusion> occlusion;  ///< empty until something was solved
+    bool is_solved = false;                           ///< there is an answer: Session::occlusion()
+    bool is_draft = false;                            ///< it is the rough one
+    std::shared_ptr<const DeviceSolution> on_device;  ///< its vertices, where they are on a device
+                                                      ///< that was lent; else null
     std::vector<Occlusion> reference;  ///< empty until it was traced for the same definition
-    bool is_draft = false;             ///< `occlusion` is the rough answer
     std::uint64_t answer_count = 0;    ///< how many have come so far, drafts too
     double read_s = 0.0;
     std::optional<double> build_s;  ///< empty where what was built before has answered again
     double solve_s = 0.0;
     std::optional<double> reference_s;     ///< empty where it was read from the cache
-    std::optional<ErrorStatistics> error;  ///< of `occlusion` against `reference`, over vertices
-                                           ///< whose question has an answer (well_defined.h)
+    std::optional<ErrorStatistics> error;  ///< of the answer against the reference, over vertices
+                                           ///< whose question has one (well_defined.h)
     std::string message;  ///< the last thing that went wrong, one sentence; else empty
 };
 
@@ -53,8 +56,11 @@ struct SessionState {
 /// another engine, device or model is wanted.
 class Session {
 public:
-    /// device: where engines compute on the GPU; current in no thread meanwhile, and to outlive the
-    /// session. Null: a context of the session's own, made when it is first needed.
+    /// device: where engines compute on the GPU: a context that nobody else uses, that shares
+    /// objects with the one that is current in the caller's thread (and in update() and the
+    /// functions that say so), and that outlives the session and its answers, which stay on the
+    /// device. Null: a context of the session's own, made when it is first needed; answers come
+    /// back.
     explicit Session(const GlContext* device = nullptr);
     ~Session();
 
@@ -81,6 +87,16 @@ public:
         bool model = false, occlusion = false, reference = false;
     };
     [[nodiscard]] Changes update();
+
+    /// One answer per receiver of the model; empty until something was solved. What lies on the
+    /// device is read when it is first asked for.
+    const std::vector<Occlusion>& occlusion() const;
+
+    /// Whether occlusion() has no need to wait for the device.
+    bool has_read_answer() const { return !state_.on_device || !occlusion_.empty(); }
+
+    /// The part of it that is the ground's, without reading the rest.
+    const std::vector<Occlusion>& ground() const { return ground_; }
 
     /// Writes the model with the answer at its vertices, the draft where there is no other: the
     /// bytes that bake() writes for these settings. Something must be solved. Replaces what stands
@@ -110,7 +126,9 @@ private:
     bool opening_ = false;
     bool was_cancelled_ = false;
     SessionState state_;
-    std::vector<bool> has_answer_;  ///< per vertex, by the reference
+    std::vector<bool> has_answer_;              ///< per vertex, by the reference
+    std::vector<Occlusion> ground_;             ///< the last part of the answer
+    mutable std::vector<Occlusion> occlusion_;  ///< empty while the device alone has it
 
     std::unique_ptr<Engines> engines_;  ///< used by the solver's thread alone
 

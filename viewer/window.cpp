@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -58,12 +59,15 @@ Image joined(const std::vector<Image>& images)
 /// The window with all that belongs to it, made and destroyed with its context current.
 class Viewer {
 public:
-    Viewer(const WindowOptions& options, GLFWwindow* window)
+    /// hidden: open_hidden_window's.
+    Viewer(const WindowOptions& options, GLFWwindow* window, GLFWwindow* hidden)
         : options_(options),
           window_(window),
           inbox_(window),
+          solving_context_(solving_context(hidden)),
           context_(adopt_context(window)),
           renderer_(context_),
+          session_(solving_context_ ? &*solving_context_ : nullptr),
           panel_state_(options.panel),
           panel_(window, content_scale(window))
     {
@@ -95,6 +99,20 @@ public:
     const std::vector<std::filesystem::path>& written() const { return files_.written(); }
 
 private:
+    /// Where engines may leave their answers for the window; none where the system has none.
+    static std::optional<GlContext> solving_context(GLFWwindow* hidden)
+    {
+        if (hidden == nullptr)
+            return std::nullopt;
+        try {
+            GlContext context = adopt_context(hidden);
+            context.release();  // the solver's thread takes it
+            return context;
+        } catch (const std::exception&) {
+            return std::nullopt;
+        }
+    }
+
     void wait_for_events()
     {
         const bool drawing = has_view() && (panes_.empty() || samples() < kMostSamples);
@@ -129,8 +147,11 @@ private:
                                    (state.path.filename().string() + " - surfelao").c_str());
                 frame_all();
             }
-            if (changes.occlusion)
-                renderer_.set_occlusion(state.occlusion);
+            if (changes.occlusion && state.on_device)
+                renderer_.set_occlusion({state.on_device, &state.on_device->answers},
+                                        session_.ground());
+            else if (changes.occlusion)
+                renderer_.set_occlusion(session_.occlusion());
             if (changes.reference)
                 renderer_.set_reference(state.reference);
             if (changes.model || changes.occlusion || changes.reference)
@@ -230,7 +251,7 @@ private:
     {
         const SessionState& state = session_.state();
         ViewOptions view = panel_state_.view;
-        const bool has_values = !state.occlusion.empty() || view.colors == Colors::levels ||
+        const bool has_values = state.is_solved || view.colors == Colors::levels ||
                                 (view.colors == Colors::rays && !state.reference.empty());
         if (!has_values)
             view.colors = Colors::normals;
@@ -324,7 +345,7 @@ private:
     {
         const SessionState& state = session_.state();
         const bool has_content =
-            what == Saved::picture ? has_view() && samples() > 0 : !state.occlusion.empty();
+            what == Saved::picture ? has_view() && samples() > 0 : state.is_solved;
         if (!has_content) {
             note_ = what == Saved::picture ? "there is no picture yet" : "nothing is solved yet";
             return;
@@ -375,6 +396,7 @@ private:
     const WindowOptions& options_;
     GLFWwindow* window_;
     Inbox inbox_;
+    std::optional<GlContext> solving_context_;  ///< shares objects with the window's
     GlContext context_;
     Renderer renderer_;
     Session session_;
@@ -394,7 +416,8 @@ std::vector<std::filesystem::path> show_window(const WindowOptions& options)
 {
     const WindowSystem system;
     const WindowHandle window = open_window(options.width, options.height);
-    Viewer viewer(options, window.get());
+    const WindowHandle hidden = open_hidden_window(window.get());
+    Viewer viewer(options, window.get(), hidden.get());
     viewer.run();
     return viewer.written();
 }

@@ -108,13 +108,6 @@ TEST_F(RenderCommand, RefusesToReplaceWhatItReads)
     EXPECT_EQ(contents_of(folder_ / "a.png"), before);
 }
 
-TEST_F(RenderCommand, AReferenceOutOfTheCacheHasNoTimeOfTracing)
-{
-    const std::vector<std::string> options = {"--mode", "rays", "--reference-rays", "16"};
-    EXPECT_EQ(render("x.png", options).out.find("from the cache"), std::string::npos);
-    EXPECT_NE(render("x.png", options).out.find("reference from the cache"), std::string::npos);
-}
-
 // 16,384 is the most that software draws; 32,768 the most that may be asked for.
 TEST_F(RenderCommand, RefusesASizeThatTheDeviceCannotDraw)
 {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <thread>
 
@@ -53,9 +54,12 @@ bool wait_for(Session& session, Condition condition)
 
 bool wait_for_whole_answer(Session& session)
 {
+    bool was_idle = false;  // before the update: then nothing is on its way
     return wait_for(session, [&] {
-        return !session.solving() && !session.opening() && !session.state().occlusion.empty() &&
-               !session.state().is_draft;
+        const bool is_there = was_idle && !session.opening() && session.state().is_solved &&
+                              !session.state().is_draft;
+        was_idle = !session.solving();
+        return is_there;
     });
 }
 
@@ -86,8 +90,8 @@ TEST_F(SessionTest, ReadsAFileAndSolvesIt)
     ASSERT_TRUE(wait_for_whole_answer(session));
     const SessionState& state = session.state();
     EXPECT_EQ(state.model->geometry.positions.size(), scenes::bumpy_sphere(6).positions.size());
-    EXPECT_EQ(state.occlusion.size(), state.model->receivers.size());
-    EXPECT_EQ(first_values(state.occlusion, state.model->geometry.positions.size()),
+    EXPECT_EQ(session.occlusion().size(), state.model->receivers.size());
+    EXPECT_EQ(first_values(session.occlusion(), state.model->geometry.positions.size()),
               vertex_answers(*state.model, {}));
     EXPECT_FALSE(state.error.has_value());
 }
@@ -131,14 +135,14 @@ TEST_F(SessionTest, OtherSettingsReplaceWhatRuns)
     Session session;
     session.solve(of_quality(kSlowQuality));
     session.open(ball("slow.obj", kSlowCells), UpAxis::y);
-    ASSERT_TRUE(wait_for(session, [&] { return !session.state().occlusion.empty(); }));
+    ASSERT_TRUE(wait_for(session, [&] { return session.state().is_solved; }));
     ASSERT_TRUE(session.state().is_draft);
     session.solve(of_quality(0.5f));
     ASSERT_TRUE(wait_for_whole_answer(session));
     EngineSettings wanted;
     wanted.quality = 0.5f;
     const Model& model = *session.state().model;
-    EXPECT_EQ(first_values(session.state().occlusion, model.geometry.positions.size()),
+    EXPECT_EQ(first_values(session.occlusion(), model.geometry.positions.size()),
               vertex_answers(model, wanted));
 }
 
@@ -147,7 +151,7 @@ TEST_F(SessionTest, CancelKeepsTheDraftAndItCanBeSolvedAgain)
     Session session;
     session.solve(of_quality(kSlowQuality));
     session.open(ball("slow.obj", kSlowCells), UpAxis::y);
-    ASSERT_TRUE(wait_for(session, [&] { return !session.state().occlusion.empty(); }));
+    ASSERT_TRUE(wait_for(session, [&] { return session.state().is_solved; }));
     EXPECT_FALSE(session.was_cancelled());
     session.cancel();
     EXPECT_TRUE(session.was_cancelled());
@@ -209,6 +213,27 @@ TEST_F(SessionTest, AnEnginesFailureIsTold)
     EXPECT_TRUE(wait_for(session, [&] {
         return session.state().message.find("quality of disks must be") != std::string::npos;
     })) << session.state().message;
+}
+
+// Without a device that was lent answers come back from one of the session's own.
+TEST_F(SessionTest, SolvesOnTheGpuToo)
+{
+    Session session;
+    session.solve(of_quality(kGood, Engine::disks));
+    session.open(ball(), UpAxis::y);
+    ASSERT_TRUE(wait_for_whole_answer(session));
+    const std::vector<Occlusion> by_cpu = session.occlusion();
+    SessionSettings settings = session.settings();
+    settings.engine.device = Device::gpu;
+    session.solve(settings);
+    ASSERT_TRUE(wait_for_whole_answer(session)) << session.state().message;
+    EXPECT_FALSE(session.state().on_device);
+    ASSERT_EQ(session.occlusion().size(), by_cpu.size());
+    double sum = 0.0;
+    for (std::size_t i = 0; i < by_cpu.size(); ++i)
+        sum += std::abs(session.occlusion()[i].occlusion - by_cpu[i].occlusion);
+    EXPECT_LT(sum / static_cast<double>(by_cpu.size()), 1e-4);
+    EXPECT_GT(sum, 0.0);  // no CPU has answered
 }
 
 // The ground's receivers lie among the vertices': solved in one call they would share groups.

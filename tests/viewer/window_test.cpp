@@ -110,7 +110,7 @@ TEST_F(Window, ShowsTheModelAndTheWidgetsAndMovesWithoutSolving)
     options.width = 800;
     options.height = 600;
     options.on_frame = [&](const Image& shown, const Session& session) {
-        frames_with_model += !session.state().occlusion.empty();
+        frames_with_model += session.state().is_solved;
         answers = session.state().answer_count;
         last = shown;
         return frames_with_model < 5;
@@ -135,7 +135,7 @@ TEST_F(Window, TheModelStandsBesideThePanelAndMovesWhenItIsHidden)
     options.width = 1000;
     options.height = 500;
     options.on_frame = [&](const Image& shown, const Session& session) {
-        frames += !session.state().occlusion.empty();
+        frames += session.state().is_solved;
         if (frames == 3) {
             beside = light_columns(shown);
             press(GLFW_KEY_TAB);
@@ -168,7 +168,7 @@ TEST_F(Window, UntilTheFirstAnswerNormalsAreShown)
         if (session.state().model && before.pixels.empty())
             before = shown;
         after = shown;
-        frames_after += !session.state().occlusion.empty();
+        frames_after += session.state().is_solved;
         return frames_after < 3;
     };
     (void)show_window(options);
@@ -189,7 +189,7 @@ TEST_F(Window, KeysThatGoDownAndUpWithinAFrameCountAndMovingSolvesNothing)
     options.height = 240;
     options.panel.is_hidden = true;
     options.on_frame = [&](const Image& shown, const Session& session) {
-        frames += !session.state().occlusion.empty();
+        frames += session.state().is_solved;
         const double light = share(shown, is_light);
         answers = session.state().answer_count;
         if (frames == 2) {
@@ -228,7 +228,7 @@ TEST_F(Window, ADroppedFileIsOpenedAndABrokenOneIsToldAndChangesNothing)
             EXPECT_FALSE(session.state().model);
             drop(good);
             step = 1;
-        } else if (step == 1 && !session.state().occlusion.empty()) {
+        } else if (step == 1 && session.state().is_solved) {
             drop(broken);
             step = 2;
         }
@@ -275,7 +275,7 @@ TEST_F(Window, TheReferenceStandsRightOfTheWipeAndInThePictureBeside)
         options.panel.settings.engine.engine = Engine::disks;
         options.panel.settings.engine.strength = 100.0f;
         options.on_frame = [&](const Image& shown, const Session& session) {
-            if (!session.state().occlusion.empty() && !std::exchange(pressed, true))
+            if (session.state().is_solved && !std::exchange(pressed, true))
                 press(key);
             frames += !session.state().reference.empty();
             light = light_columns(shown);
@@ -311,7 +311,7 @@ std::vector<std::filesystem::path> show_and_press(WindowOptions options,
 {
     std::size_t frames = 0;
     options.on_frame = [&](const Image&, const Session& session) {
-        if (session.state().occlusion.empty() || session.state().is_draft)
+        if (!session.state().is_solved || session.state().is_draft)
             return true;
         if (frames < keys.size())
             press(keys[frames]);
@@ -372,6 +372,50 @@ TEST_F(Window, TheInputIsNeverReplaced)
     EXPECT_EQ(contents_of(input), before);
 }
 
+/// The window when this engine has solved a bumpy ball.
+Image picture_of_ball(const EngineSettings& engine, bool& stayed_on_device)
+{
+    const TemporaryFolder folder;
+    write_obj(folder / "ball.obj", scenes::bumpy_sphere(12));
+    Image last;
+    int frames = 0;
+    WindowOptions options;
+    options.input = folder / "ball.obj";
+    options.width = 320;
+    options.height = 240;
+    options.panel.is_hidden = true;
+    options.panel.settings.engine = engine;
+    options.on_frame = [&](const Image& shown, const Session& session) {
+        EXPECT_EQ(session.state().message, "");
+        frames += session.state().is_solved && !session.state().is_draft;
+        stayed_on_device = session.state().on_device && !session.has_read_answer();
+        last = shown;
+        return frames < 4 && session.state().message.empty();
+    };
+    (void)show_window(options);
+    return last;
+}
+
+TEST_F(Window, AnswersOfTheGpuAreDrawnWhereTheyAreAndLookLikeTheCpus)
+{
+    for (const Engine engine : {Engine::disks, Engine::masks}) {
+        EngineSettings settings;
+        settings.engine = engine;
+        bool stayed_on_device = true;
+        const Image expected = picture_of_ball(settings, stayed_on_device);
+        EXPECT_FALSE(stayed_on_device);
+        settings.device = Device::gpu;
+        const Image found = picture_of_ball(settings, stayed_on_device);
+        EXPECT_TRUE(stayed_on_device) << name_of(engine);
+        ASSERT_EQ(found.pixels.size(), expected.pixels.size());
+        double sum = 0.0;
+        for (std::size_t i = 0; i < found.pixels.size(); ++i)
+            sum += std::abs(found.pixels[i].r - expected.pixels[i].r);
+        EXPECT_LT(sum / static_cast<double>(found.pixels.size()), 1.0 / 255.0) << name_of(engine);
+        EXPECT_GT(share(found, is_light), 0.05);
+    }
+}
+
 TEST_F(Window, MayGetAsSmallAsItWill)
 {
     int frames = 0;
@@ -383,7 +427,7 @@ TEST_F(Window, MayGetAsSmallAsItWill)
     options.panel.reference_rays = 2;
     options.on_frame = [&](const Image& shown, const Session& session) {
         const int sizes[][2] = {{1, 1}, {2, 1}, {1, 300}, {700, 20}, {400, 300}};
-        if (!session.state().occlusion.empty() && ++frames <= 5)
+        if (session.state().is_solved && ++frames <= 5)
             glfwSetWindowSize(glfwGetCurrentContext(), sizes[frames - 1][0], sizes[frames - 1][1]);
         return frames < 6 || (shown.width != 400 && frames < 100);
     };
@@ -403,7 +447,7 @@ TEST_F(Window, EverySurfaceAndColourIsDrawn)
         options.panel.reference_rays = 2;
         options.on_frame = [&](const Image&, const Session& session) {
             EXPECT_EQ(session.state().message, "");
-            return session.state().occlusion.empty();
+            return !session.state().is_solved;
         };
         (void)show_window(options);
     }
