@@ -45,7 +45,7 @@ must(${scratch}/prefix/bin/surfelao info ${scratch}/blob.ply)
 
 # a bad setting is one sentence, and no abort (which would not be a number)
 execute_process(COMMAND ${scratch}/build/example ${SOURCE}/data/blob.off ${scratch}/blob.ply 9
-    RESULT_VARIABLE result OUTPUT_QUIET ERROR_VARIABLE said)
+    RESULT_VARIABLE result OUTPUT_VARIABLE said ERROR_VARIABLE said)
 if(NOT result EQUAL 1 OR NOT said STREQUAL "quality of masks must be between -1 and 4\n")
     message(FATAL_ERROR "quality 9 must be refused by a sentence and exit 1: ${result}\n${said}")
 endif()

@@ -23,6 +23,7 @@ try {
     if (argument_count < 3)
         throw InputError("usage: example IN OUT [QUALITY]");
     const float quality = argument_count > 3 ? std::strtof(arguments[3], nullptr) : kGood;
+    check_settings({}, {.quality = quality});      // throws before any work is done
     const Scene scene = read_scene(arguments[1]);  // or make_scene(positions, triangles)
     const Geometry geometry = make_geometry(scene);
     const Prepared prepared = prepare(geometry);
