@@ -3,6 +3,7 @@
 #include "bake/sample.h"
 #include "engines/threads.h"
 #include "files/scene_io.h"
+#include "gpu/context.h"
 #include "reference/reference_cache.h"
 #include "reference/smoothing.h"
 #include "surfels/errors.h"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace surfelao {
@@ -132,13 +134,13 @@ struct Times {
 };
 
 /// One round of one row; its first answer is judged.
-void run_round(const Comparison& comparison, const Question& question, CompareRow& row,
-               Times& times, const Progress& progress)
+void run_round(const Comparison& comparison, const Question& question, const EngineChoice& choice,
+               CompareRow& row, Times& times, const Progress& progress)
 {
     Times repeats;
     double spent = 0.0;
     do {
-        const Prepared prepared = prepare(comparison.geometry, row.settings);
+        const Prepared prepared = prepare(comparison.geometry, choice);
         Solution solution = solve(prepared, question.receivers, row.settings, progress);
         if (row.smoothed) {
             Stopwatch smoothing;
@@ -249,9 +251,14 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     std::vector<CompareRow>& rows = comparison.rows;
     rows = rows_of(settings, definition);
     std::vector<Times> times(rows.size());
+    std::optional<GlContext> context;  // one for all, so that shaders are compiled once
     const auto run = [&](std::size_t i) {
-        run_round(comparison, question, rows[i], times[i],
-                  stage(name_of(rows[i].settings.engine) + " " + setting_of(rows[i])));
+        const Progress running =
+            stage(name_of(rows[i].settings.engine) + " " + setting_of(rows[i]));
+        EngineChoice choice = rows[i].settings;
+        if (choice.device == Device::gpu && choice.context == nullptr)
+            choice.context = context ? &*context : &context.emplace(GlContext::create());
+        run_round(comparison, question, choice, rows[i], times[i], running);
     };
     for (int round = 0; round < settings.rounds; ++round) {
         for (std::size_t i = 0; i < rows.size(); ++i)
