@@ -75,6 +75,10 @@ const MaskKernel* kernel_of(MaskKernelSet set)
     }
 }
 
+static_assert(static_cast<float>(kMaskFamily[0].quality) == MaskOptions::kCoarsest);
+static_assert(static_cast<float>(kMaskFamily[std::size(kMaskFamily) - 1].quality) ==
+              MaskOptions::kFinest);
+
 float between(float a, float b, float t)
 {
     return a * std::pow(b / a, t);
