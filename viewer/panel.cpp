@@ -1,6 +1,6 @@
 #include "viewer/panel.h"
 
-#include "image/heat_map.h"
+#include "viewer/panel_widgets.h"
 
 #include <imgui.h>
 
@@ -8,9 +8,7 @@
 #include <backends/imgui_impl_opengl3.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace surfelao {
 namespace {
@@ -19,37 +17,6 @@ constexpr float kWidth = 330.0f;  // of the panel, unscaled pixels
 constexpr float kGrip = 6.0f;     // how near to the wipe's line a press takes it, unscaled pixels
 constexpr float kDegreesPerPixel = 0.35f;
 constexpr float kZoomPerNotch = 0.88f;
-constexpr int kBins = 48;
-
-constexpr const char* kColorNames[] = {"visibility", "rays",   "difference", "bent normals",
-                                       "normals",    "levels", "environment"};
-constexpr const char* kSurfaceNames[] = {"triangles", "splats", "affine", "points"};
-
-constexpr const char* kHelp[][2] = {
-    {"left drag", "orbit"},
-    {"right or middle drag", "pan"},
-    {"wheel, + and -", "zoom"},
-    {"F", "frame all"},
-    {"1 .. 7", "colours, in the panel's order"},
-    {"T", "next surface: triangles, splats, affine, points"},
-    {"R", "ray reference on or off"},
-    {"W", "wipe to the reference on or off; drag the line"},
-    {"S", "reference side by side on or off"},
-    {"G", "ground on or off"},
-    {"Esc", "cancel what runs in the background"},
-    {"Tab", "hide or show the panel"},
-    {"P", "save the picture"},
-    {"B", "save the baked file"},
-    {"H", "this help"},
-    {"Q", "quit"},
-    {"drop a file", "open it"},
-};
-
-ImVec4 shown(glm::vec3 linear)
-{
-    return {srgb_encode(linear.r), srgb_encode(linear.g), srgb_encode(linear.b), 1.0f};
-}
-
 void style_widgets(float scale)
 {
     ImGui::StyleColorsDark();
@@ -62,196 +29,6 @@ void style_widgets(float scale)
     style.Colors[ImGuiCol_PopupBg].w = 1.0f;
     style.ScaleAllSizes(scale);
     ImGui::GetIO().FontGlobalScale = scale;
-}
-
-/// True when the value is final: dragging a slider asks for nothing until it is let go.
-bool was_set()
-{
-    return ImGui::IsItemDeactivatedAfterEdit();
-}
-
-/// Apart from the engine. True when they are to be solved.
-bool edit_settings(EngineSettings& engine)
-{
-    bool apply = false;
-    if (engine.engine == Engine::rays) {
-        int rays = static_cast<int>(engine.rays);
-        ImGui::SliderInt("rays", &rays, 1, 4096, "%d",
-                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-        engine.rays = static_cast<std::uint32_t>(rays);
-        return was_set();
-    }
-    ImGui::SliderFloat("quality", &engine.quality, least_quality(engine.engine),
-                       most_quality(engine.engine), "%.2f", ImGuiSliderFlags_AlwaysClamp);
-    apply |= was_set();
-    if (engine.engine == Engine::disks) {
-        ImGui::SliderInt("passes", &engine.passes, 1, 8, "%d", ImGuiSliderFlags_AlwaysClamp);
-        apply |= was_set();
-        ImGui::SliderFloat("strength", &engine.strength, 0.0f, 2.0f, "%.2f",
-                           ImGuiSliderFlags_AlwaysClamp);
-        apply |= was_set();
-    }
-    return apply;
-}
-
-/// falloff: what a limit has, once there is one. True when the limit is final.
-bool edit_distance(DistanceLimit& limit, Falloff& falloff)
-{
-    float percent = std::isfinite(limit.value) ? static_cast<float>(limit.value) : 0.0f;
-    if (percent > 0.0f)
-        falloff = limit.falloff;
-    if (ImGui::SliderFloat("distance", &percent, 0.0f, 100.0f,
-                           percent > 0.0f ? "%.1f %%" : "unlimited",
-                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
-        limit = percent > 0.0f ? DistanceLimit{percent, true, falloff} : DistanceLimit{};
-    bool apply = was_set();
-    bool smooth = falloff == Falloff::smooth;
-    if (percent > 0.0f && ImGui::Checkbox("smooth falloff", &smooth)) {
-        limit.falloff = smooth ? Falloff::smooth : Falloff::none;
-        apply = true;
-    }
-    return apply;
-}
-
-bool view_widgets(PanelState& state)
-{
-    ViewOptions& view = state.view;
-    bool changed = false;
-    int colors = static_cast<int>(view.colors);
-    if (ImGui::Combo("colours", &colors, kColorNames, IM_ARRAYSIZE(kColorNames))) {
-        view.colors = static_cast<Colors>(colors);
-        changed = true;
-    }
-    int surface = static_cast<int>(view.surface);
-    if (ImGui::Combo("surface", &surface, kSurfaceNames, IM_ARRAYSIZE(kSurfaceNames))) {
-        view.surface = static_cast<Surface>(surface);
-        changed = true;
-    }
-    if (view.surface != Surface::triangles)
-        changed |= ImGui::SliderFloat("splat radius", &view.radius_scale, 0.1f, 4.0f, "%.2f",
-                                      ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    if (view.colors == Colors::environment)
-        changed |= ImGui::SliderFloat("exposure", &view.exposure, -6.0f, 6.0f, "%.1f EV",
-                                      ImGuiSliderFlags_AlwaysClamp);
-    if (view.colors == Colors::difference)
-        changed |= ImGui::SliderFloat("full scale", &view.difference_scale, 0.001f, 1.0f, "%.3f",
-                                      ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    changed |= ImGui::Checkbox("ground", &view.ground);
-    return changed;
-}
-
-void progress_line(const char* what, double done)
-{
-    char text[64];
-    std::snprintf(text, sizeof text, "%s %.0f %%", what, 100.0 * done);
-    ImGui::ProgressBar(static_cast<float>(done), ImVec2(-1.0f, 0.0f), text);
-}
-
-void stage_lines(const SessionState& s)
-{
-    if (s.build_s)
-        ImGui::Text("read %.3f s   build %.3f s   solve %.3f s", s.read_s, *s.build_s, s.solve_s);
-    else
-        ImGui::Text("read %.3f s   solve %.3f s", s.read_s, s.solve_s);
-    if (!s.reference.empty() && s.reference_s)
-        ImGui::Text("reference %.3f s", *s.reference_s);
-    else if (!s.reference.empty())
-        ImGui::TextUnformatted("reference from the cache");
-    if (s.error)
-        ImGui::Text("RMSE %.4f   bias %+.4f\n95 %% %.4f   max %.4f", s.error->rmse, s.error->bias,
-                    s.error->p95, s.error->max);
-}
-
-/// Of an answer that is still on the device when nothing else runs: drafts are not worth the wait.
-void histogram(const Session& session)
-{
-    const SessionState& s = session.state();
-    if (!s.is_solved || (!session.has_read_answer() && session.solving()))
-        return;
-    const std::vector<Occlusion>& occlusion = session.occlusion();
-    std::array<std::size_t, kBins> bins{};
-    const std::size_t vertices = s.model->geometry.positions.size();
-    for (std::size_t v = 0; v < vertices; ++v) {
-        const float position = occlusion[v].occlusion * static_cast<float>(kBins);
-        ++bins[std::min(static_cast<std::size_t>(position), bins.size() - 1)];
-    }
-    // roots, so that the many open vertices do not flatten the rest
-    const float most = std::sqrt(static_cast<float>(*std::max_element(bins.begin(), bins.end())));
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const ImVec2 size(ImGui::GetContentRegionAvail().x, 70.0f * ImGui::GetIO().FontGlobalScale);
-    const float step = size.x / kBins;
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(corner, ImVec2(corner.x + size.x, corner.y + size.y),
-                       ImGui::GetColorU32(ImGuiCol_FrameBg));
-    for (std::size_t i = 0; i < bins.size(); ++i) {
-        const float left = corner.x + step * static_cast<float>(i);
-        const float height = size.y * std::sqrt(static_cast<float>(bins[i])) / std::max(most, 1.0f);
-        list.AddRectFilled(ImVec2(left, corner.y + size.y - height),
-                           ImVec2(left + step - 1.0f, corner.y + size.y),
-                           ImGui::GetColorU32(ImGuiCol_PlotHistogram));
-    }
-    const char* title = "vertices by occlusion 0 .. 1, root scale";
-    list.AddText(ImVec2(corner.x + size.x - ImGui::CalcTextSize(title).x - 4.0f, corner.y),
-                 ImGui::GetColorU32(ImGuiCol_Text), title);
-    ImGui::Dummy(size);
-    if (ImGui::IsItemHovered()) {
-        const float at = (ImGui::GetIO().MousePos.x - corner.x) / step;
-        const auto bin =
-            static_cast<std::size_t>(std::clamp(at, 0.0f, static_cast<float>(kBins - 1)));
-        ImGui::SetTooltip("%zu vertices from %.2f to %.2f", bins[bin],
-                          static_cast<double>(bin) / kBins, static_cast<double>(bin + 1) / kBins);
-    }
-}
-
-/// The twin of draw_heat_legend, in the lower right corner of the window.
-void legend(const char* title, float low, float high)
-{
-    const ImVec2 display = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos(ImVec2(display.x - 10.0f, display.y - 10.0f), ImGuiCond_Always,
-                            ImVec2(1.0f, 1.0f));
-    ImGui::Begin("##legend", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
-                     ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoSavedSettings);
-    ImGui::TextUnformatted(title);
-    const float scale = ImGui::GetIO().FontGlobalScale;
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const ImVec2 size(220.0f * scale, 14.0f * scale);
-    constexpr int kSteps = 32;
-    for (int i = 0; i < kSteps; ++i) {
-        const auto at = [&](int step) {
-            return corner.x + size.x * static_cast<float>(step) / kSteps;
-        };
-        const auto color = [](int step) {
-            return ImGui::GetColorU32(shown(heat_color(static_cast<float>(step) / kSteps)));
-        };
-        ImGui::GetWindowDrawList()->AddRectFilledMultiColor(
-            ImVec2(at(i), corner.y), ImVec2(at(i + 1), corner.y + size.y), color(i), color(i + 1),
-            color(i + 1), color(i));
-    }
-    ImGui::Dummy(size);
-    ImGui::Text("%.3g", static_cast<double>(low));
-    ImGui::SameLine(size.x - 30.0f * scale);
-    ImGui::Text("%.3g", static_cast<double>(high));
-    ImGui::End();
-}
-
-void help_window(bool& open)
-{
-    ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - 10.0f, 10.0f), ImGuiCond_Always,
-                            ImVec2(1.0f, 0.0f));
-    if (ImGui::Begin("Keys", &open,
-                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse |
-                         ImGuiWindowFlags_NoSavedSettings) &&
-        ImGui::BeginTable("keys", 2)) {
-        for (const auto& line : kHelp) {
-            ImGui::TableNextColumn();
-            ImGui::TextColored(ImVec4(1.0f, 0.8f, 0.5f, 1.0f), "%s", line[0]);
-            ImGui::TableNextColumn();
-            ImGui::TextUnformatted(line[1]);
-        }
-        ImGui::EndTable();
-    }
-    ImGui::End();
 }
 
 void switch_place(PanelState& state, ReferencePlace place)
@@ -327,38 +104,6 @@ SaveReply reply_of(char key, const SaveQuestion& question)
         default:
             return SaveReply::none;
     }
-}
-
-/// Nothing else can be used while it is open.
-void question_window(const SaveQuestion& question, SaveReply& reply)
-{
-    constexpr const char* kTitle = "Save";
-    if (!ImGui::IsPopupOpen(kTitle))
-        ImGui::OpenPopup(kTitle);
-    const ImVec2 display = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos(ImVec2(0.5f * display.x, 0.5f * display.y), ImGuiCond_Always,
-                            ImVec2(0.5f, 0.5f));
-    if (!ImGui::BeginPopupModal(kTitle, nullptr,
-                                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
-                                    ImGuiWindowFlags_NoSavedSettings))
-        return;
-    const std::string name = question.path.string();
-    if (question.is_input)
-        ImGui::Text("%s was read and is never replaced.", name.c_str());
-    else
-        ImGui::Text("%s exists. Replace it?", name.c_str());
-    const auto button = [&](const char* label, SaveReply meaning) {
-        if (ImGui::Button(label))
-            reply = meaning;
-        ImGui::SameLine();
-    };
-    if (!question.is_input)
-        button("Replace (R)", SaveReply::replace);
-    button("Keep both (K)", SaveReply::keep_both);
-    button("Cancel (Esc)", SaveReply::cancel);
-    if (reply != SaveReply::none)
-        ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
 }
 
 /// Whether the button was already down: what the mouse did before the press is no drag.

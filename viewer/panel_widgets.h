@@ -1,0 +1,38 @@
+/// panel_widgets.h: the parts of the panel that need no more than what they show; for panel.cpp
+/// alone. All are called between ImGui's NewFrame and Render.
+#pragma once
+
+#include "viewer/panel.h"
+
+namespace surfelao {
+
+/// The settings of the chosen engine. True when they are to be solved: not while a slider is
+/// dragged.
+bool edit_settings(EngineSettings& engine);
+
+/// The same for the limit, in % of the diagonal. falloff: what a limit has, once there is one.
+bool edit_distance(DistanceLimit& limit, Falloff& falloff);
+
+/// How the model is shown. True when anything changed.
+bool view_widgets(PanelState& state);
+
+/// A bar with words. done: 0 to 1.
+void progress_line(const char* what, double done);
+
+/// Times and errors.
+void stage_lines(const SessionState& s);
+
+/// How many vertices are how closed. Of an answer that is still on the device when nothing else
+/// runs: drafts are not worth the wait.
+void histogram(const Session& session);
+
+/// The twin of draw_heat_legend, in the lower right corner of the window.
+void legend(const char* title, float low, float high);
+
+/// The keys. open: false when it was closed.
+void help_window(bool& open);
+
+/// Nothing else can be used while it is shown. Sets the reply when there is one.
+void question_window(const SaveQuestion& question, SaveReply& reply);
+
+}  // namespace surfelao
