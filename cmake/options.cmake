@@ -13,8 +13,8 @@ target_link_options(surfelao_options INTERFACE
     $<$<BOOL:${SURFELAO_TSAN}>:-fsanitize=thread>)
 
 # surfelao_unity(target): its sources are compiled several to a unit, where SURFELAO_UNITY says so.
-# Most of what a compiler reads is the same headers again and again, so this halves the processor time.
-# Not for the hot kernels (tree, gpu, surfels): those stay one unit each. Names in anonymous
+# Most of what a compiler reads is the same headers again and again, so this halves the processor
+# time. Not for the hot kernels (tree, gpu, surfels): those stay one unit each. Names in anonymous
 # namespaces must differ between the files of one target.
 function(surfelao_unity target)
     set_target_properties(${target} PROPERTIES
