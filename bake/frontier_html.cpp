@@ -1,5 +1,6 @@
 #include "bake/compare_text.h"
 #include "bake/frontier.h"
+#include "image/color_map.h"
 #include "surfels/number_text.h"
 
 #include <algorithm>

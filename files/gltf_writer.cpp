@@ -6,6 +6,8 @@
 #include "files/gltf_uri.h"
 #include "surfels/errors.h"
 
+#include <nlohmann/json.hpp>
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -427,7 +429,7 @@ std::string gltf_contents(const fs::path& path, const Scene& scene,
                          ": only a scene that was read from glTF can be written as glTF");
     SURFELAO_CHECK(occlusion.size() == scene.positions.size());
 
-    json document = asset->document;
+    json document = *asset->document;
     const bool binary = is_binary(path);
     std::string bytes;
     if (binary)

@@ -5,7 +5,7 @@
 #include "viewer/render.h"
 
 #include "image/difference.h"
-#include "image/heat_map.h"
+#include "image/color_map.h"
 #include "image/image_file.h"
 #include "reference/rays.h"
 #include "scenes.h"
