@@ -1,6 +1,5 @@
 #include "bake/bake.h"
 
-#include "bake/json.h"
 #include "bake/peak_memory.h"
 #include "engines/threads.h"
 #include "files/file_type.h"
@@ -39,38 +38,6 @@ double mean_occlusion_of(std::span<const Receiver> receivers, std::span<const Oc
         }
     }
     return count > 0 ? sum / static_cast<double>(count) : 0.0;
-}
-
-Json json_of(const BatchEntry& entry)
-{
-    Json json;
-    json["input"] = entry.input.string();
-    json["output"] = entry.output.string();
-    if (!entry.report) {
-        if (entry.error.empty())
-            json["skipped"] = true;
-        else
-            json["error"] = entry.error;
-        return json;
-    }
-    const BakeReport& report = *entry.report;
-    const BakeSeconds& seconds = report.seconds;
-    json["vertices"] = report.vertices;
-    json["triangles"] = report.triangles;
-    json["dropped_triangles"] = report.dropped_triangles;
-    json["vertices_without_normal"] = report.vertices_without_normal;
-    json["surfels"] = report.surfels;
-    json["engine"] = name_of(report.settings.engine.engine);
-    json["settings"] = json_of(report.settings.engine);
-    json["settings"]["threads"] = report.threads;
-    json["settings"]["colors"] = report.settings.colors;
-    json["seconds"] = {{"read", seconds.read},   {"surfels", seconds.surfels},
-                       {"tree", seconds.tree},   {"solve", seconds.solve},
-                       {"write", seconds.write}, {"total", seconds.total}};
-    json["peak_rss_bytes"] = report.peak_rss_bytes;
-    json["residual"] = report.residual ? Json(*report.residual) : Json();
-    json["mean_occlusion"] = report.mean_occlusion;
-    return json;
 }
 
 }  // namespace
@@ -117,14 +84,6 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     report.seconds.total = whole.lap();
     report.peak_rss_bytes = peak_rss_bytes();
     return report;
-}
-
-std::string json_of(std::span<const BatchEntry> batch)
-{
-    Json list = Json::array();
-    for (const BatchEntry& entry : batch)
-        list.push_back(json_of(entry));
-    return (batch.size() == 1 ? list.front() : list).dump(2) + '\n';
 }
 
 fs::path output_in_folder(const fs::path& input, const fs::path& folder)

@@ -1,10 +1,9 @@
 #include "bake/compare_text.h"
 
-#include "bake/json.h"
-#include "bake/picture.h"
 #include "bake/table.h"
 #include "files/maker_mark.h"
 #include "files/ply_io.h"
+#include "image/color_map.h"
 #include "surfels/atomic_file.h"
 #include "surfels/number_text.h"
 
@@ -12,79 +11,6 @@
 #include <sstream>
 
 namespace surfelao {
-namespace {
-
-Json json_of(const std::optional<EmbreeRatio>& ratio)
-{
-    return ratio ? Json(ratio->ratio) : Json();
-}
-
-/// What the row was told, with what only rows of a comparison have.
-Json settings_of(const CompareRow& row)
-{
-    const Json of_engine = json_of(row.settings);
-    Json settings;
-    for (const auto& [key, value] : of_engine.items()) {
-        settings[key] = value;
-        if (key == "rays")
-            settings["smoothed"] = row.smoothed;
-    }
-    return settings;
-}
-
-}  // namespace
-
-Json json_object_of(const Comparison& comparison)
-{
-    Json json;
-    json["input"] = comparison.input.string();
-    json["vertices"] = comparison.vertices;
-    json["triangles"] = comparison.triangles;
-    json["dropped_triangles"] = comparison.dropped_triangles;
-    json["threads"] = comparison.threads;
-    json["rounds"] = comparison.rounds;
-    json["read_s"] = comparison.read_s;
-    json["reference"] = {{"rays", comparison.reference_rays},
-                         {"noise", comparison.reference_noise},
-                         {"from_cache", comparison.reference_from_cache},
-                         {"judged", comparison.judged},
-                         {"ill_defined", comparison.ill_defined},
-                         {"without_normal", comparison.without_normal}};
-    json["rows"] = Json::array();
-    for (const CompareRow& row : comparison.rows) {
-        Json worst = Json::array();
-        for (const WorstVertex& vertex : row.worst) {
-            worst.push_back(
-                {{"vertex", vertex.vertex},
-                 {"position", {vertex.position.x, vertex.position.y, vertex.position.z}},
-                 {"occlusion", vertex.occlusion},
-                 {"reference", vertex.reference}});
-        }
-        json["rows"].push_back({{"engine", name_of(row.settings.engine)},
-                                {"setting", setting_of(row)},
-                                {"settings", settings_of(row)},
-                                {"rounds", row.rounds},
-                                {"build_s", row.build_s},
-                                {"solve_s", row.solve_s},
-                                {"us_per_vertex", row.us_per_vertex},
-                                {"rmse", row.error.rmse},
-                                {"bias", row.error.bias},
-                                {"p95", row.error.p95},
-                                {"max", row.error.max},
-                                {"bent_mean_deg", row.error.bent_mean_deg},
-                                {"bent_p95_deg", row.error.bent_p95_deg},
-                                {"embree_ratio", json_of(row.solve_ratio)},
-                                {"embree_ratio_with_builds", json_of(row.total_ratio)},
-                                {"extrapolated", row.solve_ratio && row.solve_ratio->extrapolated},
-                                {"worst", worst}});
-    }
-    return json;
-}
-
-std::string json_of(const Comparison& comparison)
-{
-    return json_object_of(comparison).dump(2) + '\n';
-}
 
 std::string csv_head()
 {
@@ -178,7 +104,7 @@ void write_difference(const std::filesystem::path& path, const Comparison& compa
     const PlyValues values{
         {"uchar red", "uchar green", "uchar blue", "float error"},
         [&](std::string& bytes, std::size_t v) {
-            for (const std::uint8_t channel : color_of_error(row.errors[v], kFullColorError))
+            for (const std::uint8_t channel : error_color(row.errors[v], kFullColorError))
                 append_bytes(bytes, channel);
             append_bytes(bytes, std::isnan(row.errors[v]) ? 0.0f : row.errors[v]);
         }};

@@ -2,6 +2,7 @@
 #include "bake/frontier.h"
 #include "files/gltf_uri.h"
 #include "files/maker_mark.h"
+#include "image/color_map.h"
 #include "surfels/number_text.h"
 
 #include <algorithm>

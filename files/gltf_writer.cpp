@@ -9,6 +9,8 @@
 #include "files/maker_mark.h"
 #include "surfels/errors.h"
 
+#include <nlohmann/json.hpp>
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -435,7 +437,7 @@ std::string gltf_contents(const fs::path& path, const Scene& scene,
                          ": only a scene that was read from glTF can be written as glTF");
     SURFELAO_CHECK(occlusion.size() == scene.positions.size());
 
-    json document = asset->document;
+    json document = *asset->document;
     std::vector<GltfBuffer> buffers_as_read = asset->buffers;
     drop_old_results(document, buffers_as_read, scene);
     const bool binary = type_of(path) == FileType::glb;

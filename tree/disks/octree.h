@@ -6,17 +6,20 @@
 /// whole subtree. So a walk needs no stack:
 ///
 ///     for (i = 0; i < nodes.size();)
-///         if (far enough to stand for its surfels) { use nodes[i] as a disk; i = nodes[i].next; }
-///         else if (nodes[i].next == i + 1) { use its surfels one by one; i = nodes[i].next; }
-///         else i = i + 1;
+///         if (far enough to stand for its surfels)
+///             use nodes[i] as a disk;         i = nodes[i].next;
+///         else if (nodes[i].next == i + 1)
+///             use its surfels one by one;     i = nodes[i].next;
+///         else
+///             i = i + 1;
 ///
 /// One-sided and two-sided surfels never share a node: the array holds two trees one after the
 /// other (either may be empty), and the walk above passes through both.
 ///
 /// Based on:
 ///   Barnes, Hut. A Hierarchical O(N log N) Force-Calculation Algorithm. 1986
-///   Salmon, Warren. Skeletons from the Treecode Closet. 1994 (why balls about the centroid, and
-///     why the opening must stay below 1/sqrt(3))
+///   Salmon, Warren. Skeletons from the Treecode Closet. 1994: why balls about the centroid, and
+///     why the error has no bound from an opening of 1/sqrt(3) on
 ///   Bunnell. Dynamic Ambient Occlusion and Indirect Lighting. GPU Gems 2, ch. 14. 2005
 #pragma once
 
@@ -31,7 +34,9 @@
 
 namespace surfelao {
 
-/// Whether a node is one-sided or two-sided its index tells (Octree::two_sided_nodes).
+/// 48 bytes: SIMD code fetches the fields of several nodes by that stride. On the GPU nodes and
+/// surfels are one array of records (shaders/disk_record.glsl, made by gpu/gpu_disks.cpp). Whether
+/// a node is one-sided or two-sided its index tells (Octree::two_sided_nodes).
 struct OctreeNode {
     glm::vec3 center{0.0f};  ///< area-weighted mean of the surfel positions
     float radius = 0.0f;     ///< the ball about `center` holds all disks below, their rims too
