@@ -21,8 +21,8 @@ struct DeviceSolution {
 };
 
 /// The same as solve(), to the byte, without the way back. All is done on the device when it
-/// returns, so another context sees it. The Prepared must be one of Device::gpu: throws
-/// SettingsError if not, and what solve() throws.
+/// returns, so another context sees it. The Prepared must be one of Device::gpu with a context that
+/// was given: throws SettingsError if not, and what solve() throws.
 [[nodiscard]] DeviceSolution solve_on_device(const Prepared& prepared,
                                              std::span<const Receiver> receivers,
                                              const SolveSettings& settings = {},

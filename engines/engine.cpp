@@ -84,6 +84,30 @@ struct Prepared::Impl {
     }
 };
 
+namespace {
+
+/// The context of a Prepared is current while this lives; its own one is then free for any thread.
+class Current {
+public:
+    explicit Current(const Prepared::Impl& impl)
+        : own_(impl.own_context ? &*impl.own_context : nullptr)
+    {
+        impl.context()->make_current();
+    }
+    ~Current()
+    {
+        if (own_ != nullptr)
+            own_->release();
+    }
+    Current(const Current&) = delete;
+    Current& operator=(const Current&) = delete;
+
+private:
+    const GlContext* own_;
+};
+
+}  // namespace
+
 Prepared::Prepared(std::unique_ptr<const Impl> impl) : impl_(std::move(impl))
 {
 }
@@ -113,12 +137,11 @@ Prepared prepare(const Geometry& geometry, const EngineChoice& choice)
     require(runs_on(choice.engine, choice.device),
             name_of(choice.engine) + " do not run on the GPU");
     const bool on_gpu = choice.device == Device::gpu;
-    if (!on_gpu)
-        impl->choice.context = nullptr;
-    else if (choice.context == nullptr)
+    if (on_gpu && choice.context == nullptr)
         impl->own_context.emplace(GlContext::create());
-    else
-        choice.context->make_current();
+    std::optional<Current> current;
+    if (on_gpu)
+        current.emplace(*impl);
     Stopwatch watch;
     switch (choice.engine) {
         case Engine::masks:
@@ -201,16 +224,10 @@ void check_receivers(std::span<const Receiver> receivers)
                      "length 1, or zero");
 }
 
-}  // namespace
-
-DeviceSolution solve_on_device(const Prepared& prepared, std::span<const Receiver> receivers,
-                               const SolveSettings& settings, const Progress& progress)
+/// The context must be current.
+DeviceSolution solve_on_gpu(const Prepared::Impl& impl, std::span<const Receiver> receivers,
+                            const SolveSettings& settings, const Progress& progress)
 {
-    const Prepared::Impl& impl = prepared.impl();
-    require(impl.choice.device == Device::gpu, "device must be gpu for answers that stay on it");
-    check_settings(impl.choice, settings);
-    check_receivers(receivers);
-    impl.context()->make_current();
     Stopwatch watch;
     if (impl.gpu_masks) {
         TextureBuffer answers =
@@ -222,21 +239,36 @@ DeviceSolution solve_on_device(const Prepared& prepared, std::span<const Receive
             residual_of(solved.residuals)};
 }
 
+}  // namespace
+
+DeviceSolution solve_on_device(const Prepared& prepared, std::span<const Receiver> receivers,
+                               const SolveSettings& settings, const Progress& progress)
+{
+    const Prepared::Impl& impl = prepared.impl();
+    require(impl.choice.device == Device::gpu && impl.choice.context != nullptr,
+            "device must be gpu and context given for answers that stay on it");
+    check_settings(impl.choice, settings);
+    check_receivers(receivers);
+    const Current current(impl);
+    return solve_on_gpu(impl, receivers, settings, progress);
+}
+
 Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
                const SolveSettings& settings, const Progress& progress)
 {
     const Prepared::Impl& impl = prepared.impl();
+    check_settings(impl.choice, settings);
+    check_receivers(receivers);
     Solution solution;
     if (impl.choice.device == Device::gpu) {
-        const DeviceSolution solved = solve_on_device(prepared, receivers, settings, progress);
+        const Current current(impl);
+        const DeviceSolution solved = solve_on_gpu(impl, receivers, settings, progress);
         Stopwatch watch;
         solution.occlusion = read_answers(solved.answers, solved.count);
         solution.residual = solved.residual;
         solution.seconds = solved.seconds + watch.lap();
         return solution;
     }
-    check_settings(impl.choice, settings);
-    check_receivers(receivers);
     Stopwatch watch;
     if (impl.masks) {
         solution.occlusion =

@@ -54,7 +54,9 @@ struct EngineChoice {
     Device device = Device::cpu;  ///< gpu: masks and disks
     Instructions instructions = Instructions::all;
     /// gpu: where it computes; must outlive what is prepared, and prepare() and solve() make it
-    /// current in the calling thread. Null: a context of its own.
+    /// current in the calling thread, where it stays so. Null: a context of its own, which is
+    /// current in no thread afterwards, nor is any other. One is dear: give several engines the
+    /// same.
     const GlContext* context = nullptr;
     bool operator==(const EngineChoice&) const = default;
 };

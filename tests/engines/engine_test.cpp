@@ -98,6 +98,21 @@ TEST(Engines, AnswersThatStayOnTheDeviceAreTheSame)
     }
 }
 
+TEST(Engines, ItsOwnContextGoesWhereverItIsAsked)
+{
+    const World world;
+    std::optional<Prepared> prepared = prepare(world.geometry, {.device = Device::gpu});
+    std::vector<Occlusion> here, there;
+    std::thread([&] {
+        there = solve(*prepared, world.receivers[1], kSettings[0]).occlusion;
+    }).join();
+    here = solve(*prepared, world.receivers[1], kSettings[0]).occlusion;
+    EXPECT_TRUE(same_bytes(here, there));
+    EXPECT_THROW(static_cast<void>(solve_on_device(*prepared, world.receivers[1])), SettingsError)
+        << "nobody could use the answers";
+    std::thread([&] { prepared.reset(); }).join();
+}
+
 TEST(Engines, AnswersStayOnADeviceThatIsTheGpu)
 {
     const World world;
