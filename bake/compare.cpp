@@ -166,7 +166,7 @@ std::vector<CurvePoint> embree_curve(const Comparison& comparison, bool with_bui
 
 Comparison compare(const CompareSettings& settings, const StageProgress& progress)
 {
-    SURFELAO_CHECK(settings.rounds >= 1);
+    require(settings.rounds >= 1, "rounds must be at least 1");
     const auto stage = [&](std::string name) -> Progress {
         if (!progress)
             return {};

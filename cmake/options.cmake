@@ -29,7 +29,6 @@ endfunction()
 function(surfelao_folder name)
     cmake_parse_arguments(PARSE_ARGV 1 arg "UNITY" "" "SOURCES;HEADERS")
     add_library(${name} STATIC ${arg_SOURCES})
-    add_library(surfelao::${name} ALIAS ${name})
     set_target_properties(${name} PROPERTIES OUTPUT_NAME surfelao_${name})
     target_sources(${name} PUBLIC
         FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${arg_HEADERS})

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <string>
 
 namespace surfelao {
 namespace {
@@ -45,7 +46,10 @@ OneRings one_rings(const Geometry& geometry)
 std::vector<Occlusion> smooth_occlusion(const Geometry& geometry,
                                         std::span<const Occlusion> occlusion)
 {
-    SURFELAO_CHECK(occlusion.size() == geometry.positions.size());
+    require(occlusion.size() == geometry.positions.size(),
+            "smoothing takes one answer per vertex: there are " +
+                std::to_string(geometry.positions.size()) + " vertices and " +
+                std::to_string(occlusion.size()) + " answers");
     const OneRings rings = one_rings(geometry);
     std::vector<Occlusion> result(occlusion.begin(), occlusion.end());
     const tbb::blocked_range<std::size_t> all(0, result.size(), 1024);

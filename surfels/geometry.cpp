@@ -152,6 +152,7 @@ void borrow_normals(const std::vector<glm::uvec3>& dropped, Geometry& geometry)
 
 Geometry make_geometry(const Scene& scene)
 {
+    check_scene(scene);
     Geometry geometry;
     const std::size_t vertex_count = scene.positions.size();
     geometry.frame = frame_of(scene);

@@ -1,6 +1,7 @@
 #include "reference/rays.h"
 
 #include "differences.h"
+#include "surfels/errors.h"
 
 #include <glm/geometric.hpp>
 
@@ -202,6 +203,17 @@ TEST(Rays, NoTrianglesMeansOpenAndNoNormalMeansZero)
     EXPECT_EQ(look(scene, {0, 0, 0}, kUp).occlusion, 0.0f);
     EXPECT_TRUE(
         trace_occlusion(RayScene(make_geometry(scene), RayScene::Build::fast), {}, {}).empty());
+}
+
+TEST(Rays, BadOptionsAreRefused)
+{
+    const Geometry geometry = make_geometry(hills());
+    const RayScene scene(geometry, RayScene::Build::fast);
+    for (const std::uint32_t rays : {0u, kMostRays + 1})
+        EXPECT_THROW(static_cast<void>(trace_occlusion(scene, {}, {.rays = rays})), SettingsError);
+    EXPECT_THROW(
+        static_cast<void>(trace_occlusion(scene, {}, {.definition = {.max_distance = -1.0f}})),
+        SettingsError);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "differences.h"
 #include "reference/rays.h"
 #include "scenes.h"
+#include "surfels/errors.h"
 #include "temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -153,6 +154,13 @@ TEST_F(ReferenceCache, CancelledLeavesNothing)
     const auto cancel = [](double) { return false; };
     EXPECT_THROW(static_cast<void>(trace_reference(geometry_, receivers_, {}, cancel)), Cancelled);
     EXPECT_TRUE(files().empty());
+}
+
+TEST_F(ReferenceCache, OddNumbersOfRaysAreRefused)
+{
+    for (const std::uint32_t rays : {0u, 7u, kMostRays + 2})
+        EXPECT_THROW(static_cast<void>(trace_reference(geometry_, receivers_, {.rays = rays})),
+                     SettingsError);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "differences.h"
 #include "reference/rays.h"
 #include "scenes.h"
+#include "surfels/errors.h"
 
 #include <gtest/gtest.h>
 
@@ -58,6 +59,13 @@ TEST(Smoothing, VerticesWithoutANormalKeepTheirValue)
     const std::vector<Occlusion> smooth = smooth_occlusion(geometry, values);
     EXPECT_EQ(smooth[4].occlusion, 0.0f);
     EXPECT_EQ(smooth[4].bent_normal, glm::vec3(0.0f));
+}
+
+TEST(Smoothing, AnotherNumberOfAnswersThanVerticesIsRefused)
+{
+    const Geometry geometry = make_geometry(scenes::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1));
+    EXPECT_THROW(static_cast<void>(smooth_occlusion(geometry, std::vector<Occlusion>(3))),
+                 SettingsError);
 }
 
 }  // namespace

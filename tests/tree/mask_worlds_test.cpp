@@ -2,6 +2,7 @@
 
 #include "differences.h"
 #include "scenes.h"
+#include "surfels/errors.h"
 
 #include <glm/geometric.hpp>
 
@@ -147,10 +148,10 @@ TEST(MaskWorlds, ErrorAgainstTheOracleFallsWithQuality)
 TEST(MaskWorlds, RefusesWhatItDoesNotMeasure)
 {
     const Geometry geometry = make_geometry(scenes::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1));
-    EXPECT_THROW(static_cast<void>(solve(geometry, {}, {.quality = 5.0f})), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(solve(geometry, {}, {.quality = 5.0f})), SettingsError);
     MaskOptions bunnell;
     bunnell.definition.kernel = Kernel::bunnell;
-    EXPECT_THROW(static_cast<void>(solve(geometry, {}, bunnell)), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(solve(geometry, {}, bunnell)), SettingsError);
 }
 
 }  // namespace

@@ -122,9 +122,12 @@ Occlusion to_occlusion(const DiskSum& sum, const glm::vec3& normal, float streng
 
 void check_disk_options(const DiskOptions& options)
 {
-    SURFELAO_CHECK(options.definition.max_distance > 0.0f && options.definition.offset > 0.0f);
-    SURFELAO_CHECK(options.opening >= 0.0f && options.opening < 1.0f);
-    SURFELAO_CHECK(options.passes >= 1 && options.strength >= 0.0f);
+    check_definition(options.definition);
+    require(options.opening >= 0.0f && options.opening < 1.0f,
+            "opening of disks must be at least 0 and below 1");
+    require(options.passes >= 1, "passes must be at least 1");
+    require(options.strength >= 0.0f && std::isfinite(options.strength),
+            "strength must be 0 or more, and finite");
 }
 
 float correction_opening(float opening)

@@ -30,7 +30,7 @@ struct MaskSettings {
     float close;         ///< how much cracks of two bits count as closed where all else is
 };
 
-/// Throws std::invalid_argument for options out of their range.
+/// Throws SettingsError for options out of their range.
 [[nodiscard]] MaskSettings mask_settings(const MaskOptions& options);
 
 /// Neighbouring receivers: all points within `radius` of `center`, all normals within the cone, no

@@ -1,4 +1,5 @@
 #include "tree/masks/masks.h"
+#include "surfels/errors.h"
 
 #include "tree/masks/groups.h"
 #include "tree/masks/kernel.h"
@@ -19,7 +20,7 @@
 #include <limits>
 #include <memory>
 #include <new>
-#include <stdexcept>
+#include <string>
 
 namespace surfelao {
 
@@ -93,10 +94,14 @@ float between(float a, float b, float t)
 
 MaskSettings mask_settings(const MaskOptions& options)
 {
-    if (!(options.quality >= MaskOptions::kCoarsest && options.quality <= MaskOptions::kFinest))
-        throw std::invalid_argument("MaskOptions: quality must be between -1 and 4");
-    if (options.definition.kernel != Kernel::cosine)
-        throw std::invalid_argument("MaskOptions: masks know the cosine kernel only");
+    check_definition(options.definition);
+    require(options.quality >= MaskOptions::kCoarsest && options.quality <= MaskOptions::kFinest,
+            "quality of masks must be between -1 and 4");
+    require(options.definition.kernel == Kernel::cosine, "masks know the cosine kernel only");
+    const std::vector<MaskKernelSet> kernels = available_mask_kernels();
+    require(options.kernel == MaskKernelSet::best ||
+                std::ranges::find(kernels, options.kernel) != kernels.end(),
+            "this processor has no kernel " + std::string(name_of(options.kernel)));
     MaskSettings settings{};
     settings.fill = !options.exact;
     // within a limit a body's far side may be missing

@@ -64,8 +64,9 @@ struct MaskOptions {
     MaskKernelSet kernel = MaskKernelSet::best;  ///< must be available
 };
 
-/// One Occlusion per receiver. All cores, same bytes for any number of threads. Throws Cancelled.
-/// The definition's kernel must be Kernel::cosine.
+/// One Occlusion per receiver. All cores, same bytes for any number of threads. The definition's
+/// kernel must be Kernel::cosine. Throws SettingsError where an option is out of its range or the
+/// processor lacks the kernel, Cancelled.
 [[nodiscard]] std::vector<Occlusion> solve_masks(const MaskTree& tree,
                                                  std::span<const Receiver> receivers,
                                                  const MaskOptions& options,
