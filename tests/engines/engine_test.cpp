@@ -12,7 +12,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstring>
 #include <limits>
 #include <optional>
 #include <string>
@@ -167,7 +166,7 @@ TEST(Engines, EveryBadSettingIsRefusedByItsName)
     const EngineChoice masks = {.engine = Engine::masks}, disks = {.engine = Engine::disks},
                        rays = {.engine = Engine::rays};
     const EngineChoice gpu = {
-        .engine = Engine::disks, .device = Device::gpu, .context = &software()};
+        .engine = Engine::disks, .device = Device::gpu, .context = &test_context()};
     const std::vector<EngineChoice> all = {masks, disks, rays, gpu};
     const BadSettings bad[] = {
         {"max_distance", all, {.definition = {.max_distance = 0.0f}}},

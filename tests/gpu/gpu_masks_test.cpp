@@ -1,5 +1,6 @@
 #include "gpu/gpu_masks.h"
 
+#include "differences.h"
 #include "gpu/answers.h"
 #include "scenes.h"
 #include "tests/gpu/contexts.h"
@@ -37,32 +38,12 @@ struct World {
     }
 };
 
-struct Difference {
-    double rms = 0.0, mean = 0.0, largest = 0.0;
-    /// RMS length of the difference times what is open: where only one bit is, it may be another.
-    double bent_normal = 0.0;
-};
-
 /// Of the GPU from the CPU, over all receivers.
 Difference difference(const World& world, const MaskOptions& options)
 {
     const std::vector<Occlusion> cpu = solve_masks(*world.tree, world.receivers, options);
     const std::vector<Occlusion> gpu = solve_on_gpu(*world.tree, world.receivers, options);
-    Difference result;
-    for (std::size_t i = 0; i < cpu.size(); ++i) {
-        const double d = double{gpu[i].occlusion} - double{cpu[i].occlusion};
-        const double bent = double{glm::distance(gpu[i].bent_normal, cpu[i].bent_normal)} *
-                            (1.0 - double{cpu[i].occlusion});
-        result.mean += d;
-        result.rms += d * d;
-        result.bent_normal += bent * bent;
-        result.largest = std::max(result.largest, std::abs(d));
-    }
-    const double n = static_cast<double>(cpu.size());
-    result.mean /= n;
-    result.rms = std::sqrt(result.rms / n);
-    result.bent_normal = std::sqrt(result.bent_normal / n);
-    return result;
+    return difference(cpu, gpu);
 }
 
 // Every triangle for every receiver on both: only bits whose direction an edge passes to within
@@ -138,7 +119,7 @@ Difference difference_alone(const World& world, std::size_t step, const MaskOpti
         sum.bent_normal += d.bent_normal * d.bent_normal;
     }
     const double n = static_cast<double>(count);
-    return {std::sqrt(sum.rms / n), sum.mean / n, sum.largest, std::sqrt(sum.bent_normal / n)};
+    return {sum.mean / n, std::sqrt(sum.rms / n), sum.largest, std::sqrt(sum.bent_normal / n)};
 }
 
 // Clusters leave cracks, and filling closes them: without it the answers in the sphere differ by
