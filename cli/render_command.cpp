@@ -1,6 +1,7 @@
 #include "bake/bake.h"
 #include "cli/commands.h"
 #include "cli/engine_options.h"
+#include "cli/output.h"
 #include "cli/progress_bar.h"
 #include "cli/view_options.h"
 #include "engines/threads.h"
@@ -10,6 +11,7 @@
 #include "surfels/number_text.h"
 #include "surfels/stopwatch.h"
 #include "viewer/render.h"
+#include "viewer/solve_model.h"
 
 #include <CLI/CLI.hpp>
 
@@ -41,6 +43,16 @@ GlBackend backend_of(const std::string& name)
     if (name == "egl")
         return GlBackend::egl;
     return name == "osmesa" ? GlBackend::osmesa : GlBackend::automatic;
+}
+
+/// Throws UsageError where the picture would replace what is read.
+void check_files(const RenderCommandOptions& options)
+{
+    FilePlan plan;
+    plan.reads(options.input);
+    if (options.show.environment)
+        plan.reads(*options.show.environment);
+    plan.writes(options.output, "the picture");
 }
 
 int run(const RenderCommandOptions& options)
@@ -85,17 +97,18 @@ int run(const RenderCommandOptions& options)
     const Colors colors = picture.view.colors;
     std::vector<Occlusion> occlusion(model.receivers.size());
     if (colors != Colors::rays && colors != Colors::normals && colors != Colors::levels)
-        occlusion = solve(prepare(model.geometry, engine), model.receivers, engine, stage("solve"))
+        occlusion = solve_model(prepare(model.geometry, engine), model, engine,
+                                shows_ground(picture.view), stage("solve"))
                         .occlusion;
     const double solve_s = watch.lap();
-    std::vector<Occlusion> reference;
+    Reference reference;
     if (needs_reference(picture.view))
         reference =
             trace_reference(model.geometry, model.receivers,
-                            {engine.definition, options.show.reference_rays}, stage("reference"))
-                .occlusion;
+                            {engine.definition, options.show.reference_rays}, stage("reference"));
     const double reference_s = watch.lap();
-    const Image image = render(model, occlusion, reference, camera, picture, stage("draw"));
+    const Image image =
+        render(model, occlusion, reference.occlusion, camera, picture, stage("draw"));
     const double draw_s = watch.lap();
     write_image(options.output, image);
 
@@ -104,8 +117,8 @@ int run(const RenderCommandOptions& options)
               << image.height << "\n  " << model.geometry.positions.size() << " vertices, "
               << model.geometry.triangles.size() << " triangles, " << name_of(engine.engine) << ", "
               << setting_of(engine) << "\n  read " << time(read_s) << ", solve " << time(solve_s)
-              << ", reference " << time(reference_s) << ", draw " << time(draw_s) << ", write "
-              << time(watch.lap()) << '\n';
+              << ", reference " << (reference.from_cache ? "from the cache" : time(reference_s))
+              << ", draw " << time(draw_s) << ", write " << time(watch.lap()) << '\n';
     return kDone;
 }
 
@@ -154,6 +167,7 @@ void add_render_command(CLI::App& app, Work& work)
         check_kernel(settings_of(options->engine).engine, kernel_of(options->measure));
         static_cast<void>(distance_limit_of(options->measure));
         static_cast<void>(view_options_of(options->show));
+        check_files(*options);
         work = [options] { return run(*options); };
     });
 }

@@ -1,9 +1,7 @@
-#include "bake/statistics.h"
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/interrupt.h"
 #include "cli/view_options.h"
-#include "engines/engine.h"
 #include "engines/threads.h"
 #include "image/image_file.h"
 #include "surfels/errors.h"
@@ -11,11 +9,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iostream>
 #include <memory>
-#include <vector>
 
 namespace surfelao {
 namespace {
@@ -29,58 +26,6 @@ struct ViewCommandOptions {
     std::optional<int> threads;
 };
 
-/// Who can be chosen in the window, in this order.
-struct Choice {
-    Engine engine;
-    Device device;
-};
-
-std::vector<Choice> choices()
-{
-    std::vector<Choice> all;
-    for (const Engine engine : {Engine::masks, Engine::disks, Engine::rays}) {
-        for (const Device device : {Device::cpu, Device::gpu}) {
-            if (runs_on(engine, device))
-                all.push_back({engine, device});
-        }
-    }
-    return all;
-}
-
-Solved solve(const Model& model, const SessionSettings& settings, const Progress& progress)
-{
-    EngineSettings engine;
-    engine.engine = choices()[settings.engine].engine;
-    engine.device = choices()[settings.engine].device;
-    engine.definition = definition_of(settings);
-    engine.quality = settings.quality;
-    engine.passes = settings.passes;
-    engine.strength = settings.strength;
-    engine.rays = static_cast<std::uint32_t>(settings.rays);
-    const Prepared prepared = prepare(model.geometry, engine);
-    Solution solution = surfelao::solve(prepared, model.receivers, engine, progress);
-    return {std::move(solution.occlusion), prepared.seconds().surfels + prepared.seconds().tree,
-            solution.seconds};
-}
-
-Services services()
-{
-    Services all;
-    for (const Choice& choice : choices())
-        all.engines.push_back(
-            {.name = name_of(choice.engine) + (choice.device == Device::gpu ? " on GPU" : ""),
-             .least_quality = least_quality(choice.engine),
-             .most_quality = most_quality(choice.engine),
-             .has_disk_options = choice.engine == Engine::disks,
-             .has_rays = choice.engine == Engine::rays});
-    all.solve = solve;
-    all.measure = [](std::span<const Occlusion> answer, std::span<const Occlusion> reference) {
-        const ErrorStatistics error = error_statistics(answer, reference);
-        return ErrorFigures{error.rmse, error.bias, error.p95, error.max};
-    };
-    return all;
-}
-
 int run(const ViewCommandOptions& options)
 {
     std::optional<ThreadLimit> limit;
@@ -92,29 +37,17 @@ int run(const ViewCommandOptions& options)
     window.camera = options.camera;
     window.panel.view = view_options_of(options.show);
     window.panel.reference_rays = static_cast<int>(options.show.reference_rays);
-    if (options.show.environment)
+    if (options.show.environment) {
         window.environment = read_image(*options.show.environment);
+        window.other_inputs.push_back(*options.show.environment);
+    }
     if (!options.input.empty() && !std::filesystem::exists(options.input))
         throw InputError(options.input + ": no such file");
 
-    const EngineSettings engine = settings_of(options.engine);
-    SessionSettings& settings = window.panel.settings;
-    const std::vector<Choice> known = choices();
-    while (known[settings.engine].engine != engine.engine ||
-           known[settings.engine].device != engine.device)
-        ++settings.engine;
-    settings.quality =
-        std::clamp(engine.quality, least_quality(engine.engine), most_quality(engine.engine));
-    settings.passes = engine.passes;
-    settings.strength = engine.strength;
-    settings.rays = static_cast<int>(engine.rays);
-    const DistanceLimit distance = distance_limit_of(options.measure);
-    if (std::isfinite(distance.value)) {
-        settings.max_distance_percent = static_cast<float>(distance.value);
-        settings.smooth_falloff = distance.falloff == Falloff::smooth;
-    }
+    window.panel.settings = {settings_of(options.engine), distance_limit_of(options.measure)};
     window.keep_open = [] { return caught_signal() == 0; };
-    show_window(window, services());
+    for (const std::filesystem::path& file : show_window(window))
+        std::cout << "wrote " << file.string() << '\n';
     if (caught_signal() != 0)
         return kKilledBy + caught_signal();
     return kDone;

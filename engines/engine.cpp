@@ -1,5 +1,7 @@
 #include "engines/engine.h"
 
+#include "engines/device_solution.h"
+#include "gpu/answers.h"
 #include "gpu/context.h"
 #include "gpu/gpu_disks.h"
 #include "gpu/gpu_masks.h"
@@ -12,8 +14,14 @@
 #include "tree/disks/disks.h"
 #include "tree/masks/masks.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 
@@ -54,12 +62,26 @@ struct Prepared::Impl {
     EngineChoice choice;
     PrepareSeconds seconds;
     std::uint64_t surfel_count = 0;
+    std::optional<GlContext> own_context;  // before what lives in it
     std::shared_ptr<const MaskTree> masks;
     std::optional<Octree> disks;
     std::optional<RayScene> rays;
-    std::optional<GlContext> own_context;
+    std::optional<GpuMasks> gpu_masks;
+    std::optional<GpuDisks> gpu_disks;
 
+    /// Where it computes; null on the CPU.
     const GlContext* context() const { return own_context ? &*own_context : choice.context; }
+
+    ~Impl()
+    {
+        if (!gpu_masks && !gpu_disks)
+            return;
+        try {
+            context()->make_current();
+        } catch (const std::runtime_error&) {
+            // a driver that refuses has lost the context, and the objects with it
+        }
+    }
 };
 
 Prepared::Prepared(std::unique_ptr<const Impl> impl) : impl_(std::move(impl))
@@ -88,15 +110,24 @@ Prepared prepare(const Geometry& geometry, const EngineChoice& choice)
 {
     auto impl = std::make_unique<Prepared::Impl>();
     impl->choice = choice;
-    if (!runs_on(choice.engine, choice.device))
-        throw SettingsError(name_of(choice.engine) + " do not run on the GPU");
-    if (choice.device == Device::gpu && choice.context == nullptr)
+    require(runs_on(choice.engine, choice.device),
+            name_of(choice.engine) + " do not run on the GPU");
+    const bool on_gpu = choice.device == Device::gpu;
+    if (!on_gpu)
+        impl->choice.context = nullptr;
+    else if (choice.context == nullptr)
         impl->own_context.emplace(GlContext::create());
+    else
+        choice.context->make_current();
     Stopwatch watch;
     switch (choice.engine) {
         case Engine::masks:
             static_cast<void>(kernel_set_of(choice.instructions));
             impl->masks = build_mask_tree(geometry);
+            if (on_gpu) {
+                impl->gpu_masks.emplace(*impl->context(), *impl->masks);
+                impl->masks.reset();
+            }
             break;
         case Engine::disks: {
             const SurfelCloud cloud = surfels_of(geometry);
@@ -104,6 +135,8 @@ Prepared prepare(const Geometry& geometry, const EngineChoice& choice)
             impl->surfel_count = cloud.surfels.size();
             impl->seconds.surfels = watch.lap();
             impl->disks = build_octree(cloud.surfels, sides);
+            if (on_gpu)
+                impl->gpu_disks.emplace(*impl->context(), *impl->disks);
             break;
         }
         case Engine::rays:
@@ -116,48 +149,107 @@ Prepared prepare(const Geometry& geometry, const EngineChoice& choice)
     return Prepared(std::move(impl));
 }
 
+namespace {
+
+MaskOptions mask_options(const EngineChoice& choice, const SolveSettings& settings)
+{
+    MaskOptions options;
+    options.definition = settings.definition;
+    options.quality = settings.quality;
+    options.kernel = kernel_set_of(choice.instructions);
+    return options;
+}
+
+DiskOptions disk_options(const SolveSettings& settings)
+{
+    DiskOptions options;
+    options.definition = settings.definition;
+    options.opening = opening_at(settings.quality);
+    options.passes = settings.passes;
+    options.strength = settings.strength;
+    return options;
+}
+
+std::optional<double> residual_of(const std::vector<double>& residuals)
+{
+    return residuals.empty() ? std::nullopt : std::optional(residuals.back());
+}
+
+/// Throws InputError for the first that no engine can answer.
+void check_receivers(std::span<const Receiver> receivers)
+{
+    const auto fits = [](const Receiver& receiver) {
+        const glm::vec3 p = glm::abs(receiver.position);
+        const float length2 = glm::dot(receiver.normal, receiver.normal);
+        return p.x <= kFarthestReceiver && p.y <= kFarthestReceiver && p.z <= kFarthestReceiver &&
+               (std::abs(length2 - 1.0f) <= 2.0f * kUnitLength || length2 == 0.0f);
+    };
+    constexpr std::size_t kGrain = 16384;
+    const bool all_fit = tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, receivers.size(), kGrain), true,
+        [&](const tbb::blocked_range<std::size_t>& range, bool all) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i)
+                all &= fits(receivers[i]);
+            return all;
+        },
+        std::logical_and<bool>());
+    if (all_fit)
+        return;
+    const auto wrong = std::ranges::find_if_not(receivers, fits);
+    throw InputError("receiver " + std::to_string(wrong - receivers.begin()) +
+                     ": its position must be finite and within a million diagonals, its normal of "
+                     "length 1, or zero");
+}
+
+}  // namespace
+
+DeviceSolution solve_on_device(const Prepared& prepared, std::span<const Receiver> receivers,
+                               const SolveSettings& settings, const Progress& progress)
+{
+    const Prepared::Impl& impl = prepared.impl();
+    require(impl.choice.device == Device::gpu, "device must be gpu for answers that stay on it");
+    check_settings(impl.choice, settings);
+    check_receivers(receivers);
+    impl.context()->make_current();
+    Stopwatch watch;
+    if (impl.gpu_masks) {
+        TextureBuffer answers =
+            impl.gpu_masks->solve(receivers, mask_options(impl.choice, settings), progress);
+        return {std::move(answers), receivers.size(), watch.lap(), std::nullopt};
+    }
+    GpuDiskResult solved = impl.gpu_disks->solve(receivers, disk_options(settings), progress);
+    return {std::move(solved.answers), receivers.size(), watch.lap(),
+            residual_of(solved.residuals)};
+}
+
 Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
                const SolveSettings& settings, const Progress& progress)
 {
     const Prepared::Impl& impl = prepared.impl();
-    check_settings(impl.choice, settings);
-    const GlContext* gpu = impl.choice.device == Device::gpu ? impl.context() : nullptr;
-    if (gpu != nullptr)
-        gpu->make_current();
-    Stopwatch watch;
     Solution solution;
-    switch (impl.choice.engine) {
-        case Engine::masks: {
-            MaskOptions options;
-            options.definition = settings.definition;
-            options.quality = settings.quality;
-            options.kernel = kernel_set_of(impl.choice.instructions);
-            solution.occlusion =
-                gpu != nullptr ? solve_masks_gpu(*gpu, *impl.masks, receivers, options, progress)
-                               : solve_masks(*impl.masks, receivers, options, progress);
-            break;
-        }
-        case Engine::disks: {
-            DiskOptions options;
-            options.definition = settings.definition;
-            options.opening = opening_at(settings.quality);
-            options.passes = settings.passes;
-            options.strength = settings.strength;
-            DiskResult solved =
-                gpu != nullptr ? solve_disks_gpu(*gpu, *impl.disks, receivers, options, progress)
-                               : solve_disks(*impl.disks, receivers, options, progress);
-            solution.occlusion = std::move(solved.occlusion);
-            if (!solved.residuals.empty())
-                solution.residual = solved.residuals.back();
-            break;
-        }
-        case Engine::rays: {
-            RayOptions options;
-            options.definition = settings.definition;
-            options.rays = settings.rays;
-            solution.occlusion = trace_occlusion(*impl.rays, receivers, options, progress);
-            break;
-        }
+    if (impl.choice.device == Device::gpu) {
+        const DeviceSolution solved = solve_on_device(prepared, receivers, settings, progress);
+        Stopwatch watch;
+        solution.occlusion = read_answers(solved.answers, solved.count);
+        solution.residual = solved.residual;
+        solution.seconds = solved.seconds + watch.lap();
+        return solution;
+    }
+    check_settings(impl.choice, settings);
+    check_receivers(receivers);
+    Stopwatch watch;
+    if (impl.masks) {
+        solution.occlusion =
+            solve_masks(*impl.masks, receivers, mask_options(impl.choice, settings), progress);
+    } else if (impl.disks) {
+        DiskResult solved = solve_disks(*impl.disks, receivers, disk_options(settings), progress);
+        solution.occlusion = std::move(solved.occlusion);
+        solution.residual = residual_of(solved.residuals);
+    } else {
+        RayOptions options;
+        options.definition = settings.definition;
+        options.rays = settings.rays;
+        solution.occlusion = trace_occlusion(*impl.rays, receivers, options, progress);
     }
     solution.seconds = watch.lap();
     return solution;
@@ -165,30 +257,22 @@ Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
 
 void check_settings(const EngineChoice& choice, const SolveSettings& settings)
 {
-    const auto must = [](bool holds, const std::string& what) {
-        if (!holds)
-            throw SettingsError(what);
-    };
-    const Definition& definition = settings.definition;
-    must(definition.max_distance > 0.0f, "max_distance must be above 0");
-    must(definition.offset > 0.0f && std::isfinite(definition.offset), "offset must be above 0");
-    must(definition.falloff == Falloff::none || std::isfinite(definition.max_distance),
-         "a falloff needs a max_distance");
-    must(knows_kernel(choice.engine, definition.kernel),
-         name_of(choice.engine) + " do not know this kernel");
+    check_definition(settings.definition);
+    require(knows_kernel(choice.engine, settings.definition.kernel),
+            name_of(choice.engine) + " know the cosine kernel only");
     if (choice.engine == Engine::rays) {
-        must(settings.rays >= 1 && settings.rays <= kMostRays,
-             "rays must be between 1 and " + std::to_string(kMostRays));
+        require(settings.rays >= 1 && settings.rays <= kMostRays,
+                "rays must be between 1 and " + std::to_string(kMostRays));
         return;
     }
-    must(settings.quality >= least_quality(choice.engine) &&
-             settings.quality <= most_quality(choice.engine),
-         "quality of " + name_of(choice.engine) + " must be between " +
-             exact(least_quality(choice.engine)) + " and " + exact(most_quality(choice.engine)));
+    require(settings.quality >= least_quality(choice.engine) &&
+                settings.quality <= most_quality(choice.engine),
+            "quality of " + name_of(choice.engine) + " must be between " +
+                exact(least_quality(choice.engine)) + " and " + exact(most_quality(choice.engine)));
     if (choice.engine == Engine::disks) {
-        must(settings.passes >= 1, "passes must be at least 1");
-        must(settings.strength >= 0.0f && std::isfinite(settings.strength),
-             "strength must be 0 or more");
+        require(settings.passes >= 1, "passes must be at least 1");
+        require(settings.strength >= 0.0f && std::isfinite(settings.strength),
+                "strength must be 0 or more, and finite");
     }
 }
 
@@ -202,7 +286,7 @@ std::string name_of(Engine engine)
         case Engine::rays:
             return "rays";
     }
-    std::abort();
+    throw SettingsError("engine must be masks, disks or rays");
 }
 
 float least_quality(Engine engine)
@@ -220,7 +304,7 @@ float most_quality(Engine engine)
         case Engine::rays:
             return 0.0f;
     }
-    std::abort();
+    throw SettingsError("engine must be masks, disks or rays");
 }
 
 bool knows_kernel(Engine engine, Kernel kernel)
@@ -243,6 +327,9 @@ std::string setting_of(const EngineSettings& settings)
 
 Definition definition_of(const DistanceLimit& limit, Kernel kernel, const Frame& frame)
 {
+    require(limit.value > 0.0, "max_distance must be above 0");
+    require(limit.falloff == Falloff::none || std::isfinite(limit.value),
+            "a falloff needs a max_distance");
     const double share = limit.percent ? limit.value / 100.0 : limit.value / frame.diagonal;
     Definition definition;
     definition.kernel = kernel;

@@ -56,6 +56,7 @@ struct EngineChoice {
     /// gpu: where it computes; must outlive what is prepared, and prepare() and solve() make it
     /// current in the calling thread. Null: a context of its own.
     const GlContext* context = nullptr;
+    bool operator==(const EngineChoice&) const = default;
 };
 
 /// What is asked, and how exactly.
@@ -65,19 +66,23 @@ struct SolveSettings {
     int passes = 2;            ///< disks: >= 1 (tree/disks/disks.h)
     float strength = 1.0f;     ///< disks: >= 0
     std::uint32_t rays = 256;  ///< rays: 1 to kMostRays
+    bool operator==(const SolveSettings&) const = default;
 };
 
 /// An engine with its settings: one row of a table, or what a command line asks for.
-struct EngineSettings : EngineChoice, SolveSettings {};
+struct EngineSettings : EngineChoice, SolveSettings {
+    bool operator==(const EngineSettings&) const = default;
+};
 
 /// Seconds of preparing.
 struct PrepareSeconds {
     double surfels = 0.0;  ///< what the engine makes of the geometry first
-    double tree = 0.0;     ///< its hierarchy
+    double tree = 0.0;     ///< its hierarchy, and the copy on the device
 };
 
 /// What an engine has built. Immutable: on the CPU any number of threads may solve with it at once;
-/// on the GPU one at a time. The geometry is not needed any more.
+/// on the GPU one at a time. The geometry is not needed any more. On the GPU its end makes its
+/// context current in the calling thread, to take its copies off the device.
 class Prepared {
 public:
     struct Impl;
@@ -107,9 +112,18 @@ struct Solution {
 [[nodiscard]] Prepared prepare(const Geometry& geometry, const EngineChoice& choice = {});
 
 /// One answer per receiver, in their order. Throws SettingsError for settings out of their ranges,
-/// Cancelled, and std::runtime_error where the device refuses.
+/// InputError for a receiver that is not finite, farther than kFarthestReceiver, or whose normal is
+/// neither of unit length (to kUnitLength) nor zero, Cancelled, and std::runtime_error where the
+/// device refuses.
 [[nodiscard]] Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
                              const SolveSettings& settings = {}, const Progress& progress = {});
+
+/// In diagonals from the centre, along each axis: farther out a float no longer tells the corners
+/// of the scene apart, and squares of distances leave their range.
+inline constexpr float kFarthestReceiver = 1e6f;
+/// A normal's length may be off by so much (what eight bits an axis make of it): an answer is then
+/// off by the same share.
+inline constexpr float kUnitLength = 5e-3f;
 
 /// Throws SettingsError where solve() would.
 void check_settings(const EngineChoice& choice, const SolveSettings& settings);
@@ -131,6 +145,7 @@ struct DistanceLimit {
     double value = std::numeric_limits<double>::infinity();  ///< > 0, the file's units or percent
     bool percent = false;                                    ///< of the bounding-box diagonal
     Falloff falloff = Falloff::none;                         ///< `none` where there is no limit
+    bool operator==(const DistanceLimit&) const = default;
 };
 
 /// The definition in the unit frame. Throws InputError where the limit vanishes beside the scene.

@@ -71,7 +71,15 @@ void check_output(const fs::path& input, const fs::path& output)
 void write_scene(const fs::path& path, const Scene& scene, std::span<const Occlusion> occlusion,
                  const WriteOptions& options)
 {
-    SURFELAO_CHECK(occlusion.size() == scene.positions.size());
+    require(occlusion.size() == scene.positions.size(),
+            "writing takes one answer per vertex: there are " +
+                std::to_string(scene.positions.size()) + " vertices and " +
+                std::to_string(occlusion.size()) + " answers");
+    const bool covered =
+        scene.parts.empty() ||
+        scene.parts.back().first_vertex + scene.parts.back().vertex_count == scene.positions.size();
+    if (!covered)
+        throw InputError(path.string() + ": the scene's parts do not cover its vertices");
     check_output(path, path);
     switch (type_of(path)) {
         case FileType::obj:

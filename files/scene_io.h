@@ -33,8 +33,9 @@ void check_output(const std::filesystem::path& input, const std::filesystem::pat
 
 /// Writes the scene with one Occlusion per scene vertex, in scene order. The file appears under its
 /// name only when it is complete (written to a temporary name beside it, then renamed): on any
-/// error an existing file is untouched and nothing is left behind. Throws std::runtime_error when
-/// the machine refuses (disk full).
+/// error an existing file is untouched and nothing is left behind. Throws SettingsError when the
+/// number of answers is another one, InputError as check_output does, std::runtime_error when the
+/// machine refuses (disk full).
 void write_scene(const std::filesystem::path& path, const Scene& scene,
                  std::span<const Occlusion> occlusion, const WriteOptions& options = {});
 

@@ -23,6 +23,11 @@ public:
         return true;
     }
     void release() const override { foreign_.release(); }
+    std::unique_ptr<GlPlatform> share(std::string& reasons) const override
+    {
+        add_reason(reasons, "window: only its owner can make another");
+        return nullptr;
+    }
 
 private:
     ForeignContext foreign_;
@@ -144,10 +149,6 @@ struct GlContext::Impl {
             info.software = info.software || info.renderer.find(name) != std::string::npos;
         info.max_texture_size = integer_of(gl, GL_MAX_TEXTURE_SIZE);
         info.max_buffer_texels = integer_of(gl, GL_MAX_TEXTURE_BUFFER_SIZE);
-        info.max_samples = integer_of(gl, GL_MAX_SAMPLES);
-        GLfloat sizes[2] = {0, 0};
-        gl.GetFloatv(GL_POINT_SIZE_RANGE, sizes);
-        info.max_point_size = sizes[1];
 
         // the same in every context: rows without padding, seams of cube maps and the like unused
         gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -184,6 +185,16 @@ GlContext GlContext::create(GlBackend backend)
         }
     }
     throw std::runtime_error("no OpenGL context can be had: " + reasons);
+}
+
+GlContext GlContext::create_shared(const GlContext& with)
+{
+    std::string reasons;
+    auto impl = std::make_unique<Impl>();
+    impl->platform = with.impl_->platform->share(reasons);
+    if (impl->platform == nullptr)
+        throw std::runtime_error("no OpenGL context can be shared: " + reasons);
+    return GlContext(std::move(impl));
 }
 
 GlContext GlContext::adopt(ForeignContext foreign)

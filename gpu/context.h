@@ -35,8 +35,6 @@ struct GlInfo {
     bool software = false;      ///< drawn by the CPU (llvmpipe and its kind)
     int max_texture_size = 0;   ///< widest and highest texture, framebuffer and viewport
     int max_buffer_texels = 0;  ///< longest texture buffer
-    int max_samples = 0;        ///< per pixel
-    float max_point_size = 0;   ///< in pixels; larger points are drawn this large without a word
 };
 
 /// How to get at a context that somebody else owns (a window). All three are called in the thread
@@ -54,6 +52,11 @@ public:
     /// Made current in this thread. Throws std::runtime_error saying what was tried and why each
     /// failed when there is none of at least OpenGL 3.3.
     [[nodiscard]] static GlContext create(GlBackend backend = GlBackend::automatic);
+
+    /// Another one on the same device that shares objects with `with` (objects.h says which), for
+    /// work in a second thread, and makes it current in this one. Not of a context that was
+    /// adopted: who made that can make another. Same errors.
+    [[nodiscard]] static GlContext create_shared(const GlContext& with);
 
     /// Takes part in somebody else's context, and makes it current. Same errors.
     [[nodiscard]] static GlContext adopt(ForeignContext foreign);

@@ -1,10 +1,11 @@
 #include "gpu/gpu_disks.h"
 
+#include "gpu/answers.h"
 #include "gpu/draw.h"
 #include "gpu/receiver_grid.h"
 #include "gpu/rows.h"
 #include "tree/disks/gather.h"
-#include "tree/receiver_group.h"
+#include "tree/receiver_groups.h"
 
 #include <glm/vec4.hpp>
 
@@ -96,9 +97,9 @@ struct GatherGrid {
     ReceiverGrid grid;
     TextureBuffer groups;
 
-    GatherGrid(const GlContext& context, std::span<const ReceiverGroup> receivers)
-        : grid(context, receivers, {{"u_sums", TexelFormat::rgba32f}}),
-          groups(upload_groups(context, receivers))
+    GatherGrid(const GlContext& context, const ReceiverGroups& receivers)
+        : grid(context, receivers, receivers.leaves, {{"u_sums", TexelFormat::rgba32f}}),
+          groups(upload_groups(context, receivers, receivers.leaves))
     {
     }
     /// Sums of disks_gather.frag, at pixel_of_slot().
@@ -114,7 +115,7 @@ TextureBuffer upload_slots(const GlContext& context, std::vector<std::uint32_t> 
 /// One side of all surfels: where they are asked, and what they find.
 struct FarSide {
     float sign;  ///< +1: the side of the casting normal
-    std::vector<ReceiverGroup> groups;
+    ReceiverGroups groups;
     GatherGrid gathered;
     TextureBuffer slots;  ///< of each record in the grid
     Framebuffer found;    ///< disks_fit.frag: visibility and its change
@@ -146,40 +147,57 @@ private:
     }
 };
 
-/// What the passes share.
+}  // namespace
+
+struct GpuDisks::Impl {
+    const GlContext& context;
+    const Octree& octree;
+    Records records;
+    TextureBuffer records_texture;
+    TextureBuffer chunks;
+    VertexArray empty;
+
+    Impl(const GlContext& in, const Octree& of)
+        : context(in),
+          octree(of),
+          records(make_records(of)),
+          records_texture(in, TexelFormat::rgba32ui, std::span<const Record>(records.records)),
+          chunks(in, TexelFormat::rgba32ui, std::span<const glm::uvec4>(records.chunks)),
+          empty(in)
+    {
+    }
+};
+
+namespace {
+
+/// What the passes of one solve share.
 class Solver {
 public:
-    Solver(const GlContext& context, const Octree& octree, const DiskOptions& options)
-        : context_(context),
+    Solver(const GpuDisks::Impl& scene, const DiskOptions& options)
+        : scene_(scene),
           options_(options),
           limited_(std::isfinite(options.definition.max_distance)),
-          two_sided_(limited_ || octree.two_sided_surfels < octree.surfels.size()),
-          records_(make_records(octree)),
-          records_texture_(context, TexelFormat::rgba32ui,
-                           std::span<const Record>(records_.records)),
-          empty_(context)
+          two_sided_(limited_ || scene.octree.two_sided_surfels < scene.octree.surfels.size())
     {
         for (int side = 0; side < side_count(); ++side) {
-            visibility_.push_back(
-                make_rows(context, records_.records.size(), {TexelFormat::rgba32f}));
+            visibility_.push_back(make_rows(scene.context, record_count(), {TexelFormat::rgba32f}));
             visibility_.back().clear_color(kAllVisible);
         }
     }
 
-    DiskResult solve(const Octree& octree, std::span<const Receiver> receivers,
-                     const Progress& progress)
+    GpuDiskResult solve(std::span<const Receiver> receivers, const Progress& progress)
     {
         std::vector<FarSide> sides;
         for (int side = 0; side < side_count() && options_.passes > 1; ++side)
-            sides.emplace_back(context_, octree, records_, options_.definition.offset,
-                               side == 0 ? 1.0f : -1.0f);
-        const std::vector<ReceiverGroup> groups = group_receivers(receivers);
-        std::uint64_t work = groups.size();
+            sides.emplace_back(scene_.context, scene_.octree, scene_.records,
+                               options_.definition.offset, side == 0 ? 1.0f : -1.0f);
+        const ReceiverGroups groups = group_receivers(receivers);
+        std::uint64_t work = groups.leaves.size();
         for (const FarSide& side : sides)
-            work += side.groups.size() * static_cast<std::uint64_t>(options_.passes - 1);
+            work += side.groups.leaves.size() * static_cast<std::uint64_t>(options_.passes - 1);
         ProgressMeter meter(progress, work);
 
-        DiskResult result;
+        std::vector<double> residuals;
         for (int pass = 1; pass < options_.passes; ++pass) {
             double change = 0.0;
             for (FarSide& side : sides) {
@@ -188,17 +206,17 @@ public:
                 change += fit(side, pass == 1 ? 1.0f : kDamping);
             }
             average(sides);
-            const auto count = static_cast<double>(sides.size() * octree.surfels.size());
-            result.residuals.push_back(count > 0.0 ? std::sqrt(change / count) : 0.0);
-            if (result.residuals.back() <= kSettled)
+            const auto count = static_cast<double>(sides.size() * scene_.octree.surfels.size());
+            residuals.push_back(count > 0.0 ? std::sqrt(change / count) : 0.0);
+            if (residuals.back() <= kSettled)
                 break;
         }
-        result.occlusion = answer(groups, receivers.size(), meter);
-        return result;
+        return {answer(groups, receivers.size(), meter), std::move(residuals)};
     }
 
 private:
     int side_count() const { return two_sided_ ? 2 : 1; }
+    std::size_t record_count() const { return scene_.records.records.size(); }
 
     std::string two_sided_definition() const
     {
@@ -208,16 +226,16 @@ private:
     void gather(GatherGrid& gathered, float opening, float max_distance, ProgressMeter& meter)
     {
         const bool bunnell = options_.definition.kernel == Kernel::bunnell;
-        Program& program = context_.program(
+        Program& program = scene_.context.program(
             "fullscreen.vert", "disks_gather.frag",
             {two_sided_definition(), std::string("LIMITED ") + (limited_ ? "1" : "0"),
              std::string("BUNNELL ") + (bunnell ? "1" : "0")});
-        program.set("u_records", records_texture_);
-        program.set("u_record_count", static_cast<int>(records_.records.size()));
+        program.set("u_records", scene_.records_texture);
+        program.set("u_record_count", static_cast<int>(record_count()));
         program.set("u_opening", opening);
         program.set("u_far_front", visibility_[0].color());
         if (two_sided_) {
-            const std::uint32_t from = limited_ ? 0 : records_.two_sided_from;
+            const std::uint32_t from = limited_ ? 0 : scene_.records.two_sided_from;
             program.set("u_two_sided_from", static_cast<int>(from));
             program.set("u_far_back", visibility_[1].color());
         }
@@ -227,29 +245,29 @@ private:
         }
         program.set("u_step_limit", kStepLimit);
         program.set("u_groups", gathered.groups);
-        gathered.grid.compute(program, static_cast<std::uint32_t>(records_.records.size()), meter);
+        gathered.grid.compute(program, static_cast<std::uint32_t>(record_count()), meter);
     }
 
     /// From the sums in the side's grid. Returns the sum of the squared changes.
     double fit(FarSide& side, float weight)
     {
         std::swap(side.found, side.before);
-        Program& program = context_.program("fullscreen.vert", "disks_fit.frag");
+        Program& program = scene_.context.program("fullscreen.vert", "disks_fit.frag");
         program.set("u_sums", side.gathered.sums());
         program.set("u_blocks_per_row", side.gathered.grid.blocks_per_row());
-        program.set("u_records", records_texture_);
+        program.set("u_records", scene_.records_texture);
         program.set("u_slots", side.slots);
         program.set("u_side", side.sign);
         program.set("u_weight", weight);
         program.set("u_before", side.before.color());
-        draw_fullscreen(side.found, program, empty_);
+        draw_fullscreen(side.found, program, scene_.empty);
 
-        const Framebuffer sums(context_, {.width = kRowTexels / kRowSumTerms,
-                                          .height = side.found.height(),
-                                          .colors = {TexelFormat::r32f}});
-        Program& summing = context_.program("fullscreen.vert", "row_sums.frag");
+        const Framebuffer sums(scene_.context, {.width = kRowTexels / kRowSumTerms,
+                                                .height = side.found.height(),
+                                                .colors = {TexelFormat::r32f}});
+        Program& summing = scene_.context.program("fullscreen.vert", "row_sums.frag");
         summing.set("u_values", side.found.color(1));
-        draw_fullscreen(sums, summing, empty_);
+        draw_fullscreen(sums, summing, scene_.empty);
         const std::vector<float> parts = sums.read_red(sums.rect());
         return std::accumulate(parts.begin(), parts.end(), 0.0);
     }
@@ -257,72 +275,71 @@ private:
     /// From what the surfels found to the visibility of all records.
     void average(const std::vector<FarSide>& sides)
     {
-        const TextureBuffer chunks(context_, TexelFormat::rgba32ui,
-                                   std::span<const glm::uvec4>(records_.chunks));
         const Framebuffer sums =
-            make_rows(context_, records_.chunks.size(),
+            make_rows(scene_.context, scene_.records.chunks.size(),
                       std::vector<TexelFormat>(sides.size(), TexelFormat::rgba32f));
-        Program& chunked = context_.program("fullscreen.vert", "disks_average_chunks.frag",
-                                            {two_sided_definition()});
-        chunked.set("u_chunks", chunks);
-        chunked.set("u_chunk_count", static_cast<int>(records_.chunks.size()));
-        chunked.set("u_records", records_texture_);
+        Program& chunked = scene_.context.program("fullscreen.vert", "disks_average_chunks.frag",
+                                                  {two_sided_definition()});
+        chunked.set("u_chunks", scene_.chunks);
+        chunked.set("u_chunk_count", static_cast<int>(scene_.records.chunks.size()));
+        chunked.set("u_records", scene_.records_texture);
         chunked.set("u_far_front", sides[0].found.color());
         if (two_sided_)
             chunked.set("u_far_back", sides[1].found.color());
-        draw_fullscreen(sums, chunked, empty_);
+        draw_fullscreen(sums, chunked, scene_.empty);
 
-        Program& whole = context_.program("fullscreen.vert", "disks_average.frag");
-        whole.set("u_records", records_texture_);
-        whole.set("u_record_count", static_cast<int>(records_.records.size()));
+        Program& whole = scene_.context.program("fullscreen.vert", "disks_average.frag");
+        whole.set("u_records", scene_.records_texture);
+        whole.set("u_record_count", static_cast<int>(record_count()));
         for (std::size_t side = 0; side < sides.size(); ++side) {
             whole.set("u_far", sides[side].found.color());
             whole.set("u_chunks", sums.color(side));
-            draw_fullscreen(visibility_[side], whole, empty_);
+            draw_fullscreen(visibility_[side], whole, scene_.empty);
         }
-        context_.finish("averaging visibility");
+        scene_.context.finish("averaging visibility");
     }
 
-    std::vector<Occlusion> answer(std::span<const ReceiverGroup> groups, std::size_t count,
-                                  ProgressMeter& meter)
+    TextureBuffer answer(const ReceiverGroups& groups, std::size_t count, ProgressMeter& meter)
     {
-        GatherGrid gathered(context_, groups);
+        GatherGrid gathered(scene_.context, groups);
         gather(gathered, options_.opening, options_.definition.max_distance, meter);
-        const TextureBuffer slots = upload_slots(context_, slots_of_receivers(groups, count));
-        const Framebuffer rows = make_rows(context_, count, {TexelFormat::rgba32f});
-        Program& program = context_.program("fullscreen.vert", "disks_result.frag");
+        const TextureBuffer slots = upload_slots(scene_.context, slots_of_receivers(groups, count));
+        const Framebuffer rows = make_rows(scene_.context, count, {TexelFormat::rgba32f});
+        Program& program = scene_.context.program("fullscreen.vert", "disks_result.frag");
         program.set("u_sums", gathered.sums());
         program.set("u_blocks_per_row", gathered.grid.blocks_per_row());
         program.set("u_receivers", gathered.grid.receivers());
         program.set("u_slots", slots);
         program.set("u_strength", options_.strength);
-        draw_fullscreen(rows, program, empty_);
+        draw_fullscreen(rows, program, scene_.empty);
 
-        const std::vector<glm::vec4> values = rows.read_color(rows.rect());
-        std::vector<Occlusion> result(count);
-        for (std::size_t i = 0; i < count; ++i)
-            result[i] = {values[i].w, glm::vec3(values[i])};
-        return result;
+        TextureBuffer answers = answers_of_rows(scene_.context, rows, count);
+        scene_.context.finish("computing occlusion");
+        return answers;
     }
 
-    const GlContext& context_;
+    const GpuDisks::Impl& scene_;
     DiskOptions options_;
     bool limited_;
     bool two_sided_;
-    Records records_;
-    TextureBuffer records_texture_;
-    VertexArray empty_;
     std::vector<Framebuffer> visibility_;  ///< per side: FarVisibility of each record
 };
 
 }  // namespace
 
-DiskResult solve_disks_gpu(const GlContext& context, const Octree& octree,
-                           std::span<const Receiver> receivers, const DiskOptions& options,
-                           const Progress& progress)
+GpuDisks::GpuDisks(const GlContext& context, const Octree& octree)
+    : impl_(std::make_unique<Impl>(context, octree))
+{
+}
+GpuDisks::~GpuDisks() = default;
+GpuDisks::GpuDisks(GpuDisks&&) noexcept = default;
+GpuDisks& GpuDisks::operator=(GpuDisks&&) noexcept = default;
+
+GpuDiskResult GpuDisks::solve(std::span<const Receiver> receivers, const DiskOptions& options,
+                              const Progress& progress) const
 {
     check_disk_options(options);
-    return Solver(context, octree, options).solve(octree, receivers, progress);
+    return Solver(*impl_, options).solve(receivers, progress);
 }
 
 }  // namespace surfelao

@@ -7,17 +7,42 @@
 /// (tests say how often).
 #pragma once
 
-#include "gpu/context.h"
+#include "gpu/objects.h"
 #include "tree/disks/disks.h"
 
+#include <memory>
 #include <span>
+#include <vector>
 
 namespace surfelao {
 
-/// As solve_disks. The context must be current. Throws std::runtime_error when the device cannot
-/// hold the scene or is lost, Cancelled.
-[[nodiscard]] DiskResult solve_disks_gpu(const GlContext& context, const Octree& octree,
-                                         std::span<const Receiver> receivers,
-                                         const DiskOptions& options, const Progress& progress = {});
+struct GpuDiskResult {
+    TextureBuffer answers;          ///< answers.h
+    std::vector<double> residuals;  ///< as in DiskResult
+};
+
+/// An octree on the device, to be asked any number of times. It belongs to its context as all that
+/// lives there does (objects.h).
+class GpuDisks {
+public:
+    /// O(n). `octree` must outlive it. The context must be current. Throws std::runtime_error when
+    /// the device cannot hold the octree.
+    GpuDisks(const GlContext& context, const Octree& octree);
+    ~GpuDisks();
+    GpuDisks(GpuDisks&&) noexcept;
+    GpuDisks& operator=(GpuDisks&&) noexcept;
+
+    /// As solve_disks, one texel per receiver; everything is drawn when it returns. The context
+    /// must be current. Throws SettingsError where an option is out of its range,
+    /// std::runtime_error when the device cannot hold the receivers or is lost, Cancelled.
+    [[nodiscard]] GpuDiskResult solve(std::span<const Receiver> receivers,
+                                      const DiskOptions& options,
+                                      const Progress& progress = {}) const;
+
+    struct Impl;  ///< for gpu_disks.cpp alone
+
+private:
+    std::unique_ptr<const Impl> impl_;
+};
 
 }  // namespace surfelao

@@ -1,5 +1,6 @@
 #include "gpu/gpu_masks.h"
 
+#include "gpu/answers.h"
 #include "gpu/draw.h"
 #include "gpu/receiver_grid.h"
 #include "gpu/rows.h"
@@ -7,10 +8,12 @@
 #include "tree/masks/limits.h"
 #include "tree/masks/raster.h"
 #include "tree/masks/tree.h"
-#include "tree/receiver_group.h"
+#include "tree/receiver_groups.h"
 
-#include <glm/geometric.hpp>
+#include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
 
 #include <algorithm>
 #include <array>
@@ -22,16 +25,18 @@
 namespace surfelao {
 namespace {
 
-/// Groups that are computed together: their masks take 71 MB, the sums 17 MB.
+/// Groups that are computed together: their masks take 71 MB, the sums 17 MB. Their slots fill
+/// whole rows.
 constexpr std::size_t kBatchGroups = 16384;
+static_assert(kBatchGroups * kGroupSize % kRowTexels == 0);
 
 /// Nodes that a receiver looks at in one draw; see disks_gather.frag.
 constexpr int kStepLimit = 8192;
 
-/// What one walk draws: rows 0 to 7 or 8 to 15 of a face. A whole face and what of it clusters have
+/// What one walk draws: rows 0 to 7 or 8 to 15 of a face. A whole face and what of it sheets have
 /// set would be more outputs than a device must have.
 constexpr int kHalves = 2;
-constexpr std::array<const char*, 4> kHalfOutputs = {"words0", "words1", "loose0", "loose1"};
+constexpr std::array<const char*, 4> kHalfOutputs = {"words0", "words1", "sheets0", "sheets1"};
 
 /// The tree in preorder, kMaskFirstChild replaced by the node after the subtree.
 std::vector<MaskNode> in_preorder(const MaskTree& tree)
@@ -95,69 +100,86 @@ std::vector<glm::vec4> raster_moments()
     return texels;
 }
 
-std::vector<Receiver> in_mask_frame(std::span<const Receiver> receivers)
+/// As masks_answer.frag reads them: the normal's bits and the slot.
+TextureBuffer upload_asked(const GlContext& context, std::span<const Receiver> receivers,
+                           const ReceiverGroups& groups)
 {
-    std::vector<Receiver> turned;
-    turned.reserve(receivers.size());
-    for (const Receiver& receiver : receivers)
-        turned.push_back({kMaskFrame * receiver.position, kMaskFrame * receiver.normal});
-    return turned;
+    const std::vector<std::uint32_t> slots = slots_of_receivers(groups, receivers.size());
+    std::vector<glm::uvec4> texels(padded_to_rows(receivers.size()), glm::uvec4(kNoSlot));
+    for (std::size_t i = 0; i < receivers.size(); ++i)
+        texels[i] = glm::uvec4(glm::floatBitsToUint(receivers[i].normal), slots[i]);
+    return TextureBuffer(context, TexelFormat::rgba32ui, std::span<const glm::uvec4>(texels));
 }
+
+}  // namespace
+
+struct GpuMasks::Impl {
+    const GlContext& context;
+    std::size_t node_count;
+    TextureBuffer nodes;
+    TextureBuffer moments;
+    VertexArray empty;
+
+    Impl(const GlContext& in, const MaskTree& tree)
+        : context(in),
+          node_count(tree.nodes.size()),
+          nodes(in, TexelFormat::rgba32ui, std::span<const MaskNode>(in_preorder(tree))),
+          moments(in, TexelFormat::rgba32f, std::span<const glm::vec4>(raster_moments())),
+          empty(in)
+    {
+    }
+};
+
+namespace {
 
 class Solver {
 public:
-    Solver(const GlContext& context, const MaskTree& tree, const MaskOptions& options)
-        : context_(context),
-          settings_(mask_settings(options)),
-          node_count_(tree.nodes.size()),
-          nodes_(context, TexelFormat::rgba32ui, std::span<const MaskNode>(in_preorder(tree))),
-          moments_(context, TexelFormat::rgba32f, std::span<const glm::vec4>(raster_moments())),
-          empty_(context)
+    Solver(const GpuMasks::Impl& scene, const MaskOptions& options)
+        : scene_(scene), settings_(mask_settings(options))
     {
     }
 
-    std::vector<Occlusion> solve(std::span<const Receiver> receivers, std::span<const float> limits,
-                                 const Progress& progress)
+    TextureBuffer solve(std::span<const Receiver> receivers, std::span<const float> limits,
+                        const Progress& progress)
     {
-        const std::vector<Receiver> turned = in_mask_frame(receivers);
-        const std::vector<ReceiverGroup> groups = group_receivers(turned);
-        ProgressMeter meter(progress, groups.size() * limits.size() * kMaskFaces * kHalves);
-        std::vector<glm::vec4> sums(receivers.size());
-        for (std::size_t first = 0; first < groups.size(); first += kBatchGroups) {
-            const auto batch =
-                std::span(groups).subspan(first, std::min(kBatchGroups, groups.size() - first));
-            Batch work(context_, batch);
-            for (const float limit : limits) {
-                const std::vector<glm::vec4> values = solve_batch(work, limit, meter);
-                for (std::size_t slot = 0; slot < batch.size() * kGroupSize; ++slot) {
-                    const ReceiverGroup& group = batch[slot / kGroupSize];
-                    if (slot % kGroupSize < group.count)
-                        sums[group.receiver[slot % kGroupSize]] += values[slot];
-                }
-            }
+        const ReceiverGroups groups = group_receivers(receivers, kMaskFrame);
+        const std::span<const std::uint32_t> leaves(groups.leaves);
+        ProgressMeter meter(progress, leaves.size() * limits.size() * kMaskFaces * kHalves);
+        const Framebuffer sums =
+            make_rows(scene_.context, leaves.size() * kGroupSize, {TexelFormat::rgba32f});
+        sums.clear_color(glm::vec4(0.0f));
+        for (std::size_t first = 0; first < leaves.size(); first += kBatchGroups) {
+            const auto batch = leaves.subspan(first, std::min(kBatchGroups, leaves.size() - first));
+            Batch work(scene_.context, groups, batch);
+            for (const float limit : limits)
+                solve_batch(work, limit, first * kGroupSize, sums, meter);
         }
-        std::vector<Occlusion> result;
-        result.reserve(receivers.size());
-        for (std::size_t i = 0; i < receivers.size(); ++i) {
-            // a row vector times a rotation: turned back
-            const glm::vec3 bent = glm::vec3(sums[i]) * kMaskFrame;
-            result.push_back({sums[i].w / static_cast<float>(limits.size()),
-                              bent_normal_of(bent, receivers[i].normal)});
-        }
-        return result;
+
+        const Framebuffer rows =
+            make_rows(scene_.context, receivers.size(), {TexelFormat::rgba32f});
+        const TextureBuffer asked = upload_asked(scene_.context, receivers, groups);
+        Program& answer = scene_.context.program("fullscreen.vert", "masks_answer.frag");
+        answer.set("u_sums", sums.color());
+        answer.set("u_receivers", asked);
+        answer.set("u_share", 1.0f / static_cast<float>(limits.size()));
+        answer.set("u_turn_back", glm::transpose(kMaskFrame));
+        draw_fullscreen(rows, answer, scene_.empty);
+        TextureBuffer answers = answers_of_rows(scene_.context, rows, receivers.size());
+        scene_.context.finish("computing occlusion");
+        return answers;
     }
 
 private:
     /// What all walks of one batch use.
     struct Batch {
-        Batch(const GlContext& context, std::span<const ReceiverGroup> groups)
-            : group_texels(upload_groups(context, groups)),
-              halves{ReceiverGrid(context, groups, half_values()),
-                     ReceiverGrid(context, groups, half_values())},
+        Batch(const GlContext& context, const ReceiverGroups& groups,
+              std::span<const std::uint32_t> leaves)
+            : group_texels(upload_groups(context, groups, leaves)),
+              halves{ReceiverGrid(context, groups, leaves, half_values()),
+                     ReceiverGrid(context, groups, leaves, half_values())},
               sums(context, {.width = halves[0].rect().width,
                              .height = halves[0].rect().height,
-                             .colors = std::vector<TexelFormat>(4, TexelFormat::rgba32f)}),
-              rows(make_rows(context, groups.size() * kGroupSize, {TexelFormat::rgba32f}))
+                             .colors = std::vector<TexelFormat>(4, TexelFormat::rgba32f)})
         {
         }
 
@@ -172,19 +194,19 @@ private:
         TextureBuffer group_texels;
         std::array<ReceiverGrid, kHalves> halves;
         Framebuffer sums;  ///< shares; bent normals as drawn, filled, closed
-        Framebuffer rows;  ///< the answers
     };
 
-    /// Per slot: bent normal of any length in the mask frame, occlusion.
-    std::vector<glm::vec4> solve_batch(Batch& batch, float limit, ProgressMeter& meter)
+    /// Adds, per slot from `first_slot` on, bent normal of any length in the mask frame, occlusion.
+    void solve_batch(Batch& batch, float limit, std::size_t first_slot, const Framebuffer& sums,
+                     ProgressMeter& meter)
     {
         const ReceiverGrid& grid = batch.halves[0];
         for (std::size_t i = 0; i < 4; ++i)
             batch.sums.clear_color(glm::vec4(0.0f), i);
 
-        Program& walk = context_.program("fullscreen.vert", "masks_walk.frag");
-        walk.set("u_nodes", nodes_);
-        walk.set("u_node_count", static_cast<int>(node_count_));
+        Program& walk = scene_.context.program("fullscreen.vert", "masks_walk.frag");
+        walk.set("u_nodes", scene_.nodes);
+        walk.set("u_node_count", static_cast<int>(scene_.node_count));
         walk.set("u_groups", batch.group_texels);
         walk.set("u_share", settings_.share_leaf);
         walk.set("u_cluster", settings_.cluster);
@@ -194,9 +216,9 @@ private:
         walk.set("u_max_distance", std::min(limit, std::numeric_limits<float>::max()));
         walk.set("u_exact_radius", settings_.exact_radius > 0.0f ? 0.0f : -1.0f);
         walk.set("u_step_limit", kStepLimit);
-        Program& worth = context_.program("fullscreen.vert", "masks_face.frag");
+        Program& worth = scene_.context.program("fullscreen.vert", "masks_face.frag");
         worth.set("u_fill", settings_.fill ? 1 : 0);
-        worth.set("u_moments", moments_);
+        worth.set("u_moments", scene_.moments);
         worth.set("u_receivers", grid.receivers());
         worth.set("u_slot_count", grid.slot_count());
         worth.set("u_blocks_per_row", grid.blocks_per_row());
@@ -204,47 +226,52 @@ private:
             walk.set("u_face", axes_of_face(face));
             worth.set("u_face", axes_of_face(face));
             walk.set("u_half", 0);
-            batch.halves[0].compute(walk, static_cast<std::uint32_t>(node_count_), meter);
+            batch.halves[0].compute(walk, static_cast<std::uint32_t>(scene_.node_count), meter);
             walk.set("u_half", 1);
-            batch.halves[1].compute(walk, static_cast<std::uint32_t>(node_count_), meter,
+            batch.halves[1].compute(walk, static_cast<std::uint32_t>(scene_.node_count), meter,
                                     [&](const Rect& piece) {
                                         for (std::size_t i = 0; i < kHalfOutputs.size(); ++i) {
                                             const std::string output = kHalfOutputs[i];
                                             worth.set("u_low_" + output, batch.halves[0].value(i));
                                             worth.set("u_high_" + output, batch.halves[1].value(i));
                                         }
-                                        draw_fullscreen(batch.sums, worth, empty_,
+                                        draw_fullscreen(batch.sums, worth, scene_.empty,
                                                         {.blend = Blend::add, .scissor = piece});
                                     });
         }
 
-        Program& answer = context_.program("fullscreen.vert", "masks_result.frag");
+        Program& answer = scene_.context.program("fullscreen.vert", "masks_result.frag");
         const char* const inputs[] = {"u_share", "u_bent", "u_bent_filled", "u_bent_closed"};
         for (std::size_t i = 0; i < std::size(inputs); ++i)
             answer.set(inputs[i], batch.sums.color(i));
         answer.set("u_close", settings_.close);
         answer.set("u_slot_count", grid.slot_count());
         answer.set("u_blocks_per_row", grid.blocks_per_row());
-        draw_fullscreen(batch.rows, answer, empty_);
-        return batch.rows.read_color(batch.rows.rect());
+        const auto slots = static_cast<std::size_t>(grid.slot_count());
+        const Rect rows = {0, static_cast<int>(first_slot / kRowTexels), kRowTexels,
+                           static_cast<int>(padded_to_rows(slots) / kRowTexels)};
+        answer.set("u_first_slot", static_cast<int>(first_slot));
+        draw_fullscreen(sums, answer, scene_.empty, {.blend = Blend::add, .scissor = rows});
     }
 
-    const GlContext& context_;
+    const GpuMasks::Impl& scene_;
     MaskSettings settings_;
-    std::size_t node_count_;
-    TextureBuffer nodes_;
-    TextureBuffer moments_;
-    VertexArray empty_;
 };
 
 }  // namespace
 
-std::vector<Occlusion> solve_masks_gpu(const GlContext& context, const MaskTree& tree,
-                                       std::span<const Receiver> receivers,
-                                       const MaskOptions& options, const Progress& progress)
+GpuMasks::GpuMasks(const GlContext& context, const MaskTree& tree)
+    : impl_(std::make_unique<Impl>(context, tree))
 {
-    return Solver(context, tree, options)
-        .solve(receivers, distance_limits(options.definition), progress);
+}
+GpuMasks::~GpuMasks() = default;
+GpuMasks::GpuMasks(GpuMasks&&) noexcept = default;
+GpuMasks& GpuMasks::operator=(GpuMasks&&) noexcept = default;
+
+TextureBuffer GpuMasks::solve(std::span<const Receiver> receivers, const MaskOptions& options,
+                              const Progress& progress) const
+{
+    return Solver(*impl_, options).solve(receivers, distance_limits(options.definition), progress);
 }
 
 }  // namespace surfelao

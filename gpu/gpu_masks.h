@@ -7,19 +7,37 @@
 /// the setting's own error (tests say how much), and with `exact` only by single bits at edges.
 #pragma once
 
-#include "gpu/context.h"
+#include "gpu/objects.h"
 #include "tree/masks/masks.h"
 
+#include <memory>
 #include <span>
-#include <vector>
 
 namespace surfelao {
 
-/// As solve_masks; options.kernel is without effect. The context must be current. Throws
-/// std::runtime_error when the device cannot hold the tree or is lost, Cancelled.
-[[nodiscard]] std::vector<Occlusion> solve_masks_gpu(const GlContext& context, const MaskTree& tree,
-                                                     std::span<const Receiver> receivers,
-                                                     const MaskOptions& options,
-                                                     const Progress& progress = {});
+/// A tree on the device, to be asked any number of times. It belongs to its context as all that
+/// lives there does (objects.h).
+class GpuMasks {
+public:
+    /// O(n). The tree is not needed any more. The context must be current. Throws
+    /// std::runtime_error when the device cannot hold the tree.
+    GpuMasks(const GlContext& context, const MaskTree& tree);
+    ~GpuMasks();
+    GpuMasks(GpuMasks&&) noexcept;
+    GpuMasks& operator=(GpuMasks&&) noexcept;
+
+    /// As solve_masks, one texel per receiver (answers.h); options.kernel is without effect.
+    /// Everything is drawn when it returns. The context must be current. Throws SettingsError where
+    /// an option is out of its range, std::runtime_error when the device cannot hold the receivers
+    /// or is lost, Cancelled.
+    [[nodiscard]] TextureBuffer solve(std::span<const Receiver> receivers,
+                                      const MaskOptions& options,
+                                      const Progress& progress = {}) const;
+
+    struct Impl;  ///< for gpu_masks.cpp alone
+
+private:
+    std::unique_ptr<const Impl> impl_;
+};
 
 }  // namespace surfelao

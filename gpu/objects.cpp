@@ -22,8 +22,6 @@ FormatNames names_of(TexelFormat format)
     switch (format) {
         case TexelFormat::rgba8:
             return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
-        case TexelFormat::rgba16f:
-            return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8};
         case TexelFormat::r32f:
             return {GL_R32F, GL_RED, GL_FLOAT, 4};
         case TexelFormat::rg32f:
@@ -56,14 +54,6 @@ GlHandle make_texture(const GlTable& gl)
                     [](const GlTable& table, unsigned name) { table.DeleteTextures(1, &name); });
 }
 
-GlHandle make_renderbuffer(const GlTable& gl)
-{
-    GLuint id = 0;
-    gl.GenRenderbuffers(1, &id);
-    return GlHandle(
-        gl, id, [](const GlTable& table, unsigned name) { table.DeleteRenderbuffers(1, &name); });
-}
-
 GlHandle make_framebuffer(const GlTable& gl)
 {
     GLuint id = 0;
@@ -88,25 +78,24 @@ void check_size(const GlInfo& info, const char* what, int width, int height)
                                  std::to_string(info.max_texture_size) + " a side can");
 }
 
-/// Bytes to allocate for a texture buffer: an empty one gets a texel, drivers differ on no bytes.
-std::size_t checked_buffer_size(const GlInfo& info, TexelFormat format, std::size_t bytes)
+std::size_t texels_of(TexelFormat format, std::span<const std::byte> bytes)
 {
-    const std::size_t texel = texel_bytes(format);
-    SURFELAO_CHECK(bytes % texel == 0);
+    SURFELAO_CHECK(bytes.size() % names_of(format).bytes == 0);
+    return bytes.size() / names_of(format).bytes;
+}
+
+/// Bytes to allocate for a texture buffer: an empty one gets a texel, drivers differ on no bytes.
+std::size_t checked_buffer_size(const GlInfo& info, TexelFormat format, std::size_t texels)
+{
     const std::size_t limit = static_cast<std::size_t>(info.max_buffer_texels);
-    if (bytes / texel > limit)
-        throw std::runtime_error("OpenGL: a texture buffer of " + std::to_string(bytes / texel) +
+    if (texels > limit)
+        throw std::runtime_error("OpenGL: a texture buffer of " + std::to_string(texels) +
                                  " texels cannot be made; this device takes " +
                                  std::to_string(limit));
-    return std::max(bytes, texel);
+    return std::max<std::size_t>(texels, 1) * names_of(format).bytes;
 }
 
 }  // namespace
-
-std::size_t texel_bytes(TexelFormat format)
-{
-    return names_of(format).bytes;
-}
 
 // --- Buffer
 // ---------------------------------------------------------------------------------------
@@ -135,15 +124,28 @@ void Buffer::update_bytes(std::size_t offset, std::span<const std::byte> bytes)
     check_gl(gl(), "filling a buffer");
 }
 
+void Buffer::read_bytes(std::span<std::byte> bytes) const
+{
+    SURFELAO_CHECK(bytes.size() <= size_);
+    gl().BindBuffer(GL_ARRAY_BUFFER, id());
+    gl().GetBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+    check_gl(gl(), "reading a buffer");
+}
+
 // --- textures
 // -------------------------------------------------------------------------------------
 
 TextureBuffer::TextureBuffer(const GlContext& context, TexelFormat format,
                              std::span<const std::byte> bytes)
-    : buffer_(context, checked_buffer_size(context.info(), format, bytes.size())),
-      texture_(make_texture(context.gl()))
+    : TextureBuffer(context, format, texels_of(format, bytes))
 {
     buffer_.update(0, bytes);
+}
+
+TextureBuffer::TextureBuffer(const GlContext& context, TexelFormat format, std::size_t texels)
+    : buffer_(context, checked_buffer_size(context.info(), format, texels)),
+      texture_(make_texture(context.gl()))
+{
     const GlTable& gl = context.gl();
     gl.BindTexture(GL_TEXTURE_BUFFER, texture_.id());
     gl.TexBuffer(GL_TEXTURE_BUFFER, static_cast<GLenum>(names_of(format).internal), buffer_.id());
@@ -193,27 +195,14 @@ Framebuffer::Framebuffer(const GlContext& context, const FramebufferOptions& opt
     : gl_(&context.gl()), width_(options.width), height_(options.height)
 {
     check_size(context.info(), "framebuffer", width_, height_);
-    if (options.samples < 1 || options.samples > context.info().max_samples)
-        throw std::runtime_error("OpenGL: a framebuffer of " + std::to_string(options.samples) +
-                                 " samples a pixel cannot be made; 1 to " +
-                                 std::to_string(context.info().max_samples) + " can");
     handle_ = make_framebuffer(*gl_);
     gl_->BindFramebuffer(GL_FRAMEBUFFER, handle_.id());
 
     const auto attach = [&](GLenum where, TexelFormat format) {
-        if (options.samples > 1) {
-            GlHandle& target = renderbuffers_.emplace_back(make_renderbuffer(*gl_));
-            gl_->BindRenderbuffer(GL_RENDERBUFFER, target.id());
-            gl_->RenderbufferStorageMultisample(GL_RENDERBUFFER, options.samples,
-                                                static_cast<GLenum>(names_of(format).internal),
-                                                width_, height_);
-            gl_->FramebufferRenderbuffer(GL_FRAMEBUFFER, where, GL_RENDERBUFFER, target.id());
-            return;
-        }
         Texture2D texture(context, width_, height_, format);
         gl_->FramebufferTexture2D(GL_FRAMEBUFFER, where, GL_TEXTURE_2D, texture.binding().id, 0);
         if (where == GL_DEPTH_ATTACHMENT)
-            depth_ = std::make_unique<Texture2D>(std::move(texture));
+            depth_.emplace(std::move(texture));
         else
             colors_.push_back(std::move(texture));
     };
@@ -298,13 +287,32 @@ void Framebuffer::read(const Rect& part, unsigned layout, void* out) const
     check_gl(*gl_, "reading pixels");
 }
 
+void Framebuffer::bind_for_reading(std::size_t index) const
+{
+    gl_->BindFramebuffer(GL_FRAMEBUFFER, id());
+    gl_->ReadBuffer(id() == 0 ? static_cast<GLenum>(GL_BACK)
+                              : GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(index));
+}
+
+void Framebuffer::copy_color(const Rect& part, const Buffer& out, std::size_t offset,
+                             std::size_t index) const
+{
+    SURFELAO_CHECK(offset + static_cast<std::size_t>(part.width) *
+                                static_cast<std::size_t>(part.height) * sizeof(glm::vec4) <=
+                   out.size());
+    bind_for_reading(index);
+    gl_->BindBuffer(GL_PIXEL_PACK_BUFFER, out.id());
+    gl_->ReadPixels(part.x, part.y, part.width, part.height, GL_RGBA, GL_FLOAT,
+                    reinterpret_cast<void*>(offset));
+    gl_->BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+    check_gl(*gl_, "copying pixels");
+}
+
 std::vector<glm::vec4> Framebuffer::read_color(const Rect& part, std::size_t index) const
 {
     std::vector<glm::vec4> result(static_cast<std::size_t>(part.width) *
                                   static_cast<std::size_t>(part.height));
-    gl_->BindFramebuffer(GL_FRAMEBUFFER, id());
-    gl_->ReadBuffer(id() == 0 ? static_cast<GLenum>(GL_BACK)
-                              : GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(index));
+    bind_for_reading(index);
     read(part, GL_RGBA, result.data());
     return result;
 }
@@ -313,18 +321,8 @@ std::vector<float> Framebuffer::read_red(const Rect& part, std::size_t index) co
 {
     std::vector<float> result(static_cast<std::size_t>(part.width) *
                               static_cast<std::size_t>(part.height));
-    gl_->BindFramebuffer(GL_FRAMEBUFFER, id());
-    gl_->ReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(index));
+    bind_for_reading(index);
     read(part, GL_RED, result.data());
-    return result;
-}
-
-std::vector<float> Framebuffer::read_depth(const Rect& part) const
-{
-    std::vector<float> result(static_cast<std::size_t>(part.width) *
-                              static_cast<std::size_t>(part.height));
-    gl_->BindFramebuffer(GL_FRAMEBUFFER, id());
-    read(part, GL_DEPTH_COMPONENT, result.data());
     return result;
 }
 
@@ -334,20 +332,6 @@ std::vector<float> Framebuffer::read_depth(const Rect& part) const
 VertexArray::VertexArray(const GlContext& context) : handle_(make_vertex_array(context.gl()))
 {
     check_gl(context.gl(), "making a vertex array");
-}
-
-void VertexArray::attribute(unsigned location, const Buffer& buffer, const Attribute& attribute)
-{
-    const GlTable& gl = handle_.gl();
-    gl.BindVertexArray(id());
-    gl.BindBuffer(GL_ARRAY_BUFFER, buffer.id());
-    gl.EnableVertexAttribArray(location);
-    gl.VertexAttribPointer(
-        location, attribute.components, attribute.bytes ? GL_UNSIGNED_BYTE : GL_FLOAT,
-        attribute.bytes ? GL_TRUE : GL_FALSE, static_cast<GLsizei>(attribute.stride),
-        reinterpret_cast<const void*>(attribute.offset));
-    gl.VertexAttribDivisor(location, attribute.per_instance ? 1 : 0);
-    check_gl(gl, "describing vertices");
 }
 
 void VertexArray::indices(const Buffer& buffer)

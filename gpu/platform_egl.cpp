@@ -106,6 +106,41 @@ public:
     {
         egl().MakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     }
+    std::unique_ptr<GlPlatform> share(std::string& reasons) const override
+    {
+        return make(name_, display_, context_, reasons);
+    }
+
+    /// A 3.3 core context without a surface on the display, told of a device reset where that can
+    /// be had, which shares objects with the other (EGL_NO_CONTEXT: with none).
+    static std::unique_ptr<GlPlatform> make(const std::string& name, EGLDisplay display,
+                                            EGLContext with, std::string& reasons)
+    {
+        if (egl().BindAPI(EGL_OPENGL_API) != EGL_TRUE) {
+            add_reason(reasons, name + ": has no OpenGL, " + last_error());
+            return nullptr;
+        }
+        std::array<EGLint, 9> attributes = {EGL_CONTEXT_MAJOR_VERSION,
+                                            3,
+                                            EGL_CONTEXT_MINOR_VERSION,
+                                            3,
+                                            EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                            EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                            EGL_LOSE_CONTEXT_ON_RESET,
+                                            EGL_NONE};
+        EGLContext context =
+            egl().CreateContext(display, EGL_NO_CONFIG_KHR, with, attributes.data());
+        if (context == EGL_NO_CONTEXT) {
+            attributes[6] = EGL_NONE;
+            context = egl().CreateContext(display, EGL_NO_CONFIG_KHR, with, attributes.data());
+        }
+        if (context == EGL_NO_CONTEXT) {
+            add_reason(reasons, name + ": makes no OpenGL 3.3 core context, " + last_error());
+            return nullptr;
+        }
+        return std::make_unique<EglPlatform>(name, display, context);
+    }
 
 private:
     std::string name_;
@@ -113,8 +148,7 @@ private:
     EGLContext context_;
 };
 
-/// A 3.3 core context without a surface on the display, told of a device reset where that can be
-/// had; null and a reason if not.
+/// A context on a display that is not started yet; null and a reason if it cannot be had.
 std::unique_ptr<GlPlatform> make_on_display(const std::string& name, EGLDisplay display,
                                             std::string& reasons)
 {
@@ -131,28 +165,7 @@ std::unique_ptr<GlPlatform> make_on_display(const std::string& name, EGLDisplay 
     if (!has_word(extensions, "EGL_KHR_no_config_context") ||
         !has_word(extensions, "EGL_KHR_surfaceless_context"))
         return fail("cannot draw without a window");
-    if (egl().BindAPI(EGL_OPENGL_API) != EGL_TRUE)
-        return fail("has no OpenGL, " + last_error());
-
-    const std::array<EGLint, 9> attributes = {EGL_CONTEXT_MAJOR_VERSION,
-                                              3,
-                                              EGL_CONTEXT_MINOR_VERSION,
-                                              3,
-                                              EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                              EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                              EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
-                                              EGL_LOSE_CONTEXT_ON_RESET,
-                                              EGL_NONE};
-    EGLContext context =
-        egl().CreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
-    if (context == EGL_NO_CONTEXT) {
-        std::array<EGLint, 9> plain = attributes;
-        plain[6] = EGL_NONE;
-        context = egl().CreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, plain.data());
-    }
-    if (context == EGL_NO_CONTEXT)
-        return fail("makes no OpenGL 3.3 core context, " + last_error());
-    return std::make_unique<EglPlatform>(name, display, context);
+    return EglPlatform::make(name, display, EGL_NO_CONTEXT, reasons);
 }
 
 std::vector<EGLDeviceEXT> all_devices()

@@ -50,6 +50,32 @@ public:
         return osmesa().make_current(context_, pixels_.data(), kGlUnsignedByte, kSide, kSide) != 0;
     }
     void release() const override { osmesa().make_current(nullptr, nullptr, 0, 0, 0); }
+    std::unique_ptr<GlPlatform> share(std::string& reasons) const override
+    {
+        return make(context_, reasons);
+    }
+
+    /// A 3.3 core context that shares objects with the other, which may be null.
+    static std::unique_ptr<GlPlatform> make(OsmesaContext with, std::string& reasons)
+    {
+        const int attributes[] = {kOsmesaFormat,
+                                  kGlRgba,
+                                  kOsmesaDepthBits,
+                                  0,
+                                  kOsmesaProfile,
+                                  kOsmesaCoreProfile,
+                                  kOsmesaMajor,
+                                  3,
+                                  kOsmesaMinor,
+                                  3,
+                                  0};
+        OsmesaContext context = osmesa().create(attributes, with);
+        if (context == nullptr) {
+            add_reason(reasons, "OSMesa: makes no OpenGL 3.3 core context");
+            return nullptr;
+        }
+        return std::make_unique<OsmesaPlatform>(context);
+    }
 
 private:
     static constexpr int kSide = 4;  // nothing is drawn here: pictures go to framebuffer objects
@@ -65,23 +91,7 @@ std::unique_ptr<GlPlatform> make_osmesa_platform(std::string& reasons)
         add_reason(reasons, "OSMesa: " + osmesa().error);
         return nullptr;
     }
-    const int attributes[] = {kOsmesaFormat,
-                              kGlRgba,
-                              kOsmesaDepthBits,
-                              0,
-                              kOsmesaProfile,
-                              kOsmesaCoreProfile,
-                              kOsmesaMajor,
-                              3,
-                              kOsmesaMinor,
-                              3,
-                              0};
-    OsmesaContext context = osmesa().create(attributes, nullptr);
-    if (context == nullptr) {
-        add_reason(reasons, "OSMesa: makes no OpenGL 3.3 core context");
-        return nullptr;
-    }
-    return std::make_unique<OsmesaPlatform>(context);
+    return OsmesaPlatform::make(nullptr, reasons);
 }
 
 }  // namespace surfelao

@@ -1,4 +1,5 @@
 #version 330 core
+#include "bent_normal.glsl"
 #include "receiver_grid.glsl"
 #include "rows.glsl"
 // disks_result.frag: occlusion and bent normal of each receiver from its sums, in the receivers' order.
@@ -11,7 +12,7 @@
 //            u_slots           R32UI: slot of each receiver; 0xFFFFFFFF: it has no normal
 //            u_strength        as DiskOptions::strength
 // Writes     out_result        RGBA32F: bent normal | occlusion (surfels/occlusion.h)
-// CPU twin   to_occlusion in tree/disks.cpp
+// CPU twin   to_occlusion in tree/disks/disks.cpp
 uniform sampler2D u_sums;
 uniform int u_blocks_per_row;
 uniform samplerBuffer u_receivers;
@@ -19,15 +20,6 @@ uniform usamplerBuffer u_slots;
 uniform float u_strength;
 
 out vec4 out_result;
-
-// bent_normal_of in surfels/occlusion.cpp
-vec3 bent_normal_of(vec3 open, vec3 normal)
-{
-    float size = length(open);
-    open -= min(0.0, dot(open, normal)) * normal;
-    float left = length(open);
-    return left > 0.01 * size ? open / left : normal;
-}
 
 void main()
 {

@@ -1,18 +1,20 @@
 #version 330 core
+#include "mask_constants.glsl"
 #include "receiver_grid.glsl"
 #include "rows.glsl"
 // masks_result.frag: occlusion and bent normal of each slot from the sums over all faces. Where much
 // is covered cracks count as filled, by degrees; where nearly all is, those of two bits too.
 //
-// Vertices   fullscreen.vert, over rows of slots (rows.glsl)
-// Drawn by   gpu/gpu_masks.cpp
+// Vertices   fullscreen.vert, over the part of the rows of all slots (rows.glsl) that is computed
+// Drawn by   gpu/gpu_masks.cpp, once per distance limit, added by blending
 // Reads      u_share, u_bent, u_bent_filled, u_bent_closed
 //                              outputs of masks_face.frag, summed over the faces
 //            u_close           how much cracks of two bits count as closed
 //            u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
+//            u_first_slot      before those that are computed
 // Writes     out_result      RGBA32F: bent normal, mask frame, any length, zero where all is closed |
 //                            occlusion (surfels/occlusion.h)
-// CPU twin   solve in tree/masks/kernel_body.h
+// CPU twin   openness_of in tree/masks/kernel_solve.h
 uniform sampler2D u_share;
 uniform sampler2D u_bent;
 uniform sampler2D u_bent_filled;
@@ -20,19 +22,14 @@ uniform sampler2D u_bent_closed;
 uniform float u_close;
 uniform int u_slot_count;
 uniform int u_blocks_per_row;
+uniform int u_first_slot;
 
 out vec4 out_result;
-
-const float kFillFrom   = 0.3;
-const float kFillRange  = 0.6;
-const float kFillShare  = 1.3;
-const float kCloseFrom  = 0.95;
-const float kCloseRange = 0.04;
 
 void main()
 {
     out_result = vec4(0.0);
-    int slot = index_of_texel(ivec2(gl_FragCoord.xy));
+    int slot = index_of_texel(ivec2(gl_FragCoord.xy)) - u_first_slot;
     if (slot >= u_slot_count)
         return;
     ivec2 pixel = pixel_of_slot(slot, u_blocks_per_row);
@@ -41,11 +38,11 @@ void main()
     float openness = shares.x;
     out_result.xyz = texelFetch(u_bent, pixel, 0).xyz;
 
-    float fill = (1.0 - openness - kFillFrom) / kFillRange;
+    float fill = (1.0 - openness - kMaskFillFrom) / kMaskFillRange;
     if (fill > 0.0 && openness > 0.0) {
-        openness -= min(fill, 1.0) * kFillShare * (shares.x - shares.y);
+        openness -= min(fill, 1.0) * kMaskFillShare * (shares.x - shares.y);
         out_result.xyz = texelFetch(u_bent_filled, pixel, 0).xyz;
-        float close = (1.0 - openness - kCloseFrom) / kCloseRange;
+        float close = (1.0 - openness - kMaskCloseFrom) / kMaskCloseRange;
         if (u_close > 0.0 && close > 0.0 && openness > 0.0) {
             openness += min(close, 1.0) * u_close * min(shares.z - openness, 0.0);
             out_result.xyz = texelFetch(u_bent_closed, pixel, 0).xyz;

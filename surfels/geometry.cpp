@@ -1,5 +1,7 @@
 #include "surfels/geometry.h"
 
+#include "surfels/edges.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -7,7 +9,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace surfelao {
 namespace {
@@ -114,31 +115,20 @@ void for_each_repeated(const std::vector<glm::uvec3>& triangles,
 /// (breadth first, so chains of degenerate triangles end at a real neighbour).
 void borrow_normals(const std::vector<glm::uvec3>& dropped, Geometry& geometry)
 {
-    // the dropped triangles around each position, as one array with offsets
+    if (dropped.empty())
+        return;
     const std::vector<std::uint32_t>& welded = geometry.welded;
-    std::vector<std::uint32_t> first(welded.size() + 1, 0);
-    for (const glm::uvec3 triangle : dropped) {
-        for (int corner = 0; corner < 3; ++corner)
-            ++first[welded[triangle[corner]] + 1];
-    }
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<std::uint32_t> around(dropped.size() * 3);
-    std::vector<std::uint32_t> next = first;
-    for (std::uint32_t t = 0; t < dropped.size(); ++t) {
-        for (int corner = 0; corner < 3; ++corner)
-            around[next[welded[dropped[t][corner]]]++] = t;
-    }
-
+    const Buckets<std::uint32_t> corners = corners_around(dropped, welded);
     std::vector<std::uint32_t> queue;
     for (std::uint32_t v = 0; v < welded.size(); ++v) {
-        if (first[v] != first[v + 1] && geometry.normals[v] != glm::vec3(0.0f))
+        if (!corners[v].empty() && geometry.normals[v] != glm::vec3(0.0f))
             queue.push_back(v);
     }
     for (std::size_t head = 0; head < queue.size(); ++head) {
         const std::uint32_t from = queue[head];
-        for (std::uint32_t i = first[from]; i < first[from + 1]; ++i) {
+        for (const std::uint32_t at : corners[from]) {
             for (int corner = 0; corner < 3; ++corner) {
-                const std::uint32_t to = welded[dropped[around[i]][corner]];
+                const std::uint32_t to = welded[dropped[at / 3][corner]];
                 if (geometry.normals[to] == glm::vec3(0.0f)) {
                     geometry.normals[to] = geometry.normals[from];
                     queue.push_back(to);
@@ -152,6 +142,7 @@ void borrow_normals(const std::vector<glm::uvec3>& dropped, Geometry& geometry)
 
 Geometry make_geometry(const Scene& scene)
 {
+    check_scene(scene);
     Geometry geometry;
     const std::size_t vertex_count = scene.positions.size();
     geometry.frame = frame_of(scene);

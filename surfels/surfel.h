@@ -10,7 +10,7 @@
 
 namespace surfelao {
 
-/// Two RGBA32F texels on the GPU: position.xyz area | normal.xyz 0.
+/// A flat disk, seen from its front or its back as OccluderSide (topology.h) says.
 struct Surfel {
     glm::vec3 position{0.0f};  ///< unit frame
     float area = 0.0f;         ///< in diagonals squared; the disk's radius is sqrt(area / pi)

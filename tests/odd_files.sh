@@ -83,18 +83,18 @@ done < <(find OBJ PLY OFF STL glTF2 glTF invalid -type f -regextype posix-extend
     echo "triangles as corners less two):"
     echo
     echo "| file | vertices | triangles | what is odd |"
-    echo "| --- | --- | --- | --- |"
+    echo "|---|---|---|---|"
     cat "$baked"
     echo
     echo "Refused, $(wc -l <"$refused") files, each with the whole sentence behind the file's name:"
     echo
     echo "| file | sentence |"
-    echo "| --- | --- |"
+    echo "|---|---|"
     cat "$refused"
 } >"$work/table.md"
 
 if [ "${2:-}" = --check ]; then
-    sed -n '/<!-- odd_files.sh -->/,/<!-- end -->/p' "$docs" | sed '1,2d;$d' | sed '$d' >"$work/docs.md"
+    sed -n '/<!-- figures odd_files -->/,/<!-- end -->/p' "$docs" | sed '1d;$d' >"$work/docs.md"
     diff "$work/docs.md" "$work/table.md" || fault "docs/readers.md is not up to date (above: <)"
 else
     cat "$work/table.md"

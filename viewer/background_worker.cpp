@@ -4,7 +4,8 @@
 
 namespace surfelao {
 
-BackgroundWorker::BackgroundWorker() : thread_([this] { run(); })
+BackgroundWorker::BackgroundWorker(std::function<void()> at_end)
+    : at_end_(std::move(at_end)), thread_([this] { run(); })
 {
 }
 
@@ -50,7 +51,7 @@ void BackgroundWorker::run()
     for (;;) {
         wake_.wait(lock, [this] { return quit_ || next_; });
         if (quit_)
-            return;
+            break;
         const Work work = std::exchange(next_, nullptr);
         working_ = true;
         stop_ = false;
@@ -67,6 +68,9 @@ void BackgroundWorker::run()
         lock.lock();
         working_ = false;
     }
+    lock.unlock();
+    if (at_end_)
+        at_end_();
 }
 
 }  // namespace surfelao

@@ -18,7 +18,8 @@ public:
     /// functions of the project do). Any other exception must be caught inside.
     using Work = std::function<void(const Progress&)>;
 
-    BackgroundWorker();
+    /// at_end: done in the thread before it ends, for what only that thread may destroy.
+    explicit BackgroundWorker(std::function<void()> at_end = {});
     ~BackgroundWorker();  ///< cancels and waits
     BackgroundWorker(const BackgroundWorker&) = delete;
     BackgroundWorker& operator=(const BackgroundWorker&) = delete;
@@ -37,6 +38,7 @@ public:
 private:
     void run();
 
+    std::function<void()> at_end_;
     mutable std::mutex mutex_;
     std::condition_variable wake_;
     Work next_;             // guarded by mutex_

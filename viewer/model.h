@@ -21,6 +21,7 @@ namespace surfelao {
 /// A square of (kGroundCells + 1)^2 receivers in rows along `axis_x`, row by row along `axis_y`,
 /// facing the sky.
 inline constexpr int kGroundCells = 96;
+inline constexpr int kGroundReceivers = (kGroundCells + 1) * (kGroundCells + 1);
 struct Ground {
     glm::vec3 corner{0.0f};  ///< of the first receiver; unit frame
     glm::vec3 axis_x{0.0f};  ///< to the last receiver of the first row

@@ -70,49 +70,47 @@ bool was_set()
     return ImGui::IsItemDeactivatedAfterEdit();
 }
 
-/// edited: what the widgets show while they are dragged; next: what is to be solved.
-void solver_widgets(SessionSettings& edited, SessionSettings& next, const Session& session)
+/// Apart from the engine. True when they are to be solved.
+bool edit_settings(EngineSettings& engine)
 {
-    if (!ImGui::IsAnyItemActive())
-        edited = next;
-    const std::vector<EngineTraits>& engines = session.services().engines;
     bool apply = false;
-    if (ImGui::BeginCombo("engine", engines[edited.engine].name.c_str())) {
-        for (std::size_t i = 0; i < engines.size(); ++i) {
-            if (ImGui::Selectable(engines[i].name.c_str(), i == edited.engine)) {
-                edited.engine = i;
-                edited.quality = std::min(edited.quality, engines[i].most_quality);
-                apply = true;
-            }
-        }
-        ImGui::EndCombo();
+    if (engine.engine == Engine::rays) {
+        int rays = static_cast<int>(engine.rays);
+        ImGui::SliderInt("rays", &rays, 1, 4096, "%d",
+                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+        engine.rays = static_cast<std::uint32_t>(rays);
+        return was_set();
     }
-    const EngineTraits& traits = engines[edited.engine];
-    if (traits.most_quality > 0.0f) {
-        ImGui::SliderFloat("quality", &edited.quality, traits.least_quality, traits.most_quality,
-                           "%.2f", ImGuiSliderFlags_AlwaysClamp);
+    ImGui::SliderFloat("quality", &engine.quality, least_quality(engine.engine),
+                       most_quality(engine.engine), "%.2f", ImGuiSliderFlags_AlwaysClamp);
+    apply |= was_set();
+    if (engine.engine == Engine::disks) {
+        ImGui::SliderInt("passes", &engine.passes, 1, 8, "%d", ImGuiSliderFlags_AlwaysClamp);
         apply |= was_set();
-    }
-    if (traits.has_disk_options) {
-        ImGui::SliderInt("passes", &edited.passes, 1, 8, "%d", ImGuiSliderFlags_AlwaysClamp);
-        apply |= was_set();
-        ImGui::SliderFloat("strength", &edited.strength, 0.0f, 2.0f, "%.2f",
+        ImGui::SliderFloat("strength", &engine.strength, 0.0f, 2.0f, "%.2f",
                            ImGuiSliderFlags_AlwaysClamp);
         apply |= was_set();
     }
-    if (traits.has_rays) {
-        ImGui::SliderInt("rays", &edited.rays, 1, 4096, "%d",
-                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-        apply |= was_set();
+    return apply;
+}
+
+/// falloff: what a limit has, once there is one. True when the limit is final.
+bool edit_distance(DistanceLimit& limit, Falloff& falloff)
+{
+    float percent = std::isfinite(limit.value) ? static_cast<float>(limit.value) : 0.0f;
+    if (percent > 0.0f)
+        falloff = limit.falloff;
+    if (ImGui::SliderFloat("distance", &percent, 0.0f, 100.0f,
+                           percent > 0.0f ? "%.1f %%" : "unlimited",
+                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
+        limit = percent > 0.0f ? DistanceLimit{percent, true, falloff} : DistanceLimit{};
+    bool apply = was_set();
+    bool smooth = falloff == Falloff::smooth;
+    if (percent > 0.0f && ImGui::Checkbox("smooth falloff", &smooth)) {
+        limit.falloff = smooth ? Falloff::smooth : Falloff::none;
+        apply = true;
     }
-    ImGui::SliderFloat("distance", &edited.max_distance_percent, 0.0f, 100.0f,
-                       edited.max_distance_percent > 0.0f ? "%.1f %%" : "unlimited",
-                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    apply |= was_set();
-    if (edited.max_distance_percent > 0.0f)
-        apply |= ImGui::Checkbox("smooth falloff", &edited.smooth_falloff);
-    if (apply)
-        next = edited;
+    return apply;
 }
 
 bool view_widgets(PanelState& state)
@@ -151,22 +149,30 @@ void progress_line(const char* what, double done)
 
 void stage_lines(const SessionState& s)
 {
-    ImGui::Text("read %.3f s   build %.3f s   solve %.3f s", s.read_s, s.build_s, s.solve_s);
-    if (s.reference_s > 0.0)
-        ImGui::Text("reference %.3f s", s.reference_s);
+    if (s.build_s)
+        ImGui::Text("read %.3f s   build %.3f s   solve %.3f s", s.read_s, *s.build_s, s.solve_s);
+    else
+        ImGui::Text("read %.3f s   solve %.3f s", s.read_s, s.solve_s);
+    if (!s.reference.empty() && s.reference_s)
+        ImGui::Text("reference %.3f s", *s.reference_s);
+    else if (!s.reference.empty())
+        ImGui::TextUnformatted("reference from the cache");
     if (s.error)
         ImGui::Text("RMSE %.4f   bias %+.4f\n95 %% %.4f   max %.4f", s.error->rmse, s.error->bias,
                     s.error->p95, s.error->max);
 }
 
-void histogram(const SessionState& s)
+/// Of an answer that is still on the device when nothing else runs: drafts are not worth the wait.
+void histogram(const Session& session)
 {
-    if (s.occlusion.empty())
+    const SessionState& s = session.state();
+    if (!s.is_solved || (!session.has_read_answer() && session.solving()))
         return;
+    const std::vector<Occlusion>& occlusion = session.occlusion();
     std::array<std::size_t, kBins> bins{};
     const std::size_t vertices = s.model->geometry.positions.size();
     for (std::size_t v = 0; v < vertices; ++v) {
-        const float position = s.occlusion[v].occlusion * static_cast<float>(kBins);
+        const float position = occlusion[v].occlusion * static_cast<float>(kBins);
         ++bins[std::min(static_cast<std::size_t>(position), bins.size() - 1)];
     }
     // roots, so that the many open vertices do not flatten the rest
@@ -248,9 +254,9 @@ void help_window(bool& open)
     ImGui::End();
 }
 
-void switch_comparison(PanelState& state, Comparison comparison)
+void switch_place(PanelState& state, ReferencePlace place)
 {
-    state.comparison = state.comparison == comparison ? Comparison::none : comparison;
+    state.reference_place = state.reference_place == place ? ReferencePlace::nowhere : place;
 }
 
 /// One key that the widgets leave to the picture.
@@ -266,10 +272,10 @@ void press(char key, PanelState& state, PanelInput& input)
             state.view.ground = !state.view.ground;
             break;
         case 'W':
-            switch_comparison(state, Comparison::wipe);
+            switch_place(state, ReferencePlace::wipe);
             break;
         case 'S':
-            switch_comparison(state, Comparison::side_by_side);
+            switch_place(state, ReferencePlace::side_by_side);
             break;
         case 'R':
             state.wants_reference = !state.wants_reference;
@@ -308,6 +314,53 @@ void press(char key, PanelState& state, PanelInput& input)
     }
 }
 
+/// One key while a question is open.
+SaveReply reply_of(char key, const SaveQuestion& question)
+{
+    switch (key) {
+        case 'R':
+            return question.is_input ? SaveReply::none : SaveReply::replace;
+        case 'K':
+            return SaveReply::keep_both;
+        case Panel::kEscape:
+            return SaveReply::cancel;
+        default:
+            return SaveReply::none;
+    }
+}
+
+/// Nothing else can be used while it is open.
+void question_window(const SaveQuestion& question, SaveReply& reply)
+{
+    constexpr const char* kTitle = "Save";
+    if (!ImGui::IsPopupOpen(kTitle))
+        ImGui::OpenPopup(kTitle);
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(0.5f * display.x, 0.5f * display.y), ImGuiCond_Always,
+                            ImVec2(0.5f, 0.5f));
+    if (!ImGui::BeginPopupModal(kTitle, nullptr,
+                                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                                    ImGuiWindowFlags_NoSavedSettings))
+        return;
+    const std::string name = question.path.string();
+    if (question.is_input)
+        ImGui::Text("%s was read and is never replaced.", name.c_str());
+    else
+        ImGui::Text("%s exists. Replace it?", name.c_str());
+    const auto button = [&](const char* label, SaveReply meaning) {
+        if (ImGui::Button(label))
+            reply = meaning;
+        ImGui::SameLine();
+    };
+    if (!question.is_input)
+        button("Replace (R)", SaveReply::replace);
+    button("Keep both (K)", SaveReply::keep_both);
+    button("Cancel (Esc)", SaveReply::cancel);
+    if (reply != SaveReply::none)
+        ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+}
+
 /// Whether the button was already down: what the mouse did before the press is no drag.
 bool drags(ImGuiMouseButton button)
 {
@@ -315,7 +368,7 @@ bool drags(ImGuiMouseButton button)
 }
 
 /// What is on which side, and the line between.
-void comparison_labels(float x, const char* left, const char* right)
+void place_labels(float x, const char* left, const char* right)
 {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const ImU32 color = IM_COL32(255, 255, 255, 150);
@@ -344,9 +397,25 @@ Panel::~Panel()
     ImGui::DestroyContext();
 }
 
+void choose_engine(PanelState& state, Engine engine, Device device)
+{
+    EngineSettings& settings = state.settings.engine;
+    settings.device = device;
+    if (engine == settings.engine)
+        return;
+    state.qualities[settings.engine] = settings.quality;
+    settings.engine = engine;
+    settings.quality = state.qualities.try_emplace(engine, kGood).first->second;
+}
+
+std::string name_of(const EngineChoice& choice)
+{
+    return name_of(choice.engine) + (choice.device == Device::gpu ? " on GPU" : "");
+}
+
 bool needs_reference(const PanelState& state)
 {
-    return needs_reference(state.view) || state.comparison != Comparison::none;
+    return needs_reference(state.view) || state.reference_place != ReferencePlace::nowhere;
 }
 
 PanelInput Panel::build(PanelState& state, const Session& session, const PanelFigures& figures,
@@ -357,8 +426,12 @@ PanelInput Panel::build(PanelState& state, const Session& session, const PanelFi
     ImGui::NewFrame();
     PanelInput input;
     if (!ImGui::GetIO().WantTextInput) {
-        for (const char key : keys)
-            press(key, state, input);
+        for (const char key : keys) {
+            if (!state.question)
+                press(key, state, input);
+            else if (input.reply == SaveReply::none)
+                input.reply = reply_of(key, *state.question);
+        }
     }
     // beside the picture where there is room for both, else over it
     const float scale = ImGui::GetIO().FontGlobalScale;
@@ -372,6 +445,8 @@ PanelInput Panel::build(PanelState& state, const Session& session, const PanelFi
     }
     if (state.shows_help)
         help_window(state.shows_help);
+    if (state.question)
+        question_window(*state.question, input.reply);
     if (state.view.colors == Colors::difference)
         legend("occlusion difference to rays", 0.0f, state.view.difference_scale);
     if (state.view.colors == Colors::levels && session.state().model) {
@@ -380,10 +455,11 @@ PanelInput Panel::build(PanelState& state, const Session& session, const PanelFi
     }
     const float left = input.covered * display.x;
     const float line =
-        left + (display.x - left) * (state.comparison == Comparison::wipe ? state.wipe : 0.5f);
-    if (state.comparison != Comparison::none)
-        comparison_labels(line, session.services().engines[state.settings.engine].name.c_str(),
-                          session.state().reference.empty() ? "no rays yet" : "rays");
+        left +
+        (display.x - left) * (state.reference_place == ReferencePlace::wipe ? state.wipe : 0.5f);
+    if (state.reference_place != ReferencePlace::nowhere)
+        place_labels(line, name_of(state.settings.engine).c_str(),
+                     session.state().reference.empty() ? "no rays yet" : "rays");
     mouse(state, input, line, left);
     if (input.view_changed && needs_reference(state))
         state.wants_reference = true;
@@ -391,12 +467,38 @@ PanelInput Panel::build(PanelState& state, const Session& session, const PanelFi
     return input;
 }
 
+void Panel::solver_widgets(PanelState& state)
+{
+    if (!ImGui::IsAnyItemActive())
+        edited_ = state.settings;
+    if (ImGui::BeginCombo("engine", name_of(edited_.engine).c_str())) {
+        for (const Engine engine : {Engine::masks, Engine::disks, Engine::rays}) {
+            for (const Device device : {Device::cpu, Device::gpu}) {
+                if (!runs_on(engine, device))
+                    continue;
+                const EngineChoice choice = {.engine = engine, .device = device};
+                const bool is_chosen =
+                    engine == edited_.engine.engine && device == edited_.engine.device;
+                if (ImGui::Selectable(name_of(choice).c_str(), is_chosen)) {
+                    choose_engine(state, engine, device);
+                    edited_ = state.settings;
+                }
+            }
+        }
+        ImGui::EndCombo();
+    }
+    bool apply = edit_settings(edited_.engine);
+    apply |= edit_distance(edited_.max_distance, falloff_);
+    if (apply)
+        state.settings = edited_;
+}
+
 void Panel::mouse(PanelState& state, PanelInput& input, float wipe_x, float left)
 {
     const ImGuiIO& io = ImGui::GetIO();
     if (io.WantCaptureMouse)
         return;
-    const bool at_line = state.comparison == Comparison::wipe &&
+    const bool at_line = state.reference_place == ReferencePlace::wipe &&
                          std::abs(io.MousePos.x - wipe_x) < kGrip * io.FontGlobalScale;
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left))
         drags_wipe_ = at_line;
@@ -433,20 +535,19 @@ void Panel::widgets(PanelState& state, const Session& session, const PanelFigure
         ImGui::TextUnformatted("reading ...");
 
     if (ImGui::CollapsingHeader("Solve", ImGuiTreeNodeFlags_DefaultOpen)) {
-        solver_widgets(edited_, state.settings, session);
+        solver_widgets(state);
         if (session.solving() && !session.opening()) {
-            progress_line(shown_state.occlusion.empty() ? "draft" : "solving",
-                          session.solve_progress());
+            progress_line(!shown_state.is_solved ? "draft" : "solving", session.solve_progress());
             input.cancel |= ImGui::Button("cancel");
         } else if (session.was_cancelled() && shown_state.model) {
-            ImGui::TextUnformatted(shown_state.occlusion.empty() ? "cancelled"
-                                   : shown_state.is_draft        ? "cancelled: the draft is shown"
+            ImGui::TextUnformatted(!shown_state.is_solved ? "cancelled"
+                                   : shown_state.is_draft ? "cancelled: the draft is shown"
                                                           : "cancelled: the last answer is shown");
             ImGui::SameLine();
             input.solve_again |= ImGui::SmallButton("solve");
         }
         stage_lines(shown_state);
-        histogram(shown_state);
+        histogram(session);
     }
     if (ImGui::CollapsingHeader("Show", ImGuiTreeNodeFlags_DefaultOpen)) {
         input.view_changed |= view_widgets(state);
@@ -459,9 +560,9 @@ void Panel::widgets(PanelState& state, const Session& session, const PanelFigure
         if (ImGui::SliderInt("rays##reference", &half, 8, 4096, "2 x %d",
                              ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
             state.reference_rays = 2 * half;
-        int comparison = static_cast<int>(state.comparison);
-        if (ImGui::Combo("comparison", &comparison, "none\0wipe\0side by side\0")) {
-            state.comparison = static_cast<Comparison>(comparison);
+        int place = static_cast<int>(state.reference_place);
+        if (ImGui::Combo("comparison", &place, "none\0wipe\0side by side\0")) {
+            state.reference_place = static_cast<ReferencePlace>(place);
             input.view_changed = true;
         }
         if (session.tracing())
@@ -476,6 +577,8 @@ void Panel::widgets(PanelState& state, const Session& session, const PanelFigure
         ImGui::InputText("##baked", state.baked_path, sizeof state.baked_path);
         ImGui::SameLine();
         input.save_baked |= ImGui::Button("baked");
+        for (const std::filesystem::path& file : figures.written)
+            ImGui::TextDisabled("wrote %s", file.c_str());
     }
     ImGui::Separator();
     ImGui::Text("%.1f ms (%.0f frames/s), %d samples", figures.frame_ms,

@@ -6,6 +6,10 @@
 
 #include <glm/vec2.hpp>
 
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -14,24 +18,37 @@ struct GLFWwindow;
 namespace surfelao {
 
 /// How the ray reference is shown beside the result.
-enum class Comparison {
-    none,
+enum class ReferencePlace {
+    nowhere,
     wipe,          ///< right of a line
     side_by_side,  ///< in a picture of its own
 };
 
+/// What can be saved.
+enum class Saved { picture, baked };
+
+/// Asked before a file is written where another one stands.
+struct SaveQuestion {
+    Saved what = Saved::picture;
+    std::filesystem::path path;
+    bool is_input = false;  ///< then replacing it is not offered
+};
+enum class SaveReply { none, replace, keep_both, cancel };
+
 /// What the widgets show and change.
 struct PanelState {
-    ViewOptions view;  ///< but its wipe, which follows from the comparison
-    Comparison comparison = Comparison::none;
+    ViewOptions view;  ///< but its wipe, which follows from the reference's place
+    ReferencePlace reference_place = ReferencePlace::nowhere;
     float wipe = 0.5f;  ///< where the line is, as a share of the picture's width
     bool is_hidden = false;
     SessionSettings settings;
-    int reference_rays = 1024;  ///< even
+    std::map<Engine, float> qualities;  ///< of the engines that are not chosen: see choose_engine
+    int reference_rays = 1024;          ///< even
     bool wants_reference = false;
     bool shows_help = false;
     char picture_path[512] = "picture.png";
     char baked_path[512] = "baked.ply";
+    std::optional<SaveQuestion> question;  ///< shown above all else until there is a reply
 };
 
 /// What is shown besides, per frame.
@@ -40,25 +57,33 @@ struct PanelFigures {
     int samples = 0;        ///< per pixel, so far
     std::string note;       ///< of the window: saved files, failures; one line or empty
     std::string device;     ///< what draws
+    std::span<const std::filesystem::path> written;
 };
 
 /// What the user did in one frame.
 struct PanelInput {
-    bool view_changed = false;  ///< PanelState::view and what belongs to the comparison
+    bool view_changed = false;  ///< PanelState::view and the reference's place
     bool frame_all = false;
     bool save_picture = false;
     bool save_baked = false;
     bool cancel = false;
     bool solve_again = false;  ///< after it was cancelled
     bool close = false;
-    glm::vec2 orbit_deg{0.0f};  ///< azimuth, elevation
-    glm::vec2 pan{0.0f};        ///< shares of the window's height, y upwards
-    float zoom = 1.0f;          ///< factor on the distance
+    SaveReply reply = SaveReply::none;  ///< to PanelState::question
+    glm::vec2 orbit_deg{0.0f};          ///< azimuth, elevation
+    glm::vec2 pan{0.0f};                ///< shares of the window's height, y upwards
+    float zoom = 1.0f;                  ///< factor on the distance
     float covered = 0.0f;  ///< share of the window's width, from the left, that the widgets keep
 };
 
 /// Whether what is to be shown needs a ray reference.
 [[nodiscard]] bool needs_reference(const PanelState& state);
+
+/// Sets who solves. Each engine keeps its own quality, and is `good` at first.
+void choose_engine(PanelState& state, Engine engine, Device device);
+
+/// "masks", "masks on GPU"
+[[nodiscard]] std::string name_of(const EngineChoice& choice);
 
 /// Dear ImGui in a window whose context is current in this thread. At most one at a time.
 class Panel {
@@ -81,8 +106,10 @@ public:
 private:
     void widgets(PanelState& state, const Session& session, const PanelFigures& figures,
                  PanelInput& input);
+    void solver_widgets(PanelState& state);
     void mouse(PanelState& state, PanelInput& input, float wipe_x, float left);
-    SessionSettings edited_;
+    SessionSettings edited_;           ///< what the widgets show while they are dragged
+    Falloff falloff_ = Falloff::none;  ///< kept while the distance is unlimited
     bool drags_wipe_ = false;
 };
 

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -111,7 +112,11 @@ struct Upload {
         return values;
     }
 
+    /// The result at the vertices.
+    const TextureBuffer& result() const { return lent_occlusion ? *lent_occlusion : occlusion; }
+
     TextureBuffer positions, normals, occlusion;
+    std::shared_ptr<const TextureBuffer> lent_occlusion;  ///< stands for `occlusion`; or null
     std::optional<TextureBuffer> reference;
     TextureBuffer splats, radii;
     Buffer index_buffer;
@@ -121,7 +126,7 @@ struct Upload {
     float radius = 0.0f;  ///< of a ball about the origin that holds all that is drawn
     std::optional<Texture2D> ground_occlusion;
     std::vector<glm::vec2> ground_values =
-        std::vector<glm::vec2>((kGroundCells + 1) * (kGroundCells + 1), glm::vec2(0.0f));
+        std::vector<glm::vec2>(kGroundReceivers, glm::vec2(0.0f));
 };
 
 Texture2D upload_image(const GlContext& context, const Image& image, const TextureOptions& options)
@@ -202,8 +207,8 @@ struct Renderer::Impl {
     {
         program.set("u_positions", upload->positions);
         program.set("u_normals", upload->normals);
-        program.set("u_occlusion", upload->occlusion);
-        program.set("u_reference", upload->reference ? *upload->reference : upload->occlusion);
+        program.set("u_occlusion", upload->result());
+        program.set("u_reference", upload->reference ? *upload->reference : upload->result());
     }
 
     void set_splats(Program& program, const Frame& frame)
@@ -308,11 +313,16 @@ struct Renderer::Impl {
         if (upload->vertex_count > 0)
             texels.update(0, std::span<const glm::vec4>(
                                  occlusion_texels(values.first(upload->vertex_count))));
-        for (std::size_t i = 0; i < upload->ground_values.size(); ++i) {
-            const float occlusion = values[upload->vertex_count + i].occlusion;
-            upload->ground_values[i][channel] = occlusion;
+        set_ground(values.subspan(upload->vertex_count), channel);
+    }
+
+    void set_ground(std::span<const Occlusion> values, int channel)
+    {
+        SURFELAO_CHECK(values.size() == upload->ground_values.size());
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            upload->ground_values[i][channel] = values[i].occlusion;
             if (!upload->reference)
-                upload->ground_values[i][1] = occlusion;
+                upload->ground_values[i][1] = values[i].occlusion;
         }
         upload_ground();
     }
@@ -343,7 +353,15 @@ void Renderer::set_model(const Model& model)
 
 void Renderer::set_occlusion(std::span<const Occlusion> occlusion)
 {
+    impl_->upload->lent_occlusion.reset();
     impl_->set_values(occlusion, impl_->upload->occlusion, 0);
+}
+
+void Renderer::set_occlusion(std::shared_ptr<const TextureBuffer> vertices,
+                             std::span<const Occlusion> ground)
+{
+    impl_->upload->lent_occlusion = std::move(vertices);
+    impl_->set_ground(ground, 0);
 }
 
 void Renderer::set_reference(std::span<const Occlusion> reference)
@@ -389,9 +407,7 @@ void Renderer::draw_frame(const Framebuffer& target, const Camera& camera,
     impl_->draw_background(frame);
     // first: an eye above the ground sees everything of the model before it, one below sees no
     // ground
-    const bool is_lit = options.colors == Colors::visibility || options.colors == Colors::rays ||
-                        options.colors == Colors::environment;
-    if (options.ground && is_lit)
+    if (shows_ground(options))
         impl_->draw_ground(frame);
     if (impl_->upload->splat_count > 0) {
         switch (options.surface) {

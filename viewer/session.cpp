@@ -1,11 +1,15 @@
 #include "viewer/session.h"
 
 #include "files/scene_io.h"
+#include "gpu/answers.h"
 #include "reference/reference_cache.h"
+#include "surfels/errors.h"
+#include "surfels/stopwatch.h"
+#include "viewer/solve_model.h"
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
+#include <span>
 #include <utility>
 
 namespace surfelao {
@@ -13,18 +17,13 @@ namespace {
 
 constexpr int kDraftShare = 16;  // of the rays
 
-double seconds_since(std::chrono::steady_clock::time_point start)
-{
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 /// The rough answer's settings; the same ones where the engine has none rougher.
-SessionSettings draft_of(SessionSettings settings, const EngineTraits& traits)
+EngineSettings draft_of(EngineSettings settings)
 {
-    if (traits.most_quality > 0.0f)
-        settings.quality = std::min(settings.quality, 0.0f);
-    if (traits.has_rays)
-        settings.rays = std::max(1, settings.rays / kDraftShare);
+    if (settings.engine == Engine::rays)
+        settings.rays = std::max(1u, settings.rays / kDraftShare);
+    else
+        settings.quality = std::min(settings.quality, kDraft);
     return settings;
 }
 
@@ -41,7 +40,10 @@ struct Session::Read {
 
 struct Session::Answer {
     std::uint64_t number = 0;
-    Solved solved;
+    std::shared_ptr<const DeviceSolution> on_device;  ///< its vertices; or null
+    std::vector<Occlusion> occlusion;                 ///< of the others
+    double seconds = 0.0;
+    std::optional<double> build_s;
     bool is_draft = false;
 };
 
@@ -51,18 +53,63 @@ struct Session::Traced {
     double seconds = 0.0;
 };
 
-Definition definition_of(const SessionSettings& settings)
-{
-    Definition definition;
-    if (settings.max_distance_percent > 0.0f) {
-        definition.max_distance = settings.max_distance_percent / 100.0f;
-        definition.falloff = settings.smooth_falloff ? Falloff::smooth : Falloff::none;
-    }
-    return definition;
-}
+/// The engine at hand and what it was prepared for.
+struct Session::Engines {
+    const GlContext* lent = nullptr;
+    std::optional<GlContext> own;
+    std::shared_ptr<const Model> model;
+    std::optional<Prepared> prepared;
+    std::optional<double> untold_s;  ///< seconds of preparing, until a whole answer has come of it
 
-Session::Session(Services services) : services_(std::move(services))
+    /// Where the GPU's engines compute.
+    const GlContext* context()
+    {
+        if (lent != nullptr)
+            return lent;
+        if (!own)
+            own.emplace(GlContext::create());
+        return &*own;
+    }
+
+    void prepare_for(const std::shared_ptr<const Model>& wanted, const EngineChoice& choice)
+    {
+        if (model == wanted && prepared && prepared->choice() == choice)
+            return;
+        prepared.reset();  // before the next one is built: both may be large
+        model = wanted;
+        prepared.emplace(prepare(wanted->geometry, choice));
+        untold_s = prepared->seconds().surfels + prepared->seconds().tree;
+    }
+
+    void solve(const Model& of, const SolveSettings& settings, const Progress& progress,
+               Answer& answer) const
+    {
+        if (lent != nullptr && prepared->choice().device == Device::gpu) {
+            ModelOnDevice found = solve_model_on_device(*prepared, of, settings, progress);
+            answer.on_device = std::move(found.vertices);
+            answer.occlusion = std::move(found.ground);
+            answer.seconds = found.seconds;
+        } else {
+            Solution found = solve_model(*prepared, of, settings, true, progress);
+            answer.occlusion = std::move(found.occlusion);
+            answer.seconds = found.seconds;
+        }
+    }
+
+    /// In the thread that has used them.
+    void end()
+    {
+        prepared.reset();
+        own.reset();
+        if (lent != nullptr)
+            lent->release();
+    }
+};
+
+Session::Session(const GlContext* device)
+    : engines_(std::make_unique<Engines>()), solver_([this] { engines_->end(); })
 {
+    engines_->lent = device;
 }
 Session::~Session() = default;
 
@@ -72,7 +119,7 @@ void Session::open(const std::filesystem::path& path, UpAxis up)
     opening_ = true;
     const std::uint64_t number = ++solve_number_;
     solver_.start([this, number, path, up](const Progress&) {
-        const auto start = std::chrono::steady_clock::now();
+        Stopwatch watch;
         auto read = std::make_unique<Read>();
         read->number = number;
         read->path = path;
@@ -83,7 +130,7 @@ void Session::open(const std::filesystem::path& path, UpAxis up)
         } catch (const std::exception& error) {
             read->failure = error.what();
         }
-        read->seconds = seconds_since(start);
+        read->seconds = watch.lap();
         const std::lock_guard lock(mailbox_);
         read_ = std::move(read);
     });
@@ -93,8 +140,7 @@ void Session::solve(const SessionSettings& settings)
 {
     if (settings == settings_)
         return;
-    const bool other_question = settings.max_distance_percent != settings_.max_distance_percent ||
-                                settings.smooth_falloff != settings_.smooth_falloff;
+    const bool other_question = settings.max_distance != settings_.max_distance;
     settings_ = settings;
     if (!state_.model || opening_)
         return;  // the next model is solved with them
@@ -107,20 +153,27 @@ void Session::start_solve()
 {
     was_cancelled_ = false;
     const std::uint64_t number = ++solve_number_;
-    const EngineTraits& traits = services_.engines[settings_.engine];
-    std::vector<SessionSettings> steps = {draft_of(settings_, traits), settings_};
+    EngineSettings whole = settings_.engine;
+    whole.definition =
+        definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry.frame);
+    std::vector<EngineSettings> steps = {draft_of(whole), whole};
     if (steps[0] == steps[1])
         steps.pop_back();
     solver_.start([this, number, steps, model = state_.model](const Progress& progress) {
         try {
+            EngineChoice choice = steps[0];
+            choice.context = choice.device == Device::gpu ? engines_->context() : nullptr;
+            engines_->prepare_for(model, choice);
             for (std::size_t i = 0; i < steps.size(); ++i) {
                 auto answer = std::make_unique<Answer>();
                 answer->number = number;
                 answer->is_draft = i + 1 < steps.size();
-                answer->solved = services_.solve(*model, steps[i], progress);
+                answer->build_s = engines_->untold_s;
+                engines_->solve(*model, steps[i], progress, *answer);
                 const std::lock_guard lock(mailbox_);
                 answer_ = std::move(answer);
             }
+            engines_->untold_s.reset();
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& error) {
@@ -148,15 +201,17 @@ void Session::start_reference()
         tracer_.cancel();
         return;
     }
-    const ReferenceOptions options{definition_of(settings_), reference_rays_};
+    const ReferenceOptions options{
+        definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry.frame),
+        reference_rays_};
     tracer_.start([this, number, options, model = state_.model](const Progress& progress) {
         try {
-            const auto start = std::chrono::steady_clock::now();
+            Stopwatch watch;
             auto traced = std::make_unique<Traced>();
             traced->number = number;
             traced->reference =
                 trace_reference(model->geometry, model->receivers, options, progress);
-            traced->seconds = seconds_since(start);
+            traced->seconds = watch.lap();
             const std::lock_guard lock(mailbox_);
             traced_ = std::move(traced);
         } catch (const Cancelled&) {
@@ -186,16 +241,17 @@ void Session::cancel()
 void Session::measure()
 {
     state_.error.reset();
-    if (state_.reference.empty() || state_.occlusion.empty())
+    if (state_.reference.empty() || !state_.is_solved)
         return;
+    const std::vector<Occlusion>& own = occlusion();
     std::vector<Occlusion> answer, reference;
     for (std::size_t v = 0; v < has_answer_.size(); ++v) {
         if (has_answer_[v]) {
-            answer.push_back(state_.occlusion[v]);
+            answer.push_back(own[v]);
             reference.push_back(state_.reference[v]);
         }
     }
-    state_.error = services_.measure(answer, reference);
+    state_.error = error_statistics(answer, reference);
 }
 
 Session::Changes Session::update()
@@ -203,13 +259,13 @@ Session::Changes Session::update()
     std::unique_ptr<Read> read;
     std::unique_ptr<Answer> answer;
     std::unique_ptr<Traced> traced;
+    std::string failure;
     {
         const std::lock_guard lock(mailbox_);
         read = std::move(read_);
         answer = std::move(answer_);
         traced = std::move(traced_);
-        if (!failure_.empty())
-            state_.message = std::exchange(failure_, {});
+        failure = std::exchange(failure_, {});
     }
     Changes changes;
     if (read && read->number == solve_number_ && opening_) {
@@ -222,16 +278,25 @@ Session::Changes Session::update()
         state_.scene = read->scene;
         state_.model = read->model;
         state_.read_s = read->seconds;
-        state_.occlusion.clear();
+        state_.is_solved = false;
+        state_.on_device.reset();
+        occlusion_.clear();
         start_reference();
         start_solve();
     }
     if (answer && answer->number == solve_number_) {
-        state_.occlusion = std::move(answer->solved.occlusion);
+        const auto ground = answer->occlusion.end() - kGroundReceivers;
+        ground_.assign(ground, answer->occlusion.end());
+        state_.on_device = std::move(answer->on_device);
+        occlusion_.clear();
+        if (!state_.on_device)
+            occlusion_ = std::move(answer->occlusion);
+        state_.is_solved = true;
+        ++state_.answer_count;
         state_.is_draft = answer->is_draft;
         was_cancelled_ = was_cancelled_ && answer->is_draft;
-        state_.build_s = answer->solved.build_s;
-        state_.solve_s = answer->solved.solve_s;
+        state_.build_s = answer->build_s;
+        state_.solve_s = answer->seconds;
         state_.message.clear();
         changes.occlusion = true;
     }
@@ -241,13 +306,33 @@ Session::Changes Session::update()
         for (std::size_t v = 0; v < has_answer_.size(); ++v)
             has_answer_[v] =
                 geometry.normals[v] != glm::vec3(0.0f) && traced->reference.well_defined(v);
+        state_.reference_s.reset();
+        if (!traced->reference.from_cache)
+            state_.reference_s = traced->seconds;
         state_.reference = std::move(traced->reference.occlusion);
-        state_.reference_s = traced->seconds;
         changes.reference = true;
     }
     if (changes.occlusion || changes.reference)
         measure();
+    if (!failure.empty())  // it came after the answers that were taken with it
+        state_.message = std::move(failure);
     return changes;
+}
+
+const std::vector<Occlusion>& Session::occlusion() const
+{
+    if (!has_read_answer()) {
+        occlusion_ = read_answers(state_.on_device->answers, state_.on_device->count);
+        occlusion_.insert(occlusion_.end(), ground_.begin(), ground_.end());
+    }
+    return occlusion_;
+}
+
+void Session::save(const std::filesystem::path& path) const
+{
+    SURFELAO_CHECK(state_.is_solved);
+    check_output(state_.path, path);
+    write_scene(path, *state_.scene, std::span(occlusion()).first(state_.scene->positions.size()));
 }
 
 }  // namespace surfelao

@@ -1,7 +1,11 @@
 /// session.h: what happens behind a window: reading a file, solving it in the background, a rough
-/// answer first, and tracing the reference. Knows neither window nor device.
+/// answer first, and tracing the reference. Knows no window.
 #pragma once
 
+#include "bake/statistics.h"
+#include "engines/device_solution.h"
+#include "engines/engine.h"
+#include "gpu/context.h"
 #include "surfels/occlusion.h"
 #include "surfels/scene.h"
 #include "viewer/background_worker.h"
@@ -10,62 +14,21 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 namespace surfelao {
 
-/// What an engine can be told, for the widgets.
-struct EngineTraits {
-    std::string name;
-    float least_quality = 0.0f;     ///< quality runs from this ...
-    float most_quality = 0.0f;      ///< ... to this; 0 = it has none
-    bool has_disk_options = false;  ///< passes and strength
-    bool has_rays = false;          ///< rays per receiver
-};
-
-/// What is solved, and how. Equal settings give equal answers.
+/// What is solved, and how. Equal settings give equal answers: those of bake().
 struct SessionSettings {
-    std::size_t engine = 0;  ///< into Services::engines
-    float quality = 1.0f;
-    int passes = 2;
-    float strength = 1.0f;
-    int rays = 256;
-    float max_distance_percent = 0.0f;  ///< of the diagonal; 0 = unlimited
-    bool smooth_falloff = false;        ///< only with a distance limit
+    /// Its context is the session's, and its definition is made of the limit below and the scene's
+    /// size: whatever stands there does not count.
+    EngineSettings engine;
+    DistanceLimit max_distance;
     bool operator==(const SessionSettings&) const = default;
-};
-
-/// What is measured by these settings.
-[[nodiscard]] Definition definition_of(const SessionSettings& settings);
-
-struct Solved {
-    std::vector<Occlusion> occlusion;  ///< one per receiver of the model
-    double build_s = 0.0;              ///< seconds: what the engine makes of the geometry first
-    double solve_s = 0.0;
-};
-
-/// Errors against the reference, over vertices whose question has an answer.
-struct ErrorFigures {
-    double rmse = 0.0;
-    double bias = 0.0;  ///< positive = too dark
-    double p95 = 0.0;
-    double max = 0.0;
-};
-
-/// What the caller lends: the engines, which lie above this folder.
-struct Services {
-    std::vector<EngineTraits> engines;  ///< at least one
-    /// In a background thread. Throws Cancelled when progress says so.
-    std::function<Solved(const Model&, const SessionSettings&, const Progress&)> solve;
-    std::function<ErrorFigures(std::span<const Occlusion> answer,
-                               std::span<const Occlusion> reference)>
-        measure;
 };
 
 /// A picture of the session for one frame.
@@ -73,18 +36,32 @@ struct SessionState {
     std::filesystem::path path;          ///< of the model shown
     std::shared_ptr<const Scene> scene;  ///< null until a file was read
     std::shared_ptr<const Model> model;
-    std::vector<Occlusion> occlusion;  ///< empty until something was solved
+    bool is_solved = false;                           ///< there is an answer: Session::occlusion()
+    bool is_draft = false;                            ///< it is the rough one
+    std::shared_ptr<const DeviceSolution> on_device;  ///< its vertices, where they are on a device
+                                                      ///< that was lent; else null
     std::vector<Occlusion> reference;  ///< empty until it was traced for the same definition
-    bool is_draft = false;             ///< `occlusion` is the rough answer
-    double read_s = 0.0, build_s = 0.0, solve_s = 0.0, reference_s = 0.0;
-    std::optional<ErrorFigures> error;  ///< of `occlusion` against `reference`
+    std::uint64_t answer_count = 0;    ///< how many have come so far, drafts too
+    double read_s = 0.0;
+    std::optional<double> build_s;  ///< empty where what was built before has answered again
+    double solve_s = 0.0;
+    std::optional<double> reference_s;     ///< empty where it was read from the cache
+    std::optional<ErrorStatistics> error;  ///< of the answer against the reference, over vertices
+                                           ///< whose question has one (well_defined.h)
     std::string message;  ///< the last thing that went wrong, one sentence; else empty
 };
 
 /// For one thread, the window's; update() takes over what the background threads have finished.
+/// An engine is prepared once per model, and solves drafts, whole answers and other settings until
+/// another engine, device or model is wanted.
 class Session {
 public:
-    explicit Session(Services services);
+    /// device: where engines compute on the GPU: a context that nobody else uses, that shares
+    /// objects with the one that is current in the caller's thread (and in update() and the
+    /// functions that say so), and that outlives the session and its answers, which stay on the
+    /// device. Null: a context of the session's own, made when it is first needed; answers come
+    /// back.
+    explicit Session(const GlContext* device = nullptr);
     ~Session();
 
     /// Reads a file in the background, then solves it with the last settings. What is shown stays
@@ -111,8 +88,22 @@ public:
     };
     [[nodiscard]] Changes update();
 
+    /// One answer per receiver of the model; empty until something was solved. What lies on the
+    /// device is read when it is first asked for.
+    const std::vector<Occlusion>& occlusion() const;
+
+    /// Whether occlusion() has no need to wait for the device.
+    bool has_read_answer() const { return !state_.on_device || !occlusion_.empty(); }
+
+    /// The part of it that is the ground's, without reading the rest.
+    const std::vector<Occlusion>& ground() const { return ground_; }
+
+    /// Writes the model with the answer at its vertices, the draft where there is no other: the
+    /// bytes that bake() writes for these settings. Something must be solved. Replaces what stands
+    /// there. Throws as check_output() and write_scene().
+    void save(const std::filesystem::path& path) const;
+
     const SessionState& state() const { return state_; }
-    const Services& services() const { return services_; }
     const SessionSettings& settings() const { return settings_; }
     bool opening() const { return opening_; }
     bool was_cancelled() const { return was_cancelled_; }  ///< the last solving, before its end
@@ -125,17 +116,21 @@ private:
     struct Read;
     struct Answer;
     struct Traced;
+    struct Engines;
     void start_solve();
     void start_reference();
     void measure();
 
-    Services services_;
     SessionSettings settings_;
     std::uint32_t reference_rays_ = 0;
     bool opening_ = false;
     bool was_cancelled_ = false;
     SessionState state_;
-    std::vector<bool> has_answer_;  ///< per vertex, by the reference
+    std::vector<bool> has_answer_;              ///< per vertex, by the reference
+    std::vector<Occlusion> ground_;             ///< the last part of the answer
+    mutable std::vector<Occlusion> occlusion_;  ///< empty while the device alone has it
+
+    std::unique_ptr<Engines> engines_;  ///< used by the solver's thread alone
 
     // written by the background threads, taken by update(); what was started before the last model
     // or settings carries an old number and is dropped

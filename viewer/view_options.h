@@ -39,4 +39,12 @@ struct ViewOptions {
            options.wipe < 1.0f;
 }
 
+/// Whether the ground's shadow is drawn: under colours that tell light.
+[[nodiscard]] constexpr bool shows_ground(const ViewOptions& options)
+{
+    return options.ground &&
+           (options.colors == Colors::visibility || options.colors == Colors::rays ||
+            options.colors == Colors::environment);
+}
+
 }  // namespace surfelao

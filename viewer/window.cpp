@@ -1,19 +1,18 @@
 #include "viewer/window.h"
 
-#include "files/scene_io.h"
-#include "gpu/context.h"
 #include "image/image_file.h"
 #include "surfels/errors.h"
+#include "surfels/stopwatch.h"
+#include "viewer/native_window.h"
+#include "viewer/output_files.h"
 #include "viewer/render.h"
 #include "viewer/renderer.h"
 
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
-#include <memory>
-#include <stdexcept>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -24,85 +23,6 @@ constexpr int kMostSamples = 32;       // a view at rest is done then
 constexpr double kPollSeconds = 0.03;  // while something runs in the background
 constexpr double kIdleSeconds = 0.5;
 constexpr int kEchoFrames = 4;  // after an event: widgets take some until they stand still
-
-/// The window system, for as long as a window is wanted.
-class WindowSystem {
-public:
-    WindowSystem()
-    {
-        if (!glfwInit())
-            throw std::runtime_error("no window can be opened: " + reason());
-    }
-    ~WindowSystem() { glfwTerminate(); }
-    WindowSystem(const WindowSystem&) = delete;
-    WindowSystem& operator=(const WindowSystem&) = delete;
-
-    static std::string reason()
-    {
-        const char* text = nullptr;
-        glfwGetError(&text);
-        return text ? text : "the window system gives no reason";
-    }
-};
-
-struct CloseWindow {
-    void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
-};
-using WindowHandle = std::unique_ptr<GLFWwindow, CloseWindow>;
-
-/// What was pressed and dropped since it was last looked at. A key that goes down and up again
-/// while one frame is drawn still counts.
-struct Inbox {
-    std::string keys;  ///< see Panel::build
-    std::string path;  ///< the last file dropped
-
-    explicit Inbox(GLFWwindow* window)
-    {
-        glfwSetWindowUserPointer(window, this);
-        glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
-            if (count > 0)
-                of(w).path = paths[count - 1];
-        });
-        glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
-            const char sign = sign_of(key, scancode);
-            const bool zooms = sign == '+' || sign == '=' || sign == '-';
-            const bool down = action == GLFW_PRESS || (action == GLFW_REPEAT && zooms);
-            if (down && sign != 0 && (mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT)) == 0)
-                of(w).keys += sign;
-        });
-    }
-    Inbox(const Inbox&) = delete;
-    Inbox& operator=(const Inbox&) = delete;
-
-private:
-    static Inbox& of(GLFWwindow* window)
-    {
-        return *static_cast<Inbox*>(glfwGetWindowUserPointer(window));
-    }
-
-    /// What the keyboard's layout has printed on the key, as Panel::build wants it; 0 = nothing.
-    static char sign_of(int key, int scancode)
-    {
-        switch (key) {
-            case GLFW_KEY_ESCAPE:
-                return Panel::kEscape;
-            case GLFW_KEY_TAB:
-                return Panel::kTab;
-            case GLFW_KEY_KP_ADD:
-                return '+';
-            case GLFW_KEY_KP_SUBTRACT:
-                return '-';
-            default:
-                break;
-        }
-        if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9)  // whatever else stands on digits
-            return static_cast<char>('0' + (key - GLFW_KEY_0));
-        const char* name = glfwGetKeyName(key, scancode);
-        if (name == nullptr || name[0] == 0 || name[1] != 0)
-            return 0;
-        return name[0] >= 'a' && name[0] <= 'z' ? static_cast<char>(name[0] - 'a' + 'A') : name[0];
-    }
-};
 
 /// A picture of the model in a part of the window, sample by sample.
 struct Pane {
@@ -136,41 +56,25 @@ Image joined(const std::vector<Image>& images)
     return all;
 }
 
-WindowHandle open_window(int width, int height)
-{
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    WindowHandle window(glfwCreateWindow(width, height, "surfelao", nullptr, nullptr));
-    if (!window)
-        throw std::runtime_error("no window can be opened: " + WindowSystem::reason());
-    return window;
-}
-
-GlContext adopt_context(GLFWwindow* window)
-{
-    return GlContext::adopt({
-        [](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); },
-        [window] { glfwMakeContextCurrent(window); },
-        [] { glfwMakeContextCurrent(nullptr); },
-    });
-}
-
 /// The window with all that belongs to it, made and destroyed with its context current.
 class Viewer {
 public:
-    Viewer(const WindowOptions& options, const Services& services, GLFWwindow* window)
+    /// hidden: open_hidden_window's.
+    Viewer(const WindowOptions& options, GLFWwindow* window, GLFWwindow* hidden)
         : options_(options),
           window_(window),
           inbox_(window),
+          solving_context_(solving_context(hidden)),
           context_(adopt_context(window)),
           renderer_(context_),
-          session_(services),
+          session_(solving_context_ ? &*solving_context_ : nullptr),
           panel_state_(options.panel),
           panel_(window, content_scale(window))
     {
         if (options.environment)
             renderer_.set_environment(*options.environment);
+        for (const std::filesystem::path& path : options.other_inputs)
+            files_.add_input(path);
         panel_state_.wants_reference |= needs_reference(panel_state_);
         session_.solve(panel_state_.settings);
         if (!options.input.empty())
@@ -191,12 +95,22 @@ public:
         }
     }
 
+    /// Every file that was saved.
+    const std::vector<std::filesystem::path>& written() const { return files_.written(); }
+
 private:
-    static float content_scale(GLFWwindow* window)
+    /// Where engines may leave their answers for the window; none where the system has none.
+    static std::optional<GlContext> solving_context(GLFWwindow* hidden)
     {
-        float x = 1.0f, y = 1.0f;
-        glfwGetWindowContentScale(window, &x, &y);
-        return std::max(1.0f, y);
+        if (hidden == nullptr)
+            return std::nullopt;
+        try {
+            GlContext context = adopt_context(hidden);
+            context.release();  // the solver's thread takes it
+            return context;
+        } catch (const std::exception&) {
+            return std::nullopt;
+        }
     }
 
     void wait_for_events()
@@ -227,13 +141,17 @@ private:
         try {
             if (changes.model) {
                 note_.clear();
+                files_.add_input(state.path);
                 renderer_.set_model(*state.model);
                 glfwSetWindowTitle(window_,
                                    (state.path.filename().string() + " - surfelao").c_str());
                 frame_all();
             }
-            if (changes.occlusion)
-                renderer_.set_occlusion(state.occlusion);
+            if (changes.occlusion && state.on_device)
+                renderer_.set_occlusion({state.on_device, &state.on_device->answers},
+                                        session_.ground());
+            else if (changes.occlusion)
+                renderer_.set_occlusion(session_.occlusion());
             if (changes.reference)
                 renderer_.set_reference(state.reference);
             if (changes.model || changes.occlusion || changes.reference)
@@ -277,15 +195,15 @@ private:
     {
         // a reference that is not there yet is not shown instead of the result
         const bool traced = !session_.state().reference.empty();
-        const Comparison comparison = panel_state_.comparison;
+        const ReferencePlace place = panel_state_.reference_place;
         std::vector<std::pair<Rect, float>> wanted;
-        if (comparison == Comparison::side_by_side && part.width > 1) {
+        if (place == ReferencePlace::side_by_side && part.width > 1) {
             const int half = part.width / 2;
             wanted = {
                 {{part.x, part.y, half, part.height}, 1.0f},
                 {{part.x + half, part.y, part.width - half, part.height}, traced ? 0.0f : 1.0f}};
         } else {
-            wanted = {{part, traced && comparison == Comparison::wipe ? panel_state_.wipe : 1.0f}};
+            wanted = {{part, traced && place == ReferencePlace::wipe ? panel_state_.wipe : 1.0f}};
         }
         const auto same = [](const Pane& pane, const std::pair<Rect, float>& other) {
             const Rect &a = pane.place, &b = other.first;
@@ -293,8 +211,8 @@ private:
         };
         if (!std::equal(panes_.begin(), panes_.end(), wanted.begin(), wanted.end(), same)) {
             panes_.clear();
-            for (const auto& [place, wipe] : wanted)
-                panes_.emplace_back(renderer_, context_, place, wipe);
+            for (const auto& [rect, wipe] : wanted)
+                panes_.emplace_back(renderer_, context_, rect, wipe);
         }
         for (std::size_t i = 0; i < wanted.size(); ++i) {
             if (std::exchange(panes_[i].wipe, wanted[i].second) != wanted[i].second)
@@ -333,7 +251,7 @@ private:
     {
         const SessionState& state = session_.state();
         ViewOptions view = panel_state_.view;
-        const bool has_values = !state.occlusion.empty() || view.colors == Colors::levels ||
+        const bool has_values = state.is_solved || view.colors == Colors::levels ||
                                 (view.colors == Colors::rays && !state.reference.empty());
         if (!has_values)
             view.colors = Colors::normals;
@@ -343,7 +261,7 @@ private:
     void draw_model(const Framebuffer& shown)
     {
         if (samples() < kMostSamples) {
-            const auto start = std::chrono::steady_clock::now();
+            Stopwatch watch;
             for (Pane& pane : panes_) {
                 ViewOptions view = shown_view();
                 view.wipe = pane.wipe;
@@ -351,8 +269,7 @@ private:
                 pane.sum.add(pane.target);
             }
             context_.finish("drawing the model");
-            const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-            frame_ms_ = 1000.0 * passed.count();
+            frame_ms_ = 1000.0 * watch.lap();
         }
         for (const Pane& pane : panes_)
             pane.sum.show(shown, {pane.place.x, pane.place.y});
@@ -361,7 +278,7 @@ private:
     PanelFigures figures() const
     {
         const GlInfo& info = context_.info();
-        return {frame_ms_, samples(), note_, info.renderer};
+        return {frame_ms_, samples(), note_, info.renderer, files_.written()};
     }
 
     void apply(const PanelInput& input)
@@ -394,45 +311,67 @@ private:
         if (input.view_changed)
             restart();
         if (input.save_picture)
-            save([&] { return save_picture(); });
+            ask_or_save(Saved::picture, panel_state_.picture_path);
         if (input.save_baked)
-            save([&] { return save_baked(); });
+            ask_or_save(Saved::baked, panel_state_.baked_path);
+        if (input.reply != SaveReply::none && panel_state_.question)
+            answer(*std::exchange(panel_state_.question, std::nullopt), input.reply);
+    }
+
+    /// What would be lost is asked about first.
+    void ask_or_save(Saved what, const std::filesystem::path& path)
+    {
+        const Standing standing = files_.standing_of(path);
+        if (standing == Standing::nothing || standing == Standing::written)
+            save(what, path);
+        else
+            panel_state_.question = SaveQuestion{what, path, standing == Standing::input};
+    }
+
+    void answer(const SaveQuestion& question, SaveReply reply)
+    {
+        if (reply == SaveReply::keep_both)
+            save(question.what, next_free_name(question.path));
+        else if (reply == SaveReply::cancel)
+            note_ = "not saved";
+        else if (files_.standing_of(question.path) == Standing::input)
+            ask_or_save(question.what, question.path);  // it was opened meanwhile
+        else
+            save(question.what, question.path);
     }
 
     /// Whatever fails is told in the window.
-    template <class Work>
-    void save(Work work)
+    void save(Saved what, const std::filesystem::path& path)
     {
+        const SessionState& state = session_.state();
+        const bool has_content =
+            what == Saved::picture ? has_view() && samples() > 0 : state.is_solved;
+        if (!has_content) {
+            note_ = what == Saved::picture ? "there is no picture yet" : "nothing is solved yet";
+            return;
+        }
         try {
-            note_ = work();
+            if (what == Saved::picture)
+                save_picture(path);
+            else
+                session_.save(path);
+            files_.add_written(path);
+            note_ = "saved " + path.string();
+            if (what == Saved::baked && state.is_draft)
+                note_ += ", of the draft";
         } catch (const std::exception& error) {
             note_ = error.what();
         }
     }
 
-    std::string save_picture()
+    void save_picture(const std::filesystem::path& path)
     {
-        if (!has_view() || samples() == 0)
-            return "there is no picture yet";
         std::vector<Image> images;
         for (const Pane& pane : panes_)
             images.push_back(pane.sum.mean());
         Image image = joined(images);
         draw_legend(image, *session_.state().model, shown_view());
-        write_image(panel_state_.picture_path, image);
-        return std::string("saved ") + panel_state_.picture_path;
-    }
-
-    std::string save_baked()
-    {
-        const SessionState& state = session_.state();
-        if (state.occlusion.empty())
-            return "nothing is solved yet";
-        check_output(state.path, panel_state_.baked_path);
-        write_scene(panel_state_.baked_path, *state.scene,
-                    std::span(state.occlusion).first(state.scene->positions.size()));
-        return std::string("saved ") + panel_state_.baked_path +
-               (state.is_draft ? ", of the draft" : "");
+        write_image(path, image);
     }
 
     /// What is on the window now, as light.
@@ -457,6 +396,7 @@ private:
     const WindowOptions& options_;
     GLFWwindow* window_;
     Inbox inbox_;
+    std::optional<GlContext> solving_context_;  ///< shares objects with the window's
     GlContext context_;
     Renderer renderer_;
     Session session_;
@@ -464,6 +404,7 @@ private:
     Panel panel_;
     Camera camera_;
     std::vector<Pane> panes_;
+    OutputFiles files_;
     std::string note_;
     double frame_ms_ = 0.0;
     int echo_frames_ = 0;
@@ -471,11 +412,14 @@ private:
 
 }  // namespace
 
-void show_window(const WindowOptions& options, const Services& services)
+std::vector<std::filesystem::path> show_window(const WindowOptions& options)
 {
     const WindowSystem system;
     const WindowHandle window = open_window(options.width, options.height);
-    Viewer(options, services, window.get()).run();
+    const WindowHandle hidden = open_hidden_window(window.get());
+    Viewer viewer(options, window.get(), hidden.get());
+    viewer.run();
+    return viewer.written();
 }
 
 }  // namespace surfelao

@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace surfelao {
 
@@ -19,6 +20,7 @@ struct WindowOptions {
     std::string camera;                ///< parse_camera's words, for every file that is opened
     PanelState panel;                  ///< what the widgets begin with
     std::optional<Image> environment;  ///< a panorama; none = builtin_sky()
+    std::vector<std::filesystem::path> other_inputs;  ///< read besides models: never replaced
 
     /// Asked at least twice a second; false closes the window (an interrupt, for example).
     std::function<bool()> keep_open = [] { return true; };
@@ -31,7 +33,9 @@ struct WindowOptions {
 /// Opens a window and returns when it is closed. Moving the camera draws, and solves nothing; a
 /// view at rest gets smoother, sample by sample, and costs nothing once it is done. Throws
 /// std::runtime_error when there is no display or no OpenGL 3.3; everything later (files that
-/// cannot be read or written) is told in the window.
-void show_window(const WindowOptions& options, const Services& services);
+/// cannot be read or written) is told in the window. A file that was not written from this window
+/// is replaced only when the user says so there, and one that was read never. Returns every file
+/// that was written.
+[[nodiscard]] std::vector<std::filesystem::path> show_window(const WindowOptions& options);
 
 }  // namespace surfelao

@@ -9,6 +9,7 @@
 // read-back included.
 
 #include "files/scene_io.h"
+#include "gpu/answers.h"
 #include "gpu/context.h"
 #include "gpu/gpu_disks.h"
 #include "gpu/gpu_masks.h"
@@ -86,25 +87,27 @@ Timing compare(const World& world, const Cpu& solve_on_cpu, const Gpu& solve_on_
 
 Timing compare_disks(const GlContext& context, const World& world, const DiskOptions& options)
 {
+    const GpuDisks scene(context, world.octree);
     return compare(
         world,
         [&](std::span<const Receiver> receivers) {
             return solve_disks(world.octree, receivers, options).occlusion;
         },
         [&](std::span<const Receiver> receivers) {
-            return solve_disks_gpu(context, world.octree, receivers, options).occlusion;
+            return read_answers(scene.solve(receivers, options).answers, receivers.size());
         });
 }
 
 Timing compare_masks(const GlContext& context, const World& world, const MaskOptions& options)
 {
+    const GpuMasks scene(context, *world.masks);
     return compare(
         world,
         [&](std::span<const Receiver> receivers) {
             return solve_masks(*world.masks, receivers, options);
         },
         [&](std::span<const Receiver> receivers) {
-            return solve_masks_gpu(context, *world.masks, receivers, options);
+            return read_answers(scene.solve(receivers, options), receivers.size());
         });
 }
 

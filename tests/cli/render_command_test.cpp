@@ -92,6 +92,22 @@ TEST_F(RenderCommand, RefusesWhatCannotBeDoneInOneSentence)
     refused(2, "--mode", "x.png", {"--mode", "colourful"});
 }
 
+TEST_F(RenderCommand, RefusesToReplaceWhatItReads)
+{
+    fs::copy_file(folder_ / "a.obj", folder_ / "a.png");
+    fs::create_symlink("a.png", folder_ / "link.png");
+    const std::string before = contents_of(folder_ / "a.png");
+    const auto refused = [&](const std::string& words, const std::vector<std::string>& arguments) {
+        const Outcome outcome = run(folder_.path(), arguments);
+        EXPECT_EQ(outcome.code, 2);
+        EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+    };
+    refused("a.png", {"render", folder_ / "a.png", "-o", folder_ / "link.png"});
+    refused("a.png", {"render", folder_ / "a.obj", "-o", folder_ / "link.png", "--environment",
+                      folder_ / "a.png"});
+    EXPECT_EQ(contents_of(folder_ / "a.png"), before);
+}
+
 // 16,384 is the most that software draws; 32,768 the most that may be asked for.
 TEST_F(RenderCommand, RefusesASizeThatTheDeviceCannotDraw)
 {

@@ -12,6 +12,7 @@ namespace {
 using nlohmann::json;
 using test::bytes_of;
 using test::GltfMaker;
+using test::primitive;
 using test::refusal;
 using test::square;
 
@@ -24,11 +25,6 @@ struct Malformed {
 void PrintTo(const Malformed& malformed, std::ostream* stream)
 {
     *stream << malformed.name;
-}
-
-json& primitive(GltfMaker& maker)
-{
-    return maker.document["meshes"][0]["primitives"][0];
 }
 
 json& accessor(GltfMaker& maker, std::size_t index)

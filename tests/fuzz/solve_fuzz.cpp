@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -76,19 +77,27 @@ constexpr std::size_t kMostVertices = 256;
 constexpr std::size_t kMostTriangles = 400;
 constexpr std::size_t kMostReceivers = 32;
 
-Engine engine_of(Bytes& bytes)
+template <class Options>
+Options with(Options options, const SolveSettings& settings)
 {
-    Engine engine;
+    options.definition = settings.definition;
+    return options;
+}
+
+stability::Engine engine_of(Bytes& bytes)
+{
+    stability::Engine engine;
     switch (bytes.byte() % 4) {
         case 0: {
             RayOptions options;
             options.rays = 16;
             const auto build = bytes.one_of({RayScene::Build::robust, RayScene::Build::fast});
             engine.name = "rays";
-            engine.solve = [=](const Geometry& geometry, std::span<const Receiver> receivers,
-                               const Definition& definition) mutable {
-                options.definition = definition;
-                return trace_occlusion(RayScene(geometry, build), receivers, options);
+            engine.prepare = [=](const Geometry& geometry) -> Solver {
+                return [=, scene = std::make_shared<const RayScene>(geometry, build)](
+                           std::span<const Receiver> receivers, const SolveSettings& settings) {
+                    return trace_occlusion(*scene, receivers, with(options, settings));
+                };
             };
             break;
         }
@@ -99,17 +108,14 @@ Engine engine_of(Bytes& bytes)
             options.strength = bytes.one_of({1.0f, 0.0f, 0.7f, 3.0f});
             const bool even = bytes.byte() >= 240;  // thousands of disks: rarely
             engine.name = "disks";
-            engine.solve = [=](const Geometry& geometry, std::span<const Receiver> receivers,
-                               const Definition& definition) mutable {
-                options.definition = definition;
-                if (!even)
-                    return solve_disks(build_octree(surfels_at_vertices(geometry)), receivers,
-                                       options)
-                        .occlusion;
-                const SurfelCloud cloud = surfels_of(geometry);
+            engine.prepare = [=](const Geometry& geometry) -> Solver {
+                const SurfelCloud cloud = even ? surfels_of(geometry) : SurfelCloud{};
                 const Octree octree =
-                    build_octree(cloud.surfels, sides_of(cloud, analyse_topology(geometry)));
-                return solve_disks(octree, receivers, options).occlusion;
+                    even ? build_octree(cloud.surfels, sides_of(cloud, analyse_topology(geometry)))
+                         : build_octree(surfels_at_vertices(geometry));
+                return [=](std::span<const Receiver> receivers, const SolveSettings& settings) {
+                    return solve_disks(octree, receivers, with(options, settings)).occlusion;
+                };
             };
             break;
         }
@@ -121,10 +127,11 @@ Engine engine_of(Bytes& bytes)
             options.kernel = kernels[bytes.byte() % kernels.size()];
             options.exact = bytes.byte() >= 224;
             engine.name = "masks " + std::string(name_of(options.kernel));
-            engine.solve = [=](const Geometry& geometry, std::span<const Receiver> receivers,
-                               const Definition& definition) mutable {
-                options.definition = definition;
-                return solve_masks(*build_mask_tree(geometry), receivers, options);
+            engine.prepare = [=](const Geometry& geometry) -> Solver {
+                return [=, tree = build_mask_tree(geometry)](std::span<const Receiver> receivers,
+                                                             const SolveSettings& settings) {
+                    return solve_masks(*tree, receivers, with(options, settings));
+                };
             };
         }
     }
@@ -185,7 +192,7 @@ std::vector<Receiver> receivers_of(Bytes& bytes, const World& world)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     Bytes bytes(data, size);
-    const Engine engine = engine_of(bytes);
+    const stability::Engine engine = engine_of(bytes);
     const Definition definition = definition_of(bytes, !engine.name.starts_with("masks"));
     const Scene scene = scene_of(bytes);
     if (scene.triangles.empty())
@@ -193,7 +200,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check_geometry(scene);
     World world = at_vertices(scene, definition);
     world.receivers = receivers_of(bytes, world);
-    const std::string fault = solve_twice(world, engine).fault;
+    Built built;
+    const std::string fault = solve_twice(world, engine, built).fault;
     if (!fault.empty())
         std::fprintf(stderr, "%s: %s\n", engine.name.c_str(), fault.c_str());
     SURFELAO_CHECK(fault.empty());

@@ -1,5 +1,6 @@
 #include "gpu/gpu_disks.h"
 
+#include "gpu/answers.h"
 #include "scenes.h"
 #include "surfels/topology.h"
 #include "tests/gpu/contexts.h"
@@ -18,6 +19,13 @@ namespace surfelao {
 namespace {
 
 constexpr float kUnlimited = std::numeric_limits<float>::infinity();
+
+DiskResult solve_on_gpu(const Octree& octree, std::span<const Receiver> receivers,
+                        const DiskOptions& options, const Progress& progress = {})
+{
+    GpuDiskResult found = GpuDisks(test_context(), octree).solve(receivers, options, progress);
+    return {read_answers(found.answers, receivers.size()), std::move(found.residuals)};
+}
 
 /// A scene as the engine gets it. Every third surfel casts from both sides where `mixed`.
 struct World {
@@ -61,7 +69,7 @@ Difference difference(const std::vector<Occlusion>& a, const std::vector<Occlusi
 void expect_twins(const World& world, const DiskOptions& options, const char* what)
 {
     const DiskResult cpu = solve_disks(world.octree, world.receivers, options);
-    const DiskResult gpu = solve_disks_gpu(test_context(), world.octree, world.receivers, options);
+    const DiskResult gpu = solve_on_gpu(world.octree, world.receivers, options);
     ASSERT_EQ(cpu.occlusion.size(), gpu.occlusion.size()) << what;
     const Difference largest = difference(cpu.occlusion, gpu.occlusion);
     EXPECT_LT(largest.occlusion, 1e-4) << what;
@@ -123,11 +131,10 @@ TEST(GpuDisks, ListsLongerThanADriversLoopsAreSummedToTheEnd)
 TEST(GpuDisks, NothingToSeeAndNobodyToAsk)
 {
     const World world(scenes::sphere({0, 0, 0}, 1.0, 4));
-    EXPECT_TRUE(solve_disks_gpu(test_context(), world.octree, {}, {}).occlusion.empty());
+    EXPECT_TRUE(solve_on_gpu(world.octree, {}, {}).occlusion.empty());
 
     const std::vector<Receiver> receivers = {{{0, 0, 0}, {0, 0, 1}}, {{0, 0, 0}, {0, 0, 0}}};
-    const std::vector<Occlusion> alone =
-        solve_disks_gpu(test_context(), Octree{}, receivers, {}).occlusion;
+    const std::vector<Occlusion> alone = solve_on_gpu(Octree{}, receivers, {}).occlusion;
     EXPECT_EQ(alone[0].occlusion, 0.0f);
     EXPECT_EQ(alone[0].bent_normal, glm::vec3(0, 0, 1));
     EXPECT_EQ(alone[1].occlusion, 0.0f);
@@ -138,15 +145,14 @@ TEST(GpuDisks, ProgressRunsToTheEndAndStopsWhenAsked)
 {
     const World world(scenes::bumpy_sphere(12));
     double last = 0.0;
-    static_cast<void>(
-        solve_disks_gpu(test_context(), world.octree, world.receivers, {}, [&](double done) {
-            EXPECT_GE(done, last);
-            last = done;
-            return true;
-        }));
+    static_cast<void>(solve_on_gpu(world.octree, world.receivers, {}, [&](double done) {
+        EXPECT_GE(done, last);
+        last = done;
+        return true;
+    }));
     EXPECT_EQ(last, 1.0);
-    EXPECT_THROW(static_cast<void>(solve_disks_gpu(test_context(), world.octree, world.receivers,
-                                                   {}, [](double) { return false; })),
+    EXPECT_THROW(static_cast<void>(
+                     solve_on_gpu(world.octree, world.receivers, {}, [](double) { return false; })),
                  Cancelled);
 }
 

@@ -17,12 +17,15 @@ namespace {
 /// Bent normals are sums of thousands of float directions.
 constexpr float kUnitLength = 1e-4f;
 
-std::vector<Occlusion> solve(const World& world, const Engine& engine, int threads)
+std::vector<Occlusion> solve(const World& world, const Engine& engine, Built& built, int threads)
 {
     std::vector<Occlusion> result;
     tbb::task_arena arena(threads);
-    arena.execute(
-        [&] { result = engine.solve(world.geometry, world.receivers, world.definition); });
+    arena.execute([&] {
+        SolveSettings settings = engine.settings;
+        settings.definition = world.definition;
+        result = built.of(engine, world, threads)(world.receivers, settings);
+    });
     return result;
 }
 
@@ -78,19 +81,19 @@ Bound error_of(const Trial& trial, const std::vector<Occlusion>& answers,
     return error;
 }
 
-Finding examine(const Trial& trial, const Engine& engine, const std::string& excuse)
+Finding examine(const Trial& trial, const Engine& engine, const std::string& excuse, Built& built)
 {
     Finding finding;
     finding.verdict = Verdict::fail;
     finding.bound = engine.bound;
 
-    const Answers answers = solve_twice(trial.world, engine);
+    const Answers answers = solve_twice(trial.world, engine, built);
     finding.fault = answers.fault;
     if (answers.occlusion.size() != trial.world.receivers.size())
         return finding;
     std::vector<Occlusion> like;
     if (trial.world.like) {
-        like = solve(*trial.world.like, engine, tbb::task_arena::automatic);
+        like = solve(*trial.world.like, engine, built, tbb::task_arena::automatic);
         finding.bound = {2.0 * engine.bound.rms, 2.0 * engine.bound.worst};
     }
     finding.error = error_of(trial, answers.occlusion, like);
@@ -111,6 +114,14 @@ Finding examine(const Trial& trial, const Engine& engine, const std::string& exc
 }
 
 }  // namespace
+
+const Solver& Built::of(const Engine& engine, const World& world, int threads)
+{
+    Solver& solver = solvers_[{engine.built, &world, threads}];
+    if (!solver)
+        solver = engine.prepare(world.geometry);
+    return solver;
+}
 
 Trial prepare(World world)
 {
@@ -148,24 +159,24 @@ Trial prepare(World world)
     return trial;
 }
 
-Answers solve_twice(const World& world, const Engine& engine)
+Answers solve_twice(const World& world, const Engine& engine, Built& built)
 {
     Answers answers;
-    answers.occlusion = solve(world, engine, 1);
+    answers.occlusion = solve(world, engine, built, 1);
     if (answers.occlusion.size() != world.receivers.size())
         answers.fault = "not one answer per receiver";
     else
         answers.fault = fault_in_numbers(world.receivers, answers.occlusion);
     if (answers.fault.empty() &&
-        !same_bytes(answers.occlusion, solve(world, engine, tbb::task_arena::automatic)))
+        !same_bytes(answers.occlusion, solve(world, engine, built, tbb::task_arena::automatic)))
         answers.fault = "two runs differ";
     return answers;
 }
 
-Finding judge(const Trial& trial, const Engine& engine, const std::string& excuse)
+Finding judge(const Trial& trial, const Engine& engine, const std::string& excuse, Built& built)
 {
     try {
-        return examine(trial, engine, excuse);
+        return examine(trial, engine, excuse, built);
     } catch (const std::exception& error) {
         return {Verdict::fail, {}, engine.bound, error.what()};
     }

@@ -1,12 +1,15 @@
 /// judge.h: runs one hard case through one engine and says whether the answer stands.
 #pragma once
 
+#include "engines/engine.h"
 #include "tests/stability/world.h"
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace surfelao::stability {
@@ -17,15 +20,29 @@ struct Bound {
     double worst = 0.0;
 };
 
-/// An engine at one setting. solve builds its tree anew at every call.
+/// Answers receivers about the geometry that it was made for, as often as it is asked.
+using Solver =
+    std::function<std::vector<Occlusion>(std::span<const Receiver>, const SolveSettings&)>;
+
+/// An engine at one setting.
 struct Engine {
     std::string name;
     Bound bound;
     bool may_be_excused = false;  ///< by Case::disks_excused
     bool skips_slow = false;      ///< not run where Case::slow
-    std::function<std::vector<Occlusion>(const Geometry&, std::span<const Receiver>,
-                                         const Definition&)>
-        solve;
+    std::string built;  ///< engines with the same word here share what they have built of a case
+    std::function<Solver(const Geometry&)> prepare;
+    SolveSettings settings = {};  ///< the definition apart: that is the world's
+};
+
+/// What engines have built of the worlds of one case, which must outlive it.
+class Built {
+public:
+    /// Made when first asked for, by the number of threads that the caller has.
+    const Solver& of(const Engine& engine, const World& world, int threads);
+
+private:
+    std::map<std::tuple<std::string, const World*, int>, Solver> solvers_;
 };
 
 enum class Verdict { pass, excused, undefined, fail };
@@ -56,15 +73,16 @@ struct Answers {
     std::string fault;  ///< one phrase; empty where nothing is
 };
 
-/// Solves twice, on one thread and on several, and checks in this order: one answer per receiver,
-/// all numbers finite, occlusion in [0, 1], bent normals of unit length and not below the horizon
-/// (receivers without a normal: occlusion 0, bent normal zero), both runs equal in every byte.
-/// Throws what the engine throws.
-[[nodiscard]] Answers solve_twice(const World& world, const Engine& engine);
+/// Builds and solves twice, on one thread and on several, and checks in this order: one answer per
+/// receiver, all numbers finite, occlusion in [0, 1], bent normals of unit length and not below the
+/// horizon (receivers without a normal: occlusion 0, bent normal zero), both runs equal in every
+/// byte. Throws what the engine throws.
+[[nodiscard]] Answers solve_twice(const World& world, const Engine& engine, Built& built);
 
 /// Solves twice, and checks in this order: it did not throw, solve_twice found no fault, errors
-/// within the bound. Against `like` the bound is doubled: both sides
-/// may be off. `excuse`: Case::disks_excused; it forgives the error only.
-[[nodiscard]] Finding judge(const Trial& trial, const Engine& engine, const std::string& excuse);
+/// within the bound. Against `like` the bound is doubled: both sides may be off. `excuse`:
+/// Case::disks_excused; it forgives the error only.
+[[nodiscard]] Finding judge(const Trial& trial, const Engine& engine, const std::string& excuse,
+                            Built& built);
 
 }  // namespace surfelao::stability

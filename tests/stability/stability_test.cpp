@@ -74,14 +74,22 @@ Engine spoilt(const Trial& trial, const std::function<void(std::vector<Occlusion
     Engine engine;
     engine.name = "spoilt";
     engine.bound = {0.001, 0.01};
-    engine.solve = [=](const Geometry&, std::span<const Receiver> receivers, const Definition&) {
-        std::vector<Occlusion> answers(receivers.size());
-        for (std::size_t i = 0; i < answers.size(); ++i)
-            answers[i] = {static_cast<float>(trial.truth[i]), receivers[i].normal};
-        spoil(answers);
-        return answers;
+    engine.prepare = [=](const Geometry&) -> Solver {
+        return [=](std::span<const Receiver> receivers, const SolveSettings&) {
+            std::vector<Occlusion> answers(receivers.size());
+            for (std::size_t i = 0; i < answers.size(); ++i)
+                answers[i] = {static_cast<float>(trial.truth[i]), receivers[i].normal};
+            spoil(answers);
+            return answers;
+        };
     };
     return engine;
+}
+
+Finding judge_alone(const Trial& trial, const Engine& engine, const std::string& excuse = {})
+{
+    Built built;
+    return judge(trial, engine, excuse, built);
 }
 
 Finding judged(const std::function<void(std::vector<Occlusion>&)>& spoil, bool excusable = false,
@@ -90,7 +98,7 @@ Finding judged(const std::function<void(std::vector<Occlusion>&)>& spoil, bool e
     const Trial trial = floor_and_ceiling();
     Engine engine = spoilt(trial, spoil);
     engine.may_be_excused = excusable;
-    return judge(trial, engine, excuse);
+    return judge_alone(trial, engine, excuse);
 }
 
 TEST(Judge, PassesTheRightAnswer)
@@ -143,7 +151,8 @@ TEST(Judge, LeavesReceiversWithoutAnAnswerOutAndSaysSo)
     scene += sheet({0, 0, offset}, {0, 1, 0}, {1, 0, 0}, 4);
     const Trial trial = prepare(at_vertices(scene));
     EXPECT_EQ(trial.undefined, 50u);
-    const Finding finding = judge(trial, spoilt(trial, [](auto& a) { a[3].occlusion = 0.5f; }), "");
+    const Finding finding =
+        judge_alone(trial, spoilt(trial, [](auto& a) { a[3].occlusion = 0.5f; }));
     EXPECT_EQ(finding.verdict, Verdict::undefined);
 }
 
@@ -153,9 +162,9 @@ TEST(Judge, HoldsAnEngineAgainstItselfOnAnEqualScene)
     const Trial same = prepare(with_like(at_vertices(scene), at_vertices(scene)));
     const Trial other = prepare(with_like(at_vertices(scene), at_vertices(scenes::flipped(scene))));
     const Engine rays = all_engines().front();
-    EXPECT_EQ(judge(same, rays, "").error.worst, 0.0);
-    EXPECT_EQ(judge(same, rays, "").verdict, Verdict::pass);
-    EXPECT_EQ(judge(other, rays, "").verdict, Verdict::fail);  // seen from inside
+    EXPECT_EQ(judge_alone(same, rays).error.worst, 0.0);
+    EXPECT_EQ(judge_alone(same, rays).verdict, Verdict::pass);
+    EXPECT_EQ(judge_alone(other, rays).verdict, Verdict::fail);  // seen from inside
 }
 
 TEST(Cases, AreManyAndHaveNamesOfTheirOwn)

@@ -1,61 +1,49 @@
 #include "viewer/session.h"
 
+#include "bake/bake.h"
+#include "scenes.h"
+#include "temporary_folder.h"
+#include "viewer/solve_model.h"
+
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <chrono>
-#include <filesystem>
-#include <fstream>
+#include <cmath>
+#include <cstdlib>
 #include <thread>
 
 namespace surfelao {
 namespace {
 
-/// One triangle, as an OBJ.
-std::filesystem::path triangle_file()
-{
-    const std::filesystem::path path =
-        std::filesystem::path(testing::TempDir()) /
-        (std::string("surfelao_session_") +
-         testing::UnitTest::GetInstance()->current_test_info()->name() + ".obj");
-    std::ofstream(path) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-    return path;
-}
+/// Draft in hundredths of a second, the finest in many seconds.
+constexpr int kSlowCells = 60;
+constexpr float kSlowQuality = 4.0f;
 
-/// An engine that answers its quality everywhere; above quality 1.5 only when it is cancelled.
-struct Fake {
-    std::atomic<int> calls{0};
-    std::atomic<bool> was_cancelled{false};
+class SessionTest : public testing::Test {
+protected:
+    void SetUp() override { setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1); }
 
-    Services services()
+    std::filesystem::path ball(const char* name = "ball.obj", int cells = 6) const
     {
-        Services all;
-        all.engines = {{.name = "fake", .most_quality = 2.0f}};
-        all.solve = [this](const Model& model, const SessionSettings& settings,
-                           const Progress& progress) {
-            ++calls;
-            while (settings.quality > 1.5f) {
-                if (!progress(0.5)) {
-                    was_cancelled = true;
-                    throw Cancelled();
-                }
-                std::this_thread::sleep_for(std::chrono::milliseconds(1));
-            }
-            return Solved{std::vector<Occlusion>(model.receivers.size(),
-                                                 {settings.quality / 2.0f, {0, 0, 1}})};
-        };
-        all.measure = [](std::span<const Occlusion> answer, std::span<const Occlusion> reference) {
-            return ErrorFigures{.bias = answer[0].occlusion - reference[0].occlusion};
-        };
-        return all;
+        write_obj(folder_ / name, scenes::bumpy_sphere(cells));
+        return folder_ / name;
     }
+    TemporaryFolder folder_;
 };
 
-/// Updates until the condition holds, at most ten seconds.
+SessionSettings of_quality(float quality, Engine engine = Engine::masks)
+{
+    SessionSettings settings;
+    settings.engine.engine = engine;
+    settings.engine.quality = quality;
+    return settings;
+}
+
+/// Updates until the condition holds, at most half a minute.
 template <class Condition>
 bool wait_for(Session& session, Condition condition)
 {
-    for (int i = 0; i < 10000; ++i) {
+    for (int i = 0; i < 30000; ++i) {
         (void)session.update();
         if (condition())
             return true;
@@ -64,101 +52,142 @@ bool wait_for(Session& session, Condition condition)
     return false;
 }
 
-TEST(Session, ReadsAFileAndSolvesItWithADraftFirst)
+bool wait_for_whole_answer(Session& session)
 {
-    Fake fake;
-    Session session(fake.services());
-    session.open(triangle_file(), UpAxis::y);
-    ASSERT_TRUE(wait_for(
-        session, [&] { return !session.state().occlusion.empty() && !session.state().is_draft; }));
-    EXPECT_EQ(session.state().model->geometry.positions.size(), 3u);
-    EXPECT_EQ(session.state().occlusion[0].occlusion, 0.5f);
-    EXPECT_EQ(fake.calls, 2);  // draft and whole
-    EXPECT_FALSE(session.state().error.has_value());
+    bool was_idle = false;  // before the update: then nothing is on its way
+    return wait_for(session, [&] {
+        const bool is_there = was_idle && !session.opening() && session.state().is_solved &&
+                              !session.state().is_draft;
+        was_idle = !session.solving();
+        return is_there;
+    });
 }
 
-TEST(Session, EqualSettingsSolveNothing)
+/// As bake() asks.
+std::vector<float> vertex_answers(const Model& model, const EngineSettings& settings)
 {
-    Fake fake;
-    Session session(fake.services());
-    session.open(triangle_file(), UpAxis::y);
-    ASSERT_TRUE(wait_for(session, [&] { return fake.calls == 2 && !session.solving(); }));
+    const std::vector<Receiver> receivers =
+        receivers_at_vertices(model.geometry, settings.definition.offset);
+    std::vector<float> values;
+    for (const Occlusion& value :
+         solve(prepare(model.geometry, settings), receivers, settings).occlusion)
+        values.push_back(value.occlusion);
+    return values;
+}
+
+std::vector<float> first_values(const std::vector<Occlusion>& occlusion, std::size_t count)
+{
+    std::vector<float> values;
+    for (std::size_t i = 0; i < count; ++i)
+        values.push_back(occlusion[i].occlusion);
+    return values;
+}
+
+TEST_F(SessionTest, ReadsAFileAndSolvesIt)
+{
+    Session session;
+    session.open(ball(), UpAxis::y);
+    ASSERT_TRUE(wait_for_whole_answer(session));
+    const SessionState& state = session.state();
+    EXPECT_EQ(state.model->geometry.positions.size(), scenes::bumpy_sphere(6).positions.size());
+    EXPECT_EQ(session.occlusion().size(), state.model->receivers.size());
+    EXPECT_EQ(first_values(session.occlusion(), state.model->geometry.positions.size()),
+              vertex_answers(*state.model, {}));
+    EXPECT_FALSE(state.error.has_value());
+}
+
+TEST_F(SessionTest, EqualSettingsSolveNothing)
+{
+    Session session;
+    session.open(ball(), UpAxis::y);
+    ASSERT_TRUE(wait_for_whole_answer(session));
+    const std::uint64_t answers = session.state().answer_count;
     for (int frame = 0; frame < 100; ++frame) {
         session.solve(session.settings());
+        EXPECT_FALSE(session.solving());
         (void)session.update();
     }
-    EXPECT_EQ(fake.calls, 2);
+    EXPECT_EQ(session.state().answer_count, answers);
 }
 
-TEST(Session, OtherSettingsReplaceWhatRuns)
+TEST_F(SessionTest, AnEngineIsPreparedOncePerModel)
 {
-    Fake fake;
-    Session session(fake.services());
-    session.solve({.quality = 2.0f});
-    session.open(triangle_file(), UpAxis::y);
-    // the endless one runs, the draft is shown
-    ASSERT_TRUE(wait_for(session, [&] { return fake.calls == 2 && session.state().is_draft; }));
-    session.solve({.quality = 0.5f});
-    ASSERT_TRUE(wait_for(session, [&] {
-        const auto& state = session.state();
-        return !state.is_draft && !state.occlusion.empty() && state.occlusion[0].occlusion == 0.25f;
-    }));
-    EXPECT_TRUE(fake.was_cancelled);
+    Session session;
+    session.open(ball(), UpAxis::y);
+    ASSERT_TRUE(wait_for_whole_answer(session));
+    EXPECT_TRUE(session.state().build_s.has_value());
+    SessionSettings settings = of_quality(1.5f);
+    settings.max_distance = {10.0, true};
+    session.solve(settings);
+    ASSERT_TRUE(wait_for_whole_answer(session));
+    EXPECT_FALSE(session.state().build_s.has_value());
+    session.solve(of_quality(kGood, Engine::disks));
+    ASSERT_TRUE(wait_for_whole_answer(session));
+    EXPECT_TRUE(session.state().build_s.has_value());
+    session.open(ball("other.obj"), UpAxis::y);
+    ASSERT_TRUE(wait_for(session, [&] { return session.state().path.filename() == "other.obj"; }));
+    ASSERT_TRUE(wait_for_whole_answer(session));
+    EXPECT_TRUE(session.state().build_s.has_value());
 }
 
-TEST(Session, CancelKeepsTheDraft)
+TEST_F(SessionTest, OtherSettingsReplaceWhatRuns)
 {
-    Fake fake;
-    Session session(fake.services());
-    session.solve({.quality = 2.0f});
-    session.open(triangle_file(), UpAxis::y);
-    ASSERT_TRUE(wait_for(session, [&] { return !session.state().occlusion.empty(); }));
-    session.cancel();
-    ASSERT_TRUE(wait_for(session, [&] { return !session.solving(); }));
-    EXPECT_TRUE(session.state().is_draft);
-    EXPECT_EQ(session.state().occlusion[0].occlusion, 0.0f);
+    Session session;
+    session.solve(of_quality(kSlowQuality));
+    session.open(ball("slow.obj", kSlowCells), UpAxis::y);
+    ASSERT_TRUE(wait_for(session, [&] { return session.state().is_solved; }));
+    ASSERT_TRUE(session.state().is_draft);
+    session.solve(of_quality(0.5f));
+    ASSERT_TRUE(wait_for_whole_answer(session));
+    EngineSettings wanted;
+    wanted.quality = 0.5f;
+    const Model& model = *session.state().model;
+    EXPECT_EQ(first_values(session.occlusion(), model.geometry.positions.size()),
+              vertex_answers(model, wanted));
 }
 
-TEST(Session, WhatWasCancelledCanBeSolvedAgain)
+TEST_F(SessionTest, CancelKeepsTheDraftAndItCanBeSolvedAgain)
 {
-    Fake fake;
-    Session session(fake.services());
-    session.open(triangle_file(), UpAxis::y);
-    session.solve({.quality = 2.0f});
-    ASSERT_TRUE(wait_for(session, [&] { return session.state().is_draft; }));
+    Session session;
+    session.solve(of_quality(kSlowQuality));
+    session.open(ball("slow.obj", kSlowCells), UpAxis::y);
+    ASSERT_TRUE(wait_for(session, [&] { return session.state().is_solved; }));
     EXPECT_FALSE(session.was_cancelled());
     session.cancel();
     EXPECT_TRUE(session.was_cancelled());
     ASSERT_TRUE(wait_for(session, [&] { return !session.solving(); }));
     EXPECT_TRUE(session.was_cancelled());
-    const int before = fake.calls;
+    EXPECT_TRUE(session.state().is_draft);
+    EXPECT_EQ(session.state().answer_count, 1u);
     session.solve_again();
     EXPECT_FALSE(session.was_cancelled());
-    ASSERT_TRUE(wait_for(session, [&] { return fake.calls == before + 2; }));
+    EXPECT_TRUE(wait_for(session, [&] { return session.state().answer_count == 2; }));
+    // and it ends while work is running
 }
 
-TEST(Session, TheReferenceIsTracedAndMeasuredAgainst)
+TEST_F(SessionTest, TheReferenceIsTracedMeasuredAgainstAndThenComesFromTheCache)
 {
-    Fake fake;
-    Session session(fake.services());
-    session.want_reference(16);
-    session.open(triangle_file(), UpAxis::y);
-    ASSERT_TRUE(wait_for(
-        session, [&] { return session.state().error.has_value() && !session.state().is_draft; }));
-    EXPECT_EQ(session.state().reference[0].occlusion, 0.0f);  // a lone triangle is open
-    EXPECT_EQ(session.state().error->bias, 0.5);
-    session.want_reference(0);
-    EXPECT_TRUE(session.state().reference.empty());
-    EXPECT_FALSE(session.state().error.has_value());
+    for (const bool from_cache : {false, true}) {
+        Session session;
+        session.want_reference(16);
+        session.open(ball(), UpAxis::y);
+        ASSERT_TRUE(wait_for(session, [&] {
+            return session.state().error.has_value() && !session.state().is_draft;
+        }));
+        EXPECT_EQ(session.state().reference_s.has_value(), !from_cache);
+        EXPECT_GT(session.state().error->rmse, 0.0);
+        EXPECT_LT(session.state().error->rmse, 0.1);
+        session.want_reference(0);
+        EXPECT_TRUE(session.state().reference.empty());
+        EXPECT_FALSE(session.state().error.has_value());
+    }
 }
 
-TEST(Session, AFileThatCannotBeReadIsToldAndChangesNothing)
+TEST_F(SessionTest, AFileThatCannotBeReadIsToldAndChangesNothing)
 {
-    Fake fake;
-    Session session(fake.services());
-    session.open(triangle_file(), UpAxis::y);
-    ASSERT_TRUE(wait_for(session, [&] { return fake.calls == 2 && !session.solving(); }));
-    (void)session.update();
+    Session session;
+    session.open(ball(), UpAxis::y);
+    ASSERT_TRUE(wait_for_whole_answer(session));
     const auto model = session.state().model;
     session.open("none.obj", UpAxis::y);
     ASSERT_TRUE(wait_for(session, [&] { return !session.state().message.empty(); }));
@@ -167,51 +196,80 @@ TEST(Session, AFileThatCannotBeReadIsToldAndChangesNothing)
     EXPECT_FALSE(session.opening());
 }
 
-TEST(Session, OfTwoFilesOpenedAtOnceTheLastIsShown)
+TEST_F(SessionTest, OfTwoFilesOpenedAtOnceTheLastIsShown)
 {
-    Fake fake;
-    Session session(fake.services());
-    const std::filesystem::path first = triangle_file();
-    const std::filesystem::path second = std::filesystem::path(first).replace_extension(".2.obj");
-    std::filesystem::copy_file(first, second, std::filesystem::copy_options::overwrite_existing);
-    session.open(first, UpAxis::y);
-    session.open(second, UpAxis::y);
-    ASSERT_TRUE(wait_for(session,
-                         [&] { return !session.state().occlusion.empty() && !session.solving(); }));
-    EXPECT_EQ(session.state().path, second);
+    Session session;
+    session.open(ball("first.obj"), UpAxis::y);
+    session.open(ball("second.obj"), UpAxis::y);
+    ASSERT_TRUE(wait_for_whole_answer(session));
+    EXPECT_EQ(session.state().path.filename(), "second.obj");
 }
 
-TEST(Session, AnEnginesFailureIsTold)
+TEST_F(SessionTest, AnEnginesFailureIsTold)
 {
-    Fake fake;
-    Services services = fake.services();
-    services.solve = [](const Model&, const SessionSettings&, const Progress&) -> Solved {
-        throw std::runtime_error("the device is gone");
-    };
-    Session session(std::move(services));
-    session.open(triangle_file(), UpAxis::y);
-    EXPECT_TRUE(wait_for(session, [&] { return session.state().message == "the device is gone"; }));
+    Session session;
+    session.solve(of_quality(kSlowQuality, Engine::disks));
+    session.open(ball(), UpAxis::y);
+    EXPECT_TRUE(wait_for(session, [&] {
+        return session.state().message.find("quality of disks must be") != std::string::npos;
+    })) << session.state().message;
 }
 
-TEST(Session, EndsWhileWorkIsRunning)
+// Without a device that was lent answers come back from one of the session's own.
+TEST_F(SessionTest, SolvesOnTheGpuToo)
 {
-    Fake fake;
-    {
-        Session session(fake.services());
-        session.solve({.quality = 2.0f});
-        session.open(triangle_file(), UpAxis::y);
-        ASSERT_TRUE(wait_for(session, [&] { return fake.calls == 2; }));
+    Session session;
+    session.solve(of_quality(kGood, Engine::disks));
+    session.open(ball(), UpAxis::y);
+    ASSERT_TRUE(wait_for_whole_answer(session));
+    const std::vector<Occlusion> by_cpu = session.occlusion();
+    SessionSettings settings = session.settings();
+    settings.engine.device = Device::gpu;
+    session.solve(settings);
+    ASSERT_TRUE(wait_for_whole_answer(session)) << session.state().message;
+    EXPECT_FALSE(session.state().on_device);
+    ASSERT_EQ(session.occlusion().size(), by_cpu.size());
+    double sum = 0.0;
+    for (std::size_t i = 0; i < by_cpu.size(); ++i)
+        sum += std::abs(session.occlusion()[i].occlusion - by_cpu[i].occlusion);
+    EXPECT_LT(sum / static_cast<double>(by_cpu.size()), 1e-4);
+    EXPECT_GT(sum, 0.0);  // no CPU has answered
+}
+
+// The ground's receivers lie among the vertices': solved in one call they would share groups.
+TEST_F(SessionTest, SavesTheBytesThatBakeWrites)
+{
+    const std::filesystem::path input = ball("ball.obj", 12);
+    for (const Engine engine : {Engine::masks, Engine::disks}) {
+        for (const float quality : {kDraft, kGood}) {
+            SessionSettings settings = of_quality(quality, engine);
+            settings.max_distance = {40.0, true, Falloff::smooth};
+            Session session;
+            session.solve(settings);
+            session.open(input, UpAxis::y);
+            ASSERT_TRUE(wait_for_whole_answer(session));
+            session.save(folder_ / "saved.ply");
+            (void)bake({.input = input,
+                        .output = folder_ / "baked.ply",
+                        .engine = settings.engine,
+                        .max_distance = settings.max_distance});
+            EXPECT_EQ(contents_of(folder_ / "saved.ply"), contents_of(folder_ / "baked.ply"))
+                << name_of(engine) << ", " << quality;
+        }
     }
-    EXPECT_TRUE(fake.was_cancelled);
 }
 
-TEST(DefinitionOf, ADistanceOfZeroIsNoLimit)
+TEST(SolveModel, WithoutTheGroundTheVerticesAreTheSameAndTheGroundIsOpen)
 {
-    EXPECT_TRUE(std::isinf(definition_of(SessionSettings{}).max_distance));
-    const Definition limited =
-        definition_of(SessionSettings{.max_distance_percent = 10.0f, .smooth_falloff = true});
-    EXPECT_FLOAT_EQ(limited.max_distance, 0.1f);
-    EXPECT_EQ(limited.falloff, Falloff::smooth);
+    const Model model = make_model(make_geometry(scenes::bumpy_sphere(6)), UpAxis::z, 1e-4f);
+    const Prepared prepared = prepare(model.geometry);
+    const std::size_t vertices = model.geometry.positions.size();
+    const std::vector<Occlusion> with = solve_model(prepared, model, {}).occlusion;
+    const std::vector<Occlusion> without = solve_model(prepared, model, {}, false).occlusion;
+    ASSERT_EQ(without.size(), model.receivers.size());
+    EXPECT_EQ(first_values(without, vertices), first_values(with, vertices));
+    EXPECT_GT(with[vertices + kGroundCells * kGroundCells / 2].occlusion, 0.0f);
+    EXPECT_EQ(without[vertices + kGroundCells * kGroundCells / 2].occlusion, 0.0f);
 }
 
 }  // namespace

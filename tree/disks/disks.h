@@ -84,7 +84,7 @@ inline constexpr float kDamping = 0.7f;
 [[nodiscard]] float correction_opening(float opening);
 inline constexpr float kCoarser = 3.2f;
 
-/// Aborts where an option is out of its range.
+/// Throws SettingsError where an option is out of its range; solve_disks does too.
 void check_disk_options(const DiskOptions& options);
 
 /// The surfels' far sides as receivers, one per surfel: what the correcting passes ask.

@@ -1,0 +1,71 @@
+#include "viewer/output_files.h"
+
+#include "temporary_folder.h"
+#include "viewer/panel.h"
+
+#include <gtest/gtest.h>
+
+namespace surfelao {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(OutputFiles, AnInputIsKnownUnderEveryNameAndWhateverElseHappensToIt)
+{
+    const TemporaryFolder folder;
+    const fs::path input = folder.file("input.ply", "x");
+    fs::create_symlink("input.ply", folder / "link.ply");
+    fs::create_hard_link(input, folder / "twin.ply");
+    OutputFiles files;
+    files.add_input(input);
+    for (const char* name : {"input.ply", "link.ply", "twin.ply", "./input.ply"})
+        EXPECT_EQ(files.standing_of(folder / name), Standing::input) << name;
+    files.add_written(input);
+    EXPECT_EQ(files.standing_of(input), Standing::input);
+    EXPECT_EQ(files.standing_of(folder.file("other.ply", "x")), Standing::foreign);
+    EXPECT_EQ(files.standing_of(folder / "none.ply"), Standing::nothing);
+    EXPECT_EQ(files.standing_of(""), Standing::nothing);
+}
+
+TEST(OutputFiles, WhatWasWrittenMayBeReplacedAndIsListedOnce)
+{
+    const TemporaryFolder folder;
+    OutputFiles files;
+    const fs::path first = folder.file("first.ply", "x"), second = folder.file("second.ply", "x");
+    files.add_written(first);
+    files.add_written(second);
+    files.add_written(folder / "./first.ply");
+    EXPECT_EQ(files.standing_of(first), Standing::written);
+    EXPECT_EQ(files.written(), (std::vector<fs::path>{first, second}));
+}
+
+TEST(NextFreeName, IsTheFirstUnderWhichNothingStandsNotEvenALinkToNothing)
+{
+    const TemporaryFolder folder;
+    EXPECT_EQ(next_free_name(folder / "a.b.ply"), folder / "a.b-2.ply");
+    folder.file("a.b-2.ply", "x");
+    fs::create_symlink("nothing", folder / "a.b-3.ply");
+    EXPECT_EQ(next_free_name(folder / "a.b.ply"), folder / "a.b-4.ply");
+    EXPECT_EQ(next_free_name("name"), "name-2");
+}
+
+TEST(ChooseEngine, EachEngineKeepsItsQuality)
+{
+    PanelState state;
+    EngineSettings& settings = state.settings.engine;
+    settings.quality = 3.0f;
+    choose_engine(state, Engine::rays, Device::cpu);
+    choose_engine(state, Engine::disks, Device::gpu);
+    EXPECT_EQ(settings.quality, kGood);
+    settings.quality = 0.5f;
+    choose_engine(state, Engine::masks, Device::gpu);
+    EXPECT_EQ(settings.quality, 3.0f);
+    choose_engine(state, Engine::masks, Device::cpu);
+    EXPECT_EQ(settings.quality, 3.0f);
+    EXPECT_EQ(settings.device, Device::cpu);
+    choose_engine(state, Engine::disks, Device::cpu);
+    EXPECT_EQ(settings.quality, 0.5f);
+}
+
+}  // namespace
+}  // namespace surfelao

@@ -1,0 +1,57 @@
+#include "viewer/output_files.h"
+
+#include <algorithm>
+#include <string>
+#include <system_error>
+
+namespace surfelao {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool holds(const std::vector<fs::path>& files, const fs::path& path)
+{
+    return std::any_of(files.begin(), files.end(), [&](const fs::path& file) {
+        std::error_code error;
+        return fs::equivalent(file, path, error);
+    });
+}
+
+}  // namespace
+
+void OutputFiles::add_input(const fs::path& path)
+{
+    inputs_.push_back(path);
+}
+
+void OutputFiles::add_written(const fs::path& path)
+{
+    if (!holds(written_, path))
+        written_.push_back(path);
+}
+
+Standing OutputFiles::standing_of(const fs::path& path) const
+{
+    std::error_code error;
+    if (!fs::exists(path, error))
+        return Standing::nothing;
+    if (holds(inputs_, path))
+        return Standing::input;
+    return holds(written_, path) ? Standing::written : Standing::foreign;
+}
+
+fs::path next_free_name(const fs::path& path)
+{
+    for (int number = 2;; ++number) {
+        fs::path name = path.stem();
+        name += '-';
+        name += std::to_string(number);
+        name += path.extension();
+        const fs::path candidate = path.parent_path() / name;
+        std::error_code error;
+        if (!fs::exists(fs::symlink_status(candidate, error)))
+            return candidate;
+    }
+}
+
+}  // namespace surfelao
