@@ -221,7 +221,7 @@ std::vector<CurvePoint> embree_curve(const Comparison& comparison, bool with_bui
 
 Comparison compare(const CompareSettings& settings, const StageProgress& progress)
 {
-    SURFELAO_CHECK(settings.rounds >= 1);
+    require(settings.rounds >= 1, "rounds must be at least 1");
     const auto stage = [&](std::string name) -> Progress {
         if (!progress)
             return {};
@@ -253,12 +253,11 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     std::vector<Times> times(rows.size());
     std::optional<GlContext> context;  // one for all, so that shaders are compiled once
     const auto run = [&](std::size_t i) {
-        const Progress running =
-            stage(name_of(rows[i].settings.engine) + " " + setting_of(rows[i]));
         EngineChoice choice = rows[i].settings;
         if (choice.device == Device::gpu && choice.context == nullptr)
             choice.context = context ? &*context : &context.emplace(GlContext::create());
-        run_round(comparison, question, choice, rows[i], times[i], running);
+        run_round(comparison, question, choice, rows[i], times[i],
+                  stage(name_of(rows[i].settings.engine) + " " + setting_of(rows[i])));
     };
     for (int round = 0; round < settings.rounds; ++round) {
         for (std::size_t i = 0; i < rows.size(); ++i)
