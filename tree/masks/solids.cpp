@@ -49,12 +49,9 @@ std::vector<std::uint8_t> small_solids(const Geometry& geometry)
 
     // the triangles of small bodies side by side
     std::vector<std::uint32_t> members;
-    std::vector<std::uint8_t> large(count, 0);
     for (std::uint32_t t = 0; t < count; ++t) {
         if (size[body[t]] <= kMaskMostOfSolid)
             members.push_back(t);
-        else
-            large[t] = 1;
     }
     std::vector<std::uint8_t> solid(count, 0);
     if (members.empty())
@@ -64,6 +61,9 @@ std::vector<std::uint8_t> small_solids(const Geometry& geometry)
 
     // closed: every edge in both directions equally often
     std::vector<std::uint8_t> open(geometry.positions.size(), 0);
+    std::vector<std::uint8_t> large(count, 1);
+    for (const std::uint32_t t : members)
+        large[t] = 0;
     Edges(geometry, large).for_each([&](std::uint32_t, std::span<const EdgeSide> sides) {
         const auto rising = std::ranges::count_if(sides, &EdgeSide::rises);
         if (2 * static_cast<std::size_t>(rising) != sides.size())
