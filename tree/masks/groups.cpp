@@ -16,6 +16,9 @@
 namespace surfelao {
 namespace {
 
+constexpr std::size_t kParallelGroup = 2048;  ///< smaller groups are built by one thread
+constexpr std::size_t kSample = 63;           ///< keys among which a pivot is chosen at most
+
 /// Where a receiver stands, in the mask frame.
 struct alignas(16) Key {
     std::array<float, 3> at;
@@ -29,8 +32,8 @@ void select(std::span<Key> keys, std::size_t rank, std::size_t axis, std::span<K
 {
     while (rank > 0 && rank < keys.size()) {
         // the place that has the rank in a sample
-        std::array<float, kMaskPivotSample> sample;
-        const std::size_t count = std::clamp(keys.size() / 8, std::size_t{1}, kMaskPivotSample);
+        std::array<float, kSample> sample;
+        const std::size_t count = std::clamp(keys.size() / 8, std::size_t{1}, kSample);
         for (std::size_t i = 0; i < count; ++i)
             sample[i] = keys[(2 * i + 1) * keys.size() / (2 * count)].at[axis];
         const auto middle =
@@ -138,7 +141,7 @@ private:
             const auto right = [&] {
                 right_sums = build_group(first + 1, right_first, middle, end);
             };
-            if (end - begin > kMaskParallelGroup) {
+            if (end - begin > kParallelGroup) {
                 tbb::parallel_invoke(left, right);
             } else {
                 left();
