@@ -6,17 +6,14 @@
 /// picked by the linker for all.
 ///
 /// Words, one meaning each, here and in shaders/masks_*:
-///   mask       a bit per direction around a receiver, or around a group for what its receivers
-///   share lane       one of the values of a vector: Float4 (tree/lanes.h), Float16
-///   (tree/masks/simd.h) exact      a node whose triangles tile the quadrilateral that it shows:
-///   leaves, whole rectangles cluster    a node that is drawn in place of its triangles though it
-///   is not exact sheet      a cluster so flat and without gaps that its neighbours likely continue
-///   it: its rim is
-///              not where the surface ends (kMaskSheet)
-///   shared, listed, handed, opened   what becomes of a node: drawn for the group, drawn for each
-///   of
-///              its receivers, left to the groups below, replaced by its children
-///   crack      a clear bit between set ones of which a sheet set one
+/// - mask: a bit per direction around a receiver, or around a group for what its receivers share;
+/// - lane: one of the values of a vector, Float4 (tree/lanes.h) or Float16 (tree/masks/simd.h);
+/// - exact: a node whose triangles tile the quadrilateral that it shows: leaves, whole rectangles;
+/// - cluster: a node that is drawn in place of its triangles though it is not exact;
+/// - sheet: a cluster that its neighbours likely continue (kMaskSheet): no surface ends at its rim;
+/// - shared, listed, handed, opened: what becomes of a node: drawn for the group, drawn for each of
+///   its receivers, left to the groups below, replaced by its children;
+/// - crack: a clear bit between set ones of which a sheet set one.
 #pragma once
 
 #include "tree/masks/constants.h"
