@@ -287,6 +287,38 @@ Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
     return solution;
 }
 
+std::vector<Solution> solve_lists(const Prepared& prepared,
+                                  std::span<const std::span<const Receiver>> lists,
+                                  const SolveSettings& settings, const Progress& progress)
+{
+    const Prepared::Impl& impl = prepared.impl();
+    check_settings(impl.choice, settings);
+    Stopwatch watch;
+    std::vector<Solution> solutions;
+    if (impl.disks && impl.choice.device == Device::cpu && !lists.empty()) {
+        for (DiskResult& solved :
+             solve_disk_lists(*impl.disks, lists, disk_options(settings), progress))
+            solutions.push_back({std::move(solved.occlusion), 0.0, residual_of(solved.residuals)});
+    } else {
+        double count = 0.0, done = 0.0;  // receivers
+        for (const std::span<const Receiver> receivers : lists)
+            count += static_cast<double>(receivers.size());
+        for (const std::span<const Receiver> receivers : lists) {
+            const double size = static_cast<double>(receivers.size());
+            const auto part = [&, done](double share) {
+                return progress((done + size * share) / std::max(1.0, count));
+            };
+            solutions.push_back(
+                solve(prepared, receivers, settings, progress ? Progress(part) : Progress()));
+            solutions.back().seconds = 0.0;
+            done += size;
+        }
+    }
+    if (!solutions.empty())
+        solutions.front().seconds = watch.lap();
+    return solutions;
+}
+
 void check_settings(const EngineChoice& choice, const SolveSettings& settings)
 {
     check_definition(settings.definition);

@@ -1,7 +1,7 @@
 /// solve_model.h: the answers that a picture of a model needs.
 ///
 /// The vertices are solved alone, so that equal settings give them the very bytes that bake() gives
-/// them: engines share work among the receivers of one call. The ground is a call of its own.
+/// them: engines share work among the receivers of one list. The ground is a list of its own.
 #pragma once
 
 #include "engines/device_solution.h"
@@ -13,8 +13,8 @@
 
 namespace surfelao {
 
-/// One answer per receiver of the model; a ground that is not wanted is open. Seconds are of both
-/// calls, the residual is the vertices'. prepared: of this model's geometry. Throws as solve().
+/// One answer per receiver of the model; a ground that is not wanted is open. prepared: of this
+/// model's geometry. Throws as solve().
 [[nodiscard]] Solution solve_model(const Prepared& prepared, const Model& model,
                                    const SolveSettings& settings, bool with_ground = true,
                                    const Progress& progress = {});
@@ -23,7 +23,7 @@ namespace surfelao {
 struct ModelOnDevice {
     std::shared_ptr<const DeviceSolution> vertices;
     std::vector<Occlusion> ground;  ///< few: they have come back
-    double seconds = 0.0;           ///< of both calls
+    double seconds = 0.0;           ///< of both lists
 };
 
 /// The same answers. Throws as solve_on_device().

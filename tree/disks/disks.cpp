@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -148,6 +149,13 @@ std::vector<Receiver> far_sides(const Octree& octree, float offset, float side)
 DiskResult solve_disks(const Octree& octree, std::span<const Receiver> receivers,
                        const DiskOptions& options, const Progress& progress)
 {
+    return std::move(solve_disk_lists(octree, {&receivers, 1}, options, progress).front());
+}
+
+std::vector<DiskResult> solve_disk_lists(const Octree& octree,
+                                         std::span<const std::span<const Receiver>> lists,
+                                         const DiskOptions& options, const Progress& progress)
+{
     check_disk_options(options);
     const Definition& definition = options.definition;
 
@@ -165,8 +173,10 @@ DiskResult solve_disks(const Octree& octree, std::span<const Receiver> receivers
         sides.emplace_back(octree, definition.offset, 1.0f);
     if (options.passes > 1 && two_sided)
         sides.emplace_back(octree, definition.offset, -1.0f);
-    const ReceiverGroups groups = group_receivers(receivers);
-    std::uint64_t work = groups.leaves.size();
+    std::vector<ReceiverGroups> groups;
+    std::uint64_t work = 0;
+    for (const std::span<const Receiver> receivers : lists)
+        work += groups.emplace_back(group_receivers(receivers)).leaves.size();
     for (const FarSide& side : sides)
         work += side.groups.leaves.size() * (options.passes - 1);
     ProgressMeter meter(progress, work);
@@ -179,7 +189,7 @@ DiskResult solve_disks(const Octree& octree, std::span<const Receiver> receivers
         visibility.surfel_back = visibility.surfel_front;
     }
 
-    DiskResult result;
+    std::vector<double> residuals;
     for (int pass = 1; pass < options.passes; ++pass) {
         for (FarSide& side : sides)
             gather_all(octree, visibility, side.groups, beyond, side.sums, meter);
@@ -193,17 +203,23 @@ DiskResult solve_disks(const Octree& octree, std::span<const Receiver> receivers
             average_over_nodes(octree, visibility.surfel_back, visibility.surfel_front,
                                visibility.node_back);
         const double count = static_cast<double>(sides.size() * octree.surfels.size());
-        result.residuals.push_back(count > 0.0 ? std::sqrt(change / count) : 0.0);
-        if (result.residuals.back() <= kSettled)
+        residuals.push_back(count > 0.0 ? std::sqrt(change / count) : 0.0);
+        if (residuals.back() <= kSettled)
             break;
     }
 
-    std::vector<DiskSum> sums(receivers.size());
-    gather_all(octree, visibility, groups, settings, sums, meter);
-    result.occlusion.resize(receivers.size());
-    for (std::size_t i = 0; i < receivers.size(); ++i)
-        result.occlusion[i] = to_occlusion(sums[i], receivers[i].normal, options.strength);
-    return result;
+    std::vector<DiskResult> results;
+    for (std::size_t list = 0; list < lists.size(); ++list) {
+        const std::span<const Receiver> receivers = lists[list];
+        std::vector<DiskSum> sums(receivers.size());
+        gather_all(octree, visibility, groups[list], settings, sums, meter);
+        DiskResult& result = results.emplace_back();
+        result.residuals = residuals;
+        result.occlusion.resize(receivers.size());
+        for (std::size_t i = 0; i < receivers.size(); ++i)
+            result.occlusion[i] = to_occlusion(sums[i], receivers[i].normal, options.strength);
+    }
+    return results;
 }
 
 }  // namespace surfelao
