@@ -71,6 +71,7 @@ const float kTinyLength = 1e-8;
 const float kLimitPenalty = 4.0;
 const float kNearDisk   = 1.0 / 9.0;
 
+// long: one walk, whose state are locals that functions would have to hand to and fro
 void main()
 {
     out_sum = vec4(0.0);

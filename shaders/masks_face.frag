@@ -95,6 +95,7 @@ uint grown_across(uint rows[18], int y)
     return rows[y + 1] | low | beside(low, y - 1, y) | high | beside(high, y + 1, y);
 }
 
+// long: one row after the other, with the same dozen sums at hand
 void main()
 {
     out_share = out_bent = out_bent_filled = out_bent_closed = vec4(0.0);

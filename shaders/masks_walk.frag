@@ -71,6 +71,7 @@ vec3 normal_of(vec3 axis_a, vec3 axis_b)
     return n * inversesqrt(max(dot(n, n), kMaskTiny));
 }
 
+// long: one walk, whose state are locals that functions would have to hand to and fro
 void main()
 {
     out_words0 = out_words1 = out_sheets0 = out_sheets1 = uvec4(0u);

@@ -22,7 +22,7 @@ std::string without_comments(std::string_view text)
     return std::regex_replace(std::string(text), std::regex("//[^\n]*"), "");
 }
 
-std::string text_of(std::string_view name)
+std::string source_of(std::string_view name)
 {
     const auto found = std::ranges::find(shader_files(), name, &ShaderFile::name);
     EXPECT_NE(found, shader_files().end()) << "no shader file " << name;
@@ -36,7 +36,7 @@ const std::vector<std::string> kMaskShaders = {"mask_raster.glsl", "masks_face.f
 TEST(MaskConstants, TheShadersNumbersAreThoseOfTheTable)
 {
     static const std::regex row("const (float|int|uint) (\\w+) = ([^;]+);");
-    const std::string text = text_of("mask_constants.glsl");
+    const std::string text = source_of("mask_constants.glsl");
     std::map<std::string, double> shown;
     for (std::sregex_iterator it(text.begin(), text.end(), row), end; it != end; ++it) {
         const std::string value = (*it)[3];
@@ -65,7 +65,7 @@ TEST(MaskConstants, NoShaderHoldsNumbersOfItsOwn)
     static const std::regex number("[^\\w.]((\\d+\\.\\d*|\\.\\d+)(e[-+]?\\d+)?|\\d+e[-+]?\\d+)");
     static const std::regex rows("const vec4 kRow\\w+\\[4\\] = vec4\\[4\\]\\([^;]*;");
     for (const std::string& name : kMaskShaders) {
-        const std::string text = std::regex_replace(text_of(name), rows, "");
+        const std::string text = std::regex_replace(source_of(name), rows, "");
         std::set<std::string> numbers;
         for (std::sregex_iterator it(text.begin(), text.end(), number), end; it != end; ++it)
             numbers.insert((*it)[1]);
@@ -78,7 +78,7 @@ TEST(MaskConstants, NoShaderHoldsNumbersOfItsOwn)
 
 TEST(MaskConstants, TheShadersRowsAreThoseOfTheRaster)
 {
-    const std::string text = text_of("mask_raster.glsl");
+    const std::string text = source_of("mask_raster.glsl");
     const auto row_values = [&](const std::string& name) {
         std::vector<float> values;
         const std::size_t begin = text.find("const vec4 " + name + "[4] = vec4[4](");
