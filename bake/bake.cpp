@@ -1,16 +1,19 @@
 #include "bake/bake.h"
 
-#include "bake/json.h"
 #include "bake/peak_memory.h"
 #include "engines/threads.h"
+#include "files/file_type.h"
+#include "files/maker_mark.h"
 #include "files/scene_io.h"
+#include "files/sidecars.h"
 #include "surfels/errors.h"
-#include "surfels/extension.h"
+#include "surfels/number_text.h"
 #include "surfels/stopwatch.h"
 
 #include <glm/vec3.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace surfelao {
 namespace {
@@ -35,38 +38,6 @@ double mean_occlusion_of(std::span<const Receiver> receivers, std::span<const Oc
         }
     }
     return count > 0 ? sum / static_cast<double>(count) : 0.0;
-}
-
-Json json_of(const BatchEntry& entry)
-{
-    Json json;
-    json["input"] = entry.input.string();
-    json["output"] = entry.output.string();
-    if (!entry.report) {
-        if (entry.error.empty())
-            json["skipped"] = true;
-        else
-            json["error"] = entry.error;
-        return json;
-    }
-    const BakeReport& report = *entry.report;
-    const BakeSeconds& seconds = report.seconds;
-    json["vertices"] = report.vertices;
-    json["triangles"] = report.triangles;
-    json["dropped_triangles"] = report.dropped_triangles;
-    json["vertices_without_normal"] = report.vertices_without_normal;
-    json["surfels"] = report.surfels;
-    json["engine"] = name_of(report.settings.engine.engine);
-    json["settings"] = json_of(report.settings.engine);
-    json["settings"]["threads"] = report.threads;
-    json["settings"]["colors"] = report.settings.colors;
-    json["seconds"] = {{"read", seconds.read},   {"surfels", seconds.surfels},
-                       {"tree", seconds.tree},   {"solve", seconds.solve},
-                       {"write", seconds.write}, {"total", seconds.total}};
-    json["peak_rss_bytes"] = report.peak_rss_bytes;
-    json["residual"] = report.residual ? Json(*report.residual) : Json();
-    json["mean_occlusion"] = report.mean_occlusion;
-    return json;
 }
 
 }  // namespace
@@ -95,7 +66,8 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
 
     enter(progress, "write");
     stage.lap();
-    write_scene(settings.output, scene, solution.occlusion, {.colors = settings.colors});
+    write_scene(settings.output, scene, solution.occlusion,
+                {.colors = settings.colors, .mark = mark_of(settings)});
     report.seconds.write = stage.lap();
 
     report.vertices = scene.positions.size();
@@ -114,30 +86,57 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     return report;
 }
 
-std::string json_of(std::span<const BatchEntry> batch)
-{
-    Json list = Json::array();
-    for (const BatchEntry& entry : batch)
-        list.push_back(json_of(entry));
-    return (batch.size() == 1 ? list.front() : list).dump(2) + '\n';
-}
-
 fs::path output_in_folder(const fs::path& input, const fs::path& folder)
 {
     fs::path name = input.filename();
-    if (lower_extension(input) == ".stl")
+    if (type_of(input) == FileType::stl)
         name.replace_extension(".ply");
     return folder / name;
 }
 
-bool is_finished(const fs::path& input, const fs::path& output)
+std::string mark_of(const BakeSettings& settings)
+{
+    const EngineSettings& engine = settings.engine;
+    const DistanceLimit& limit = settings.max_distance;
+    std::string text = "engine=" + name_of(engine.engine) +
+                       " device=" + (engine.device == Device::gpu ? "gpu" : "cpu");
+    const auto add = [&](const char* name, auto value) { append_shortest(text += name, value); };
+    if (engine.engine == Engine::rays)
+        text += " rays=" + std::to_string(engine.rays);
+    else
+        add(" quality=", engine.quality);
+    if (engine.engine == Engine::disks) {
+        text += " passes=" + std::to_string(engine.passes);
+        add(" strength=", engine.strength);
+    }
+    if (engine.instructions == Instructions::avx2)
+        text += " instructions=avx2";
+    text += settings.kernel == Kernel::cosine ? " kernel=cosine" : " kernel=bunnell";
+    if (std::isfinite(limit.value))
+        add(" max_distance=", limit.value);
+    else
+        text += " max_distance=none";
+    text += std::isfinite(limit.value) && limit.percent ? "%" : "";
+    text += limit.falloff == Falloff::smooth ? " falloff=smooth" : " falloff=none";
+    text += settings.colors ? " colors=yes" : " colors=no";
+    return make_mark("bake", text);
+}
+
+bool is_finished(const BakeSettings& settings)
 {
     std::error_code error;
-    const fs::file_time_type made = fs::last_write_time(output, error);
-    if (error)
+    const fs::file_time_type made = fs::last_write_time(settings.output, error);
+    if (error || read_mark(settings.output) != mark_of(settings))
         return false;
-    const fs::file_time_type changed = fs::last_write_time(input, error);
-    return !error && made >= changed;
+    std::vector<fs::path> sources;
+    if (type_of(settings.input) == FileType::gltf)
+        sources = sidecars_of(settings.input);
+    sources.push_back(settings.input);
+    return std::ranges::all_of(sources, [&](const fs::path& source) {
+        std::error_code missing;
+        const fs::file_time_type changed = fs::last_write_time(source, missing);
+        return !missing && made >= changed;
+    });
 }
 
 }  // namespace surfelao

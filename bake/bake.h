@@ -73,8 +73,15 @@ struct BatchEntry {
 [[nodiscard]] std::filesystem::path output_in_folder(const std::filesystem::path& input,
                                                      const std::filesystem::path& folder);
 
-/// Whether the output exists and is not older than its input. Outputs are complete when they exist.
-[[nodiscard]] bool is_finished(const std::filesystem::path& input,
-                               const std::filesystem::path& output);
+/// The mark of the result (files/maker_mark.h): all settings on which its bytes depend, as they
+/// were asked for; neither the input nor threads. Of what only another engine has, nothing.
+///
+///     surfelao 0.1.0 bake: engine=masks device=cpu quality=1 kernel=cosine max_distance=none
+///     falloff=none colors=no
+[[nodiscard]] std::string mark_of(const BakeSettings& settings);
+
+/// Whether the output exists with the mark that a bake would give it now and is not older than its
+/// input and the files that a .gltf refers to. Outputs are complete when they exist.
+[[nodiscard]] bool is_finished(const BakeSettings& settings);
 
 }  // namespace surfelao

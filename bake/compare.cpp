@@ -111,6 +111,61 @@ CompareRow row_of_rays(const Definition& definition, std::uint32_t rays, bool sm
     return row;
 }
 
+/// Candidates, then the opponent, then smoothed rays.
+std::vector<CompareRow> rows_of(const CompareSettings& settings, const Definition& definition)
+{
+    std::vector<CompareRow> rows;
+    for (const EngineSettings& candidate : settings.candidates) {
+        rows.emplace_back().settings = candidate;
+        rows.back().settings.definition = definition;
+    }
+    for (const std::uint32_t rays : settings.rays)
+        rows.push_back(row_of_rays(definition, rays, false));
+    for (const std::uint32_t rays : settings.smoothed_rays)
+        rows.push_back(row_of_rays(definition, rays, true));
+    for (CompareRow& row : rows)
+        row.settings.instructions = settings.instructions;
+    return rows;
+}
+
+/// Seconds of one row, one of each round.
+struct Times {
+    std::vector<double> builds, solves;
+};
+
+/// One round of one row; its first answer is judged.
+void run_round(const Comparison& comparison, const Question& question, const EngineChoice& choice,
+               CompareRow& row, Times& times, const Progress& progress)
+{
+    Times repeats;
+    double spent = 0.0;
+    do {
+        const Prepared prepared = prepare(comparison.geometry, choice);
+        Solution solution = solve(prepared, question.receivers, row.settings, progress);
+        if (row.smoothed) {
+            Stopwatch smoothing;
+            solution.occlusion = smooth_occlusion(comparison.geometry, solution.occlusion);
+            solution.seconds += smoothing.lap();
+        }
+        repeats.builds.push_back(prepared.seconds().surfels + prepared.seconds().tree);
+        repeats.solves.push_back(solution.seconds);
+        spent += repeats.builds.back() + repeats.solves.back();
+        if (row.worst.empty())
+            judge(question, comparison.scene, solution.occlusion, row);
+    } while (spent < kLeastRound && repeats.solves.size() < kMostRepeats);
+    times.builds.push_back(quantile(repeats.builds, 0.5));
+    times.solves.push_back(quantile(repeats.solves, 0.5));
+}
+
+void set_times(CompareRow& row, const Times& times, std::size_t receiver_count)
+{
+    row.rounds = static_cast<int>(times.solves.size());
+    row.build_s = quantile(times.builds, 0.5);
+    row.solve_s = quantile(times.solves, 0.5);
+    row.us_per_vertex =
+        row.solve_s * 1e6 / static_cast<double>(std::max<std::size_t>(1, receiver_count));
+}
+
 /// Whether a candidate is beyond the most exact row of the opponent.
 bool wants_more_rays(const std::vector<CompareRow>& rows)
 {
@@ -192,48 +247,18 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
         definition_of(settings.max_distance, settings.kernel, comparison.geometry.frame);
     const Question question = ask(settings, definition, comparison, stage("reference"));
 
-    // who answers
-    std::vector<CompareRow>& rows = comparison.rows;
-    for (const EngineSettings& candidate : settings.candidates) {
-        rows.emplace_back().settings = candidate;
-        rows.back().settings.definition = definition;
-    }
-    for (const std::uint32_t rays : settings.rays)
-        rows.push_back(row_of_rays(definition, rays, false));
-    for (const std::uint32_t rays : settings.smoothed_rays)
-        rows.push_back(row_of_rays(definition, rays, true));
-
-    for (CompareRow& row : rows)
-        row.settings.instructions = settings.instructions;
-
     // rounds: one after the other, so that whatever slows the machine slows all alike
-    std::vector<std::vector<double>> builds(rows.size()), solves(rows.size());
+    std::vector<CompareRow>& rows = comparison.rows;
+    rows = rows_of(settings, definition);
+    std::vector<Times> times(rows.size());
     std::optional<GlContext> context;  // one for all, so that shaders are compiled once
     const auto run = [&](std::size_t i) {
-        CompareRow& row = rows[i];
-        const Progress running = stage(name_of(row.settings.engine) + " " + setting_of(row));
-        EngineChoice choice = row.settings;
+        const Progress running =
+            stage(name_of(rows[i].settings.engine) + " " + setting_of(rows[i]));
+        EngineChoice choice = rows[i].settings;
         if (choice.device == Device::gpu && choice.context == nullptr)
             choice.context = context ? &*context : &context.emplace(GlContext::create());
-        std::vector<double> build, solve;
-        double spent = 0.0;
-        do {
-            const Prepared prepared = prepare(comparison.geometry, choice);
-            Solution solution =
-                surfelao::solve(prepared, question.receivers, row.settings, running);
-            if (row.smoothed) {
-                Stopwatch smoothing;
-                solution.occlusion = smooth_occlusion(comparison.geometry, solution.occlusion);
-                solution.seconds += smoothing.lap();
-            }
-            build.push_back(prepared.seconds().surfels + prepared.seconds().tree);
-            solve.push_back(solution.seconds);
-            spent += build.back() + solve.back();
-            if (row.worst.empty())
-                judge(question, comparison.scene, solution.occlusion, row);
-        } while (spent < kLeastRound && solve.size() < kMostRepeats);
-        builds[i].push_back(quantile(build, 0.5));
-        solves[i].push_back(quantile(solve, 0.5));
+        run_round(comparison, question, choice, rows[i], times[i], running);
     };
     for (int round = 0; round < settings.rounds; ++round) {
         for (std::size_t i = 0; i < rows.size(); ++i)
@@ -244,19 +269,12 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
         const std::uint32_t most = *std::max_element(settings.rays.begin(), settings.rays.end());
         rows.push_back(row_of_rays(definition, 4 * most, false));
         rows.back().settings.instructions = settings.instructions;
-        builds.emplace_back();
-        solves.emplace_back();
+        times.emplace_back();
         run(rows.size() - 1);
     }
 
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        rows[i].rounds = static_cast<int>(solves[i].size());
-        rows[i].build_s = quantile(builds[i], 0.5);
-        rows[i].solve_s = quantile(solves[i], 0.5);
-        rows[i].us_per_vertex =
-            rows[i].solve_s * 1e6 /
-            static_cast<double>(std::max<std::size_t>(1, question.receivers.size()));
-    }
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        set_times(rows[i], times[i], question.receivers.size());
     for (CompareRow& row : rows) {
         if (!is_opponent(row)) {
             row.solve_ratio = ratio_at(comparison, row, false);

@@ -114,11 +114,10 @@ struct Comparison {
 /// The aligned table for people.
 [[nodiscard]] std::string table_of(const Comparison& comparison);
 
-/// The scene as binary PLY with the row's error as colour (white = right, red = too dark, blue =
-/// too bright, full colour at kFullColorError, grey = not judged) and as property `error`.
+/// The scene as binary PLY (coordinates as double) with the row's error as colour (error_color of
+/// image/color_map.h, full at kFullColorError; not judged = NaN) and as property `error`; marked as
+/// a result of `compare` (files/maker_mark.h).
 void write_difference(const std::filesystem::path& path, const Comparison& comparison,
                       const CompareRow& row);
-
-inline constexpr float kFullColorError = 0.1f;
 
 }  // namespace surfelao

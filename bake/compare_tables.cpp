@@ -1,85 +1,16 @@
 #include "bake/compare_text.h"
 
-#include "bake/json.h"
-#include "bake/picture.h"
 #include "bake/table.h"
+#include "files/maker_mark.h"
+#include "files/ply_io.h"
+#include "image/color_map.h"
 #include "surfels/atomic_file.h"
 #include "surfels/number_text.h"
 
-#include <algorithm>
-#include <bit>
 #include <cmath>
-#include <fstream>
-#include <stdexcept>
+#include <sstream>
 
 namespace surfelao {
-namespace {
-
-Json json_of(const std::optional<EmbreeRatio>& ratio)
-{
-    return ratio ? Json(ratio->ratio) : Json();
-}
-
-template <class T>
-void put(std::ofstream& file, T value)
-{
-    static_assert(std::endian::native == std::endian::little);
-    file.write(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-}  // namespace
-
-Json json_object_of(const Comparison& comparison)
-{
-    Json json;
-    json["input"] = comparison.input.string();
-    json["vertices"] = comparison.vertices;
-    json["triangles"] = comparison.triangles;
-    json["dropped_triangles"] = comparison.dropped_triangles;
-    json["threads"] = comparison.threads;
-    json["rounds"] = comparison.rounds;
-    json["read_s"] = comparison.read_s;
-    json["reference"] = {{"rays", comparison.reference_rays},
-                         {"noise", comparison.reference_noise},
-                         {"from_cache", comparison.reference_from_cache},
-                         {"judged", comparison.judged},
-                         {"ill_defined", comparison.ill_defined},
-                         {"without_normal", comparison.without_normal}};
-    json["rows"] = Json::array();
-    for (const CompareRow& row : comparison.rows) {
-        Json worst = Json::array();
-        for (const WorstVertex& vertex : row.worst) {
-            worst.push_back(
-                {{"vertex", vertex.vertex},
-                 {"position", {vertex.position.x, vertex.position.y, vertex.position.z}},
-                 {"occlusion", vertex.occlusion},
-                 {"reference", vertex.reference}});
-        }
-        json["rows"].push_back({{"engine", name_of(row.settings.engine)},
-                                {"setting", setting_of(row)},
-                                {"settings", json_of(row.settings)},
-                                {"rounds", row.rounds},
-                                {"build_s", row.build_s},
-                                {"solve_s", row.solve_s},
-                                {"us_per_vertex", row.us_per_vertex},
-                                {"rmse", row.error.rmse},
-                                {"bias", row.error.bias},
-                                {"p95", row.error.p95},
-                                {"max", row.error.max},
-                                {"bent_mean_deg", row.error.bent_mean_deg},
-                                {"bent_p95_deg", row.error.bent_p95_deg},
-                                {"embree_ratio", json_of(row.solve_ratio)},
-                                {"embree_ratio_with_builds", json_of(row.total_ratio)},
-                                {"extrapolated", row.solve_ratio && row.solve_ratio->extrapolated},
-                                {"worst", worst}});
-    }
-    return json;
-}
-
-std::string json_of(const Comparison& comparison)
-{
-    return json_object_of(comparison).dump(2) + '\n';
-}
 
 std::string csv_head()
 {
@@ -166,34 +97,19 @@ std::string table_of(const Comparison& comparison)
 void write_difference(const std::filesystem::path& path, const Comparison& comparison,
                       const CompareRow& row)
 {
-    const Scene& scene = comparison.scene;
-    write_atomically(path, [&](const std::filesystem::path& temporary) {
-        std::ofstream file(temporary, std::ios::binary);
-        file << "ply\nformat binary_little_endian 1.0\ncomment error of "
-             << name_of(row.settings.engine) << ' ' << setting_of(row)
-             << " against rays; full colour at " << kFullColorError
-             << ": red = too dark, blue = too bright, grey = not judged\n"
-             << "element vertex " << scene.positions.size()
-             << "\nproperty double x\nproperty double y\nproperty double z\n"
-                "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-                "property float error\nelement face "
-             << scene.triangles.size() << "\nproperty list uchar uint vertex_indices\nend_header\n";
-        for (std::size_t v = 0; v < scene.positions.size(); ++v) {
-            for (int axis = 0; axis < 3; ++axis)
-                put(file, scene.positions[v][axis]);
-            for (const std::uint8_t channel : color_of_error(row.errors[v], kFullColorError))
-                put(file, channel);
-            put(file, std::isnan(row.errors[v]) ? 0.0f : row.errors[v]);
-        }
-        for (const glm::uvec3 triangle : scene.triangles) {
-            put(file, std::uint8_t{3});
-            for (int corner = 0; corner < 3; ++corner)
-                put(file, triangle[corner]);
-        }
-        file.close();
-        if (!file)
-            throw std::runtime_error("cannot write " + path.string());
-    });
+    std::ostringstream what;
+    what << "error of " << name_of(row.settings.engine) << ' ' << setting_of(row)
+         << " against rays; full colour at " << kFullColorError
+         << ": red = too dark, blue = too bright, grey = not judged";
+    const PlyValues values{
+        {"uchar red", "uchar green", "uchar blue", "float error"},
+        [&](std::string& bytes, std::size_t v) {
+            for (const std::uint8_t channel : error_color(row.errors[v], kFullColorError))
+                append_bytes(bytes, channel);
+            append_bytes(bytes, std::isnan(row.errors[v]) ? 0.0f : row.errors[v]);
+        }};
+    write_atomically(path, new_ply(comparison.scene, values, make_mark("compare", what.str()),
+                                   PlyCoordinates::exact));
 }
 
 }  // namespace surfelao

@@ -2,14 +2,11 @@
 #pragma once
 
 #include "bake/compare.h"
-#include "bake/json.h"
 
 #include <optional>
 #include <string>
 
 namespace surfelao {
-
-[[nodiscard]] Json json_object_of(const Comparison& comparison);
 
 /// The line of column names, and the lines of one comparison.
 [[nodiscard]] std::string csv_head();

@@ -1,7 +1,6 @@
 #include "bake/frontier.h"
 
 #include "bake/compare_text.h"
-#include "bake/json.h"
 #include "bake/picture.h"
 #include "bake/table.h"
 #include "surfels/errors.h"
@@ -59,42 +58,10 @@ std::vector<std::pair<std::string, std::string>> pictures_of(const Comparison& c
             continue;
         colors.clear();
         for (const float error : row.errors)
-            colors.push_back(color_of_error(error, kFullColorError));
+            colors.push_back(error_color(error, kFullColorError));
         add("error of " + name_of(row.settings.engine) + ", " + setting_of(row), colors);
     }
     return pictures;
-}
-
-Json json_of(const RatioSummary& summary)
-{
-    if (summary.scenes == 0) {
-        return {{"median_ratio", nullptr},
-                {"worst_ratio", nullptr},
-                {"best_ratio", nullptr},
-                {"quartiles", nullptr},
-                {"scenes", 0},
-                {"left_out", summary.left_out}};
-    }
-    return {{"median_ratio", summary.median},
-            {"worst_ratio", summary.worst},
-            {"best_ratio", summary.best},
-            {"quartiles", {summary.low_quartile, summary.high_quartile}},
-            {"scenes", summary.scenes},
-            {"left_out", summary.left_out}};
-}
-
-/// at_010 and at_005, filled by what `value` gives for (rmse, cost), and the same with builds and
-/// with files.
-template <class Value>
-Json by_target(const Value& value)
-{
-    const auto targets = [&](Cost cost) {
-        return Json{{"at_010", value(kTargets[0], cost)}, {"at_005", value(kTargets[1], cost)}};
-    };
-    Json json = targets(Cost::solve);
-    json["with_builds"] = targets(Cost::build);
-    json["with_files"] = targets(Cost::file);
-    return json;
 }
 
 }  // namespace
@@ -198,37 +165,6 @@ Frontier frontier(const FrontierSettings& settings, const StageProgress& progres
         }
     }
     return result;
-}
-
-std::string json_of(const Frontier& frontier)
-{
-    const auto summary = [&](Engine engine) {
-        return by_target([&](double rmse, Cost cost) {
-            return json_of(summary_of(frontier, engine, rmse, cost));
-        });
-    };
-    Json json;
-    json["summary"] = summary(frontier.engines.front());
-    json["summary"]["engine"] = name_of(frontier.engines.front());
-    for (const Engine engine : frontier.engines)
-        json["summary_of_engines"][name_of(engine)] = summary(engine);
-    json["scenes"] = Json::array();
-    for (const FrontierScene& scene : frontier.scenes) {
-        if (!scene.comparison) {
-            json["scenes"].push_back({{"input", scene.input.string()}, {"error", scene.error}});
-            continue;
-        }
-        Json entry = json_object_of(*scene.comparison);
-        for (const Engine engine : frontier.engines) {
-            entry["ratios"][name_of(engine)] = by_target([&](double rmse, Cost cost) {
-                const auto ratio = ratio_at(*scene.comparison, engine, rmse, cost);
-                return ratio ? Json{{"ratio", ratio->ratio}, {"extrapolated", ratio->extrapolated}}
-                             : Json();
-            });
-        }
-        json["scenes"].push_back(entry);
-    }
-    return json.dump(2) + '\n';
 }
 
 std::string csv_of(const Frontier& frontier)

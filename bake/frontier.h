@@ -73,6 +73,7 @@ struct Frontier {
 [[nodiscard]] std::string table_of(const Frontier& frontier);
 
 /// A page of its own: plot of RMSE against time, pictures, worst vertices, settings, summary.
+/// Marked as a result of `compare` (files/maker_mark.h).
 [[nodiscard]] std::string html_of(const Frontier& frontier);
 
 }  // namespace surfelao

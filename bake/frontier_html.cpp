@@ -1,5 +1,8 @@
 #include "bake/compare_text.h"
 #include "bake/frontier.h"
+#include "files/gltf_uri.h"
+#include "files/maker_mark.h"
+#include "image/color_map.h"
 #include "surfels/number_text.h"
 
 #include <algorithm>
@@ -38,21 +41,6 @@ std::string escaped(const std::string& text)
             default:
                 result += c;
         }
-    }
-    return result;
-}
-
-std::string base64(const std::string& bytes)
-{
-    constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string result;
-    for (std::size_t at = 0; at < bytes.size(); at += 3) {
-        std::uint32_t group = 0;
-        const std::size_t count = std::min<std::size_t>(3, bytes.size() - at);
-        for (std::size_t i = 0; i < 3; ++i)
-            group = group << 8 | (i < count ? static_cast<unsigned char>(bytes[at + i]) : 0u);
-        for (std::size_t i = 0; i < 4; ++i)
-            result += i <= count ? kDigits[group >> (18 - 6 * i) & 63] : '=';
     }
     return result;
 }
@@ -243,8 +231,9 @@ std::string scene_html(const FrontierScene& scene)
     html +=
         plot_of(comparison) + rows_html(comparison) + "<p>" + rows_run_once(comparison) + "</p>\n";
     for (const auto& [caption, png] : scene.pictures) {
-        html += "<figure><img alt=\"" + escaped(caption) + "\" src=\"data:image/png;base64," +
-                base64(png) + "\"><figcaption>" + escaped(caption) + "</figcaption></figure>\n";
+        html += "<figure><img alt=\"" + escaped(caption) + "\" src=\"" +
+                make_data_uri("image/png", png) + "\"><figcaption>" + escaped(caption) +
+                "</figcaption></figure>\n";
     }
     return html + worst_html(comparison);
 }
@@ -283,9 +272,10 @@ std::string summary_html(const Frontier& frontier)
 std::string html_of(const Frontier& frontier)
 {
     std::string html =
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>surfelao: speed "
-        "against error</title>\n<style>" +
-        std::string(kStyle) +
+        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta "
+        "name=\"generator\" content=\"" +
+        make_mark("compare", "speed against error") +
+        "\"><title>surfelao: speed against error</title>\n<style>" + std::string(kStyle) +
         "</style></head><body>\n<h1>Speed against error</h1>\n"
         "<p>Occlusion at every vertex by point-based engines and by Embree in its strongest mode, "
         "against many robust rays; all in one process on the same threads, in turns. In the "

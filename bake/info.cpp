@@ -1,6 +1,5 @@
 #include "bake/info.h"
 
-#include "bake/json.h"
 #include "bake/sample.h"
 #include "bake/table.h"
 #include "files/scene_io.h"
@@ -135,43 +134,6 @@ std::string text_of(const Info& info)
     for (const std::string& sentence : odd)
         text += "  " + sentence + '\n';
     return text;
-}
-
-std::string json_of(const Info& info)
-{
-    const Topology& topology = info.topology;
-    Json parts = Json::array();
-    for (const Part& part : info.parts) {
-        parts.push_back({{"name", part.name},
-                         {"vertices", part.vertex_count},
-                         {"triangles", part.triangle_count}});
-    }
-    const auto point = [](glm::dvec3 p) { return Json{p.x, p.y, p.z}; };
-    const Json json = {{"input", info.input.string()},
-                       {"vertices", info.vertices},
-                       {"positions", info.positions},
-                       {"triangles", info.triangles},
-                       {"dropped_triangles", info.dropped_triangles},
-                       {"duplicate_triangles", topology.duplicate_triangle_count},
-                       {"unused_vertices", info.unused_vertices},
-                       {"vertices_without_normal", info.vertices_without_normal},
-                       {"ill_defined", info.ill_defined},
-                       {"examined", info.examined},
-                       {"components", topology.component_count},
-                       {"closed_components", topology.closed_component_count},
-                       {"boundary_edges", topology.boundary_edge_count},
-                       {"nonmanifold_edges", topology.nonmanifold_edge_count},
-                       {"misoriented_edges", topology.misoriented_edge_count},
-                       {"complex_triangles", info.half_edges.complex_triangle_count},
-                       {"holes", info.half_edges.hole_count},
-                       {"largest_hole_edges", info.half_edges.largest_hole_edges},
-                       {"handles", info.half_edges.handle_count},
-                       {"low", point(info.low)},
-                       {"high", point(info.high)},
-                       {"diagonal", info.diagonal},
-                       {"area", info.area},
-                       {"parts", parts}};
-    return json.dump(2) + '\n';
 }
 
 }  // namespace surfelao

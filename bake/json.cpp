@@ -1,18 +1,35 @@
-#include "bake/json.h"
+// All reports as JSON: one file, since nlohmann's header takes seconds to compile.
+#include "bake/bake.h"
+#include "bake/compare.h"
+#include "bake/frontier.h"
+#include "bake/info.h"
+
+#include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <optional>
+#include <span>
+#include <string>
 
 namespace surfelao {
+namespace {
 
-Json json_of(const EngineSettings& settings)
+/// Keys in the order in which they were set.
+using Json = nlohmann::ordered_json;
+
+/// What this engine was told; settings of other engines are left out. Lengths in diagonals, null =
+/// unlimited.
+Json json_of(const EngineSettings& settings, bool smoothed = false)
 {
     const Definition& definition = settings.definition;
     Json json;
     json["device"] = settings.device == Device::gpu ? "gpu" : "cpu";
-    if (settings.engine == Engine::rays)
+    if (settings.engine == Engine::rays) {
         json["rays"] = settings.rays;
-    else
+        json["smoothed"] = smoothed;
+    } else {
         json["quality"] = settings.quality;
+    }
     if (settings.engine == Engine::disks) {
         json["passes"] = settings.passes;
         json["strength"] = settings.strength;
@@ -25,6 +42,205 @@ Json json_of(const EngineSettings& settings)
     json["falloff"] = definition.falloff == Falloff::none ? "none" : "smooth";
     json["offset"] = definition.offset;
     return json;
+}
+
+Json json_of(const BatchEntry& entry)
+{
+    Json json;
+    json["input"] = entry.input.string();
+    json["output"] = entry.output.string();
+    if (!entry.report) {
+        if (entry.error.empty())
+            json["skipped"] = true;
+        else
+            json["error"] = entry.error;
+        return json;
+    }
+    const BakeReport& report = *entry.report;
+    const BakeSeconds& seconds = report.seconds;
+    json["vertices"] = report.vertices;
+    json["triangles"] = report.triangles;
+    json["dropped_triangles"] = report.dropped_triangles;
+    json["vertices_without_normal"] = report.vertices_without_normal;
+    json["surfels"] = report.surfels;
+    json["engine"] = name_of(report.settings.engine.engine);
+    json["settings"] = json_of(report.settings.engine);
+    json["settings"]["threads"] = report.threads;
+    json["settings"]["colors"] = report.settings.colors;
+    json["seconds"] = {{"read", seconds.read},   {"surfels", seconds.surfels},
+                       {"tree", seconds.tree},   {"solve", seconds.solve},
+                       {"write", seconds.write}, {"total", seconds.total}};
+    json["peak_rss_bytes"] = report.peak_rss_bytes;
+    json["residual"] = report.residual ? Json(*report.residual) : Json();
+    json["mean_occlusion"] = report.mean_occlusion;
+    return json;
+}
+
+Json json_of(const std::optional<EmbreeRatio>& ratio)
+{
+    return ratio ? Json(ratio->ratio) : Json();
+}
+
+Json json_object_of(const Comparison& comparison)
+{
+    Json json;
+    json["input"] = comparison.input.string();
+    json["vertices"] = comparison.vertices;
+    json["triangles"] = comparison.triangles;
+    json["dropped_triangles"] = comparison.dropped_triangles;
+    json["threads"] = comparison.threads;
+    json["rounds"] = comparison.rounds;
+    json["read_s"] = comparison.read_s;
+    json["reference"] = {{"rays", comparison.reference_rays},
+                         {"noise", comparison.reference_noise},
+                         {"from_cache", comparison.reference_from_cache},
+                         {"judged", comparison.judged},
+                         {"ill_defined", comparison.ill_defined},
+                         {"without_normal", comparison.without_normal}};
+    json["rows"] = Json::array();
+    for (const CompareRow& row : comparison.rows) {
+        Json worst = Json::array();
+        for (const WorstVertex& vertex : row.worst) {
+            worst.push_back(
+                {{"vertex", vertex.vertex},
+                 {"position", {vertex.position.x, vertex.position.y, vertex.position.z}},
+                 {"occlusion", vertex.occlusion},
+                 {"reference", vertex.reference}});
+        }
+        json["rows"].push_back({{"engine", name_of(row.settings.engine)},
+                                {"setting", setting_of(row)},
+                                {"settings", json_of(row.settings, row.smoothed)},
+                                {"rounds", row.rounds},
+                                {"build_s", row.build_s},
+                                {"solve_s", row.solve_s},
+                                {"us_per_vertex", row.us_per_vertex},
+                                {"rmse", row.error.rmse},
+                                {"bias", row.error.bias},
+                                {"p95", row.error.p95},
+                                {"max", row.error.max},
+                                {"bent_mean_deg", row.error.bent_mean_deg},
+                                {"bent_p95_deg", row.error.bent_p95_deg},
+                                {"embree_ratio", json_of(row.solve_ratio)},
+                                {"embree_ratio_with_builds", json_of(row.total_ratio)},
+                                {"extrapolated", row.solve_ratio && row.solve_ratio->extrapolated},
+                                {"worst", worst}});
+    }
+    return json;
+}
+
+Json json_of(const RatioSummary& summary)
+{
+    if (summary.scenes == 0) {
+        return {{"median_ratio", nullptr},
+                {"worst_ratio", nullptr},
+                {"best_ratio", nullptr},
+                {"quartiles", nullptr},
+                {"scenes", 0},
+                {"left_out", summary.left_out}};
+    }
+    return {{"median_ratio", summary.median},
+            {"worst_ratio", summary.worst},
+            {"best_ratio", summary.best},
+            {"quartiles", {summary.low_quartile, summary.high_quartile}},
+            {"scenes", summary.scenes},
+            {"left_out", summary.left_out}};
+}
+
+/// at_010 and at_005, filled by what `value` gives for (rmse, cost), and the same with builds and
+/// with files.
+template <class Value>
+Json by_target(const Value& value)
+{
+    const auto targets = [&](Cost cost) {
+        return Json{{"at_010", value(kTargets[0], cost)}, {"at_005", value(kTargets[1], cost)}};
+    };
+    Json json = targets(Cost::solve);
+    json["with_builds"] = targets(Cost::build);
+    json["with_files"] = targets(Cost::file);
+    return json;
+}
+
+}  // namespace
+
+std::string json_of(std::span<const BatchEntry> batch)
+{
+    Json list = Json::array();
+    for (const BatchEntry& entry : batch)
+        list.push_back(json_of(entry));
+    return (batch.size() == 1 ? list.front() : list).dump(2) + '\n';
+}
+
+std::string json_of(const Info& info)
+{
+    const Topology& topology = info.topology;
+    Json parts = Json::array();
+    for (const Part& part : info.parts) {
+        parts.push_back({{"name", part.name},
+                         {"vertices", part.vertex_count},
+                         {"triangles", part.triangle_count}});
+    }
+    const auto point = [](glm::dvec3 p) { return Json{p.x, p.y, p.z}; };
+    const Json json = {{"input", info.input.string()},
+                       {"vertices", info.vertices},
+                       {"positions", info.positions},
+                       {"triangles", info.triangles},
+                       {"dropped_triangles", info.dropped_triangles},
+                       {"duplicate_triangles", topology.duplicate_triangle_count},
+                       {"unused_vertices", info.unused_vertices},
+                       {"vertices_without_normal", info.vertices_without_normal},
+                       {"ill_defined", info.ill_defined},
+                       {"examined", info.examined},
+                       {"components", topology.component_count},
+                       {"closed_components", topology.closed_component_count},
+                       {"boundary_edges", topology.boundary_edge_count},
+                       {"nonmanifold_edges", topology.nonmanifold_edge_count},
+                       {"misoriented_edges", topology.misoriented_edge_count},
+                       {"complex_triangles", info.half_edges.complex_triangle_count},
+                       {"holes", info.half_edges.hole_count},
+                       {"largest_hole_edges", info.half_edges.largest_hole_edges},
+                       {"handles", info.half_edges.handle_count},
+                       {"low", point(info.low)},
+                       {"high", point(info.high)},
+                       {"diagonal", info.diagonal},
+                       {"area", info.area},
+                       {"parts", parts}};
+    return json.dump(2) + '\n';
+}
+
+std::string json_of(const Comparison& comparison)
+{
+    return json_object_of(comparison).dump(2) + '\n';
+}
+
+std::string json_of(const Frontier& frontier)
+{
+    const auto summary = [&](Engine engine) {
+        return by_target([&](double rmse, Cost cost) {
+            return json_of(summary_of(frontier, engine, rmse, cost));
+        });
+    };
+    Json json;
+    json["summary"] = summary(frontier.engines.front());
+    json["summary"]["engine"] = name_of(frontier.engines.front());
+    for (const Engine engine : frontier.engines)
+        json["summary_of_engines"][name_of(engine)] = summary(engine);
+    json["scenes"] = Json::array();
+    for (const FrontierScene& scene : frontier.scenes) {
+        if (!scene.comparison) {
+            json["scenes"].push_back({{"input", scene.input.string()}, {"error", scene.error}});
+            continue;
+        }
+        Json entry = json_object_of(*scene.comparison);
+        for (const Engine engine : frontier.engines) {
+            entry["ratios"][name_of(engine)] = by_target([&](double rmse, Cost cost) {
+                const auto ratio = ratio_at(*scene.comparison, engine, rmse, cost);
+                return ratio ? Json{{"ratio", ratio->ratio}, {"extrapolated", ratio->extrapolated}}
+                             : Json();
+            });
+        }
+        json["scenes"].push_back(entry);
+    }
+    return json.dump(2) + '\n';
 }
 
 }  // namespace surfelao

@@ -145,17 +145,6 @@ Picture draw_vertices(const Geometry& geometry, std::span<const Rgb> colors, int
     return picture;
 }
 
-Rgb color_of_error(float error, float full)
-{
-    if (std::isnan(error))
-        return {128, 128, 128};
-    const float strength = std::min(1.0f, std::fabs(error) / full);
-    const auto faded = static_cast<std::uint8_t>(std::lround(255.0f * (1.0f - strength)));
-    if (error > 0.0f)
-        return {255, faded, faded};
-    return {faded, faded, 255};
-}
-
 std::string png_of(const Picture& picture)
 {
     std::string rows;

@@ -1,17 +1,14 @@
 /// picture.h: a small picture of a mesh with a colour at every vertex, for reports. No GL.
 #pragma once
 
+#include "image/color_map.h"
 #include "surfels/geometry.h"
 
-#include <array>
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace surfelao {
-
-using Rgb = std::array<std::uint8_t, 3>;
 
 /// Rows from the top, three bytes a pixel.
 struct Picture {
@@ -26,9 +23,6 @@ struct Picture {
 /// colors: one per scene vertex.
 [[nodiscard]] Picture draw_vertices(const Geometry& geometry, std::span<const Rgb> colors,
                                     int width, int height);
-
-/// Blue (-full) over white (0) to red (+full and more); grey for NaN.
-[[nodiscard]] Rgb color_of_error(float error, float full);
 
 /// The bytes of a PNG file.
 [[nodiscard]] std::string png_of(const Picture& picture);

@@ -11,7 +11,6 @@
 
 #include <filesystem>
 #include <iostream>
-#include <map>
 #include <memory>
 
 namespace surfelao {
@@ -26,6 +25,7 @@ struct BakeOptions {
     MeasureOptions measure;
     bool colors = false;
     bool resume = false;
+    bool overwrite = false;
     std::optional<std::string> json;
     std::optional<int> threads;
 };
@@ -35,28 +35,31 @@ struct Job {
     fs::path input, output;
 };
 
-/// Where every result goes. Two results under one name, or one in the place of its own input, are
+/// Whether -o names a folder: then the names of the files in it are ours, not the user's.
+bool is_folder(const BakeOptions& options)
+{
+    std::error_code error;
+    return options.inputs.size() > 1 || fs::is_directory(options.output, error);
+}
+
+/// Where every result goes. Two results under one name, or one in the place of an input, are
 /// refused before anything is overwritten.
 std::vector<Job> jobs_of(const BakeOptions& options)
 {
     std::error_code error;
     if (options.inputs.size() > 1 && fs::is_regular_file(options.output, error))
         throw UsageError(options.output + " is no folder, but several files are to be written.");
-    const bool into_folder = options.inputs.size() > 1 || fs::is_directory(options.output, error);
+    FilePlan files;
+    for (const std::string& input : options.inputs)
+        files.reads(input);
+    const bool into_folder = is_folder(options);
     std::vector<Job> jobs;
-    std::map<fs::path, fs::path> taken;
     for (const std::string& input : options.inputs) {
-        const fs::path output =
-            into_folder ? output_in_folder(input, options.output) : fs::path(options.output);
-        if (fs::equivalent(input, output, error))
-            throw UsageError(input + " would be overwritten by its own result.");
-        const auto [other, is_new] = taken.emplace(fs::weakly_canonical(output, error), input);
-        if (!is_new) {
-            throw UsageError(other->second.string() + " and " + input +
-                             " would both be written to " + output.string() + ".");
-        }
-        jobs.push_back({input, output});
+        jobs.push_back({input, into_folder ? output_in_folder(input, options.output)
+                                           : fs::path(options.output)});
+        files.writes(jobs.back().output, input);
     }
+    files.writes_report(options.json, "--json");
     return jobs;
 }
 
@@ -94,6 +97,26 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     return settings;
 }
 
+/// One job; `label` stands in front of its progress. False when it failed: the others can still be
+/// done.
+bool run_job(const BakeSettings& settings, bool ask_before_replacing, const std::string& label,
+             BatchEntry& entry)
+{
+    try {
+        if (ask_before_replacing)
+            refuse_foreign(settings.output, "bake");
+        ProgressBar bar(label);
+        entry.report = bake(
+            settings, [&](std::string_view stage, double done) { return bar.update(stage, done); });
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const std::exception& error) {
+        std::cerr << "surfelao: " << error.what() << '\n';
+        entry.error = error.what();
+    }
+    return entry.report.has_value();
+}
+
 int run(const BakeOptions& options, const std::vector<Job>& jobs)
 {
     check_report(options.json);
@@ -102,38 +125,36 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
         limit.emplace(*options.threads);
     const bool batch = jobs.size() > 1;
     const bool quiet = options.json == "-";
+    const bool ask = is_folder(options) && !options.overwrite;
     std::size_t failed = 0;
     std::vector<BatchEntry> entries;
+    std::vector<fs::path> written;
     for (const Job& job : jobs) {
         BatchEntry& entry = entries.emplace_back();
         entry.input = job.input;
         entry.output = job.output;
-        if (options.resume && is_finished(job.input, job.output)) {
+        const BakeSettings settings = settings_for(options, job);
+        if (options.resume && is_finished(settings)) {
             if (!quiet)
                 std::cout << job.input.string() << ": finished before, skipped\n";
             continue;
         }
-        try {
-            ProgressBar bar(batch ? std::to_string(entries.size()) + "/" +
-                                        std::to_string(jobs.size()) + " " +
-                                        job.input.filename().string() + " "
-                                  : "");
-            entry.report =
-                bake(settings_for(options, job),
-                     [&](std::string_view stage, double done) { return bar.update(stage, done); });
-        } catch (const Cancelled&) {
-            throw;
-        } catch (const std::exception& error) {
-            // the others can still be done
-            std::cerr << "surfelao: " << error.what() << '\n';
-            entry.error = error.what();
+        const std::string label = std::to_string(entries.size()) + "/" +
+                                  std::to_string(jobs.size()) + " " +
+                                  job.input.filename().string() + " ";
+        if (!run_job(settings, ask, batch ? label : "", entry)) {
             ++failed;
+            continue;
         }
-        if (entry.report && !quiet)
+        written.push_back(job.output);
+        if (!quiet)
             print(*entry.report);
     }
     if (options.json)
         write_report(*options.json, json_of(entries));
+    if (options.json && !quiet)
+        written.emplace_back(*options.json);
+    print_written(written, quiet);
     if (failed > 0 && batch)
         std::cerr << "surfelao: " << failed << " of " << jobs.size() << " files failed\n";
     return failed > 0 ? kFailed : kDone;
@@ -150,17 +171,22 @@ void add_bake_command(CLI::App& app, Work& work)
         ->required()
         ->type_name("");
     command
-        ->add_option("-o,--output", options->output,
-                     "Mesh file (.ply .obj .off, .gltf/.glb from glTF), or a folder: there every "
-                     "result has its input's name, .ply for .stl")
+        ->add_option(
+            "-o,--output", options->output,
+            "Mesh file (.ply .obj .off, .gltf/.glb from glTF), or a folder: there every "
+            "result has its input's name, .ply for .stl, and only files that bake made are "
+            "replaced")
         ->required()
         ->type_name("OUT|DIR");
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
     command->add_flag("--colors", options->colors,
                       "glTF: visibility as COLOR_0 too (.ply and .obj always have colours)");
-    command->add_flag("--resume", options->resume,
-                      "Skip files whose result exists and is not older than they are");
+    command->add_flag(
+        "--resume", options->resume,
+        "Skip files whose result is not older than they are and says that it was "
+        "made with these settings (a comment in .ply .obj .off, asset.extras in glTF)");
+    add_overwrite_option(*command, options->overwrite);
     command
         ->add_option("--json", options->json,
                      "Write what was done and how long it took; - = "

@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 
 struct CompareOptions {
     std::vector<std::string> inputs;
-    std::string output = ".";
+    std::optional<std::string> output;
+    bool overwrite = false;
     bool frontier = false;
     std::vector<std::string> engines = {"masks", "disks"};
     std::vector<std::string> devices = {"cpu"};
@@ -80,37 +81,58 @@ FrontierSettings frontier_settings(const CompareOptions& options)
     return settings;
 }
 
+/// What goes into the folder of -o.
+fs::path difference_of(const CompareOptions& options)
+{
+    return fs::path(*options.output) / "difference.ply";
+}
+
+fs::path report_of(const CompareOptions& options)
+{
+    return fs::path(*options.output) / "report.html";
+}
+
+/// The table, and the files that were asked for by name: these are added to `written`.
 template <class Result>
-void print_or_write(const CompareOptions& options, const Result& result)
+void print_or_write(const CompareOptions& options, const Result& result,
+                    std::vector<fs::path>& written)
 {
     if (options.json != "-" && options.csv != "-")
         std::cout << table_of(result);
-    if (options.json)
-        write_report(*options.json, json_of(result));
-    if (options.csv)
-        write_report(*options.csv, csv_of(result));
+    const auto write = [&](const std::optional<std::string>& file, const std::string& text) {
+        if (!file)
+            return;
+        write_report(*file, text);
+        if (file != "-")
+            written.emplace_back(*file);
+    };
+    write(options.json, json_of(result));
+    write(options.csv, csv_of(result));
 }
 
-int run_compare(const CompareOptions& options, const fs::path& difference, const fs::path& report)
+int run_compare(const CompareOptions& options, std::vector<fs::path>& written)
 {
-    check_writable(difference);
     Comparison comparison = [&] {
         ProgressBar bar;
         return compare(compare_settings(options), [&](std::string_view stage, double done) {
             return bar.update(stage, done);
         });
     }();
-    print_or_write(options, comparison);
-    write_difference(difference, comparison, shown_row(comparison));
+    print_or_write(options, comparison, written);
+    if (!options.output)
+        return kDone;
+    write_difference(difference_of(options), comparison, shown_row(comparison));
+    written.push_back(difference_of(options));
     Frontier frontier;
     for (const std::string& engine : options.engines)
         frontier.engines.push_back(engine_of(engine));
     frontier.scenes.push_back(frontier_scene(std::move(comparison)));
-    write_atomically(report, html_of(frontier));
+    write_atomically(report_of(options), html_of(frontier));
+    written.push_back(report_of(options));
     return kDone;
 }
 
-int run_frontier(const CompareOptions& options, const fs::path& report)
+int run_frontier(const CompareOptions& options, std::vector<fs::path>& written)
 {
     const Frontier result = [&] {
         ProgressBar bar;
@@ -118,8 +140,11 @@ int run_frontier(const CompareOptions& options, const fs::path& report)
             return bar.update(stage, done);
         });
     }();
-    print_or_write(options, result);
-    write_atomically(report, html_of(result));
+    print_or_write(options, result, written);
+    if (options.output) {
+        write_atomically(report_of(options), html_of(result));
+        written.push_back(report_of(options));
+    }
     int code = kDone;
     for (const FrontierScene& scene : result.scenes) {
         if (!scene.comparison) {
@@ -130,18 +155,33 @@ int run_frontier(const CompareOptions& options, const fs::path& report)
     return code;
 }
 
+/// What goes into the folder of -o without having been named by the user.
+std::vector<fs::path> own_names(const CompareOptions& options)
+{
+    if (!options.output)
+        return {};
+    if (options.frontier)
+        return {report_of(options)};
+    return {difference_of(options), report_of(options)};
+}
+
 int run(const CompareOptions& options)
 {
     check_report(options.json);
     check_report(options.csv);
-    const fs::path folder = options.output;
-    const fs::path report = folder / "report.html";
-    check_writable(report);
+    for (const fs::path& file : own_names(options)) {
+        if (!options.overwrite)
+            refuse_foreign(file, "compare");
+        check_writable(file);
+    }
     std::optional<ThreadLimit> limit;
     if (options.threads)
         limit.emplace(*options.threads);
-    return options.frontier ? run_frontier(options, report)
-                            : run_compare(options, folder / "difference.ply", report);
+    std::vector<fs::path> written;
+    const int code =
+        options.frontier ? run_frontier(options, written) : run_compare(options, written);
+    print_written(written, options.json == "-" || options.csv == "-");
+    return code;
 }
 
 /// Contradictions, before any work.
@@ -162,6 +202,13 @@ void check(const CompareOptions& options)
     const CompareSettings settings = compare_settings(options);
     for (const EngineSettings& candidate : settings.candidates)
         check_kernel(candidate.engine, settings.kernel);
+    FilePlan files;
+    for (const std::string& input : options.inputs)
+        files.reads(input);
+    for (const fs::path& file : own_names(options))
+        files.writes(file, file.filename().string());
+    files.writes_report(options.json, "--json");
+    files.writes_report(options.csv, "--csv");
 }
 
 }  // namespace
@@ -179,14 +226,16 @@ void add_compare_command(CLI::App& app, Work& work)
         ->type_name("");
     command
         ->add_option("-o,--output", options->output,
-                     "Folder for difference.ply, the scene with the error as colour")
-        ->type_name("DIR")
-        ->capture_default_str();
+                     "Folder for difference.ply, the scene with the error as colour (not with "
+                     "--frontier), and report.html; without it no file is written")
+        ->type_name("DIR");
+    add_overwrite_option(*command, options->overwrite);
     command->add_flag("--frontier", options->frontier,
                       "Every engine's whole curve of speed against error, for any number of files, "
                       "with the ratio to Embree at RMSE 0.010 and 0.005 and a summary");
     command->add_option("--engines", options->engines, "Engines to compare with rays")
         ->delimiter(',')
+        ->allow_extra_args(false)  // the word behind the list may be IN
         ->check(CLI::IsMember({"masks", "disks"}))
         ->type_name("E,...")
         ->capture_default_str();
@@ -194,6 +243,7 @@ void add_compare_command(CLI::App& app, Work& work)
         ->add_option("--devices", options->devices,
                      "Where the engines run: cpu, gpu or both, side by side")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->check(CLI::IsMember({"cpu", "gpu"}))
         ->type_name("D,...")
         ->capture_default_str();
@@ -201,6 +251,7 @@ void add_compare_command(CLI::App& app, Work& work)
         ->add_option("--qualities", options->qualities,
                      "Settings of each engine: draft, good, best or numbers")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->type_name("Q,...")
         ->default_str("draft,good,best");
     add_measure_options(*command, options->measure);

@@ -27,6 +27,8 @@ int run(const InfoOptions& options)
         std::cout << text_of(info);
     if (options.json)
         write_report(*options.json, json_of(info));
+    if (options.json && options.json != "-")
+        std::cout << "wrote " << *options.json << '\n';
     return kDone;
 }
 
@@ -42,7 +44,12 @@ void add_info_command(CLI::App& app, Work& work)
         ->type_name("");
     command->add_option("--json", options->json, "Write it as JSON; - = standard output")
         ->type_name("FILE");
-    command->callback([options, &work] { work = [options] { return run(*options); }; });
+    command->callback([options, &work] {
+        FilePlan files;
+        files.reads(options->input);
+        files.writes_report(options->json, "--json");
+        work = [options] { return run(*options); };
+    });
 }
 
 }  // namespace surfelao

@@ -1,11 +1,13 @@
 #include "cli/output.h"
 
 #include "cli/commands.h"
+#include "files/file_type.h"
 #include "files/maker_mark.h"
-#include "files/scene_io.h"
 #include "files/sidecars.h"
 #include "surfels/atomic_file.h"
 #include "surfels/errors.h"
+
+#include <CLI/CLI.hpp>
 
 #include <sys/stat.h>
 
@@ -49,7 +51,7 @@ void FilePlan::writes(const fs::path& file, const std::string& what)
             throw UsageError(input->second.string() + " is read and would be overwritten" +
                              (input->second == file ? "." : " by " + file.string() + "."));
         }
-        if (!is_mesh_name(file))  // no sidecar has a mesh's extension
+        if (type_of(file) == FileType::unknown)  // no sidecar has a mesh's extension
             refuse_sidecar(file, *identity);
     }
     std::error_code error;
@@ -64,6 +66,12 @@ void FilePlan::writes_report(const std::optional<std::string>& file, const std::
 {
     if (file && *file != "-")
         writes(*file, what);
+}
+
+void add_overwrite_option(CLI::App& command, bool& overwrite)
+{
+    command.add_flag("--overwrite", overwrite,
+                     "In a folder, replace files too that this command did not make");
 }
 
 void refuse_foreign(const fs::path& file, std::string_view command)

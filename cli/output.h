@@ -15,6 +15,10 @@
 #include <utility>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace surfelao {
 
 /// The files of one run, told before any work.
@@ -39,6 +43,9 @@ private:
     std::map<Identity, std::filesystem::path> read_;
     std::map<std::filesystem::path, std::string> written_;  ///< what, by canonical path
 };
+
+/// Adds `--overwrite`.
+void add_overwrite_option(CLI::App& command, bool& overwrite);
 
 /// For names that the user did not give: throws InputError when a file stands there that no earlier
 /// run of `command` made (files/maker_mark.h).

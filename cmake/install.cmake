@@ -1,16 +1,47 @@
-# `cmake --install`: program, libraries, headers and a CMake package for find_package(surfelao).
+# `cmake --install`: the program, and the library as one archive with one target,
+# surfelao::surfelao, for find_package(surfelao). Of the headers only those that a user needs:
+# surfelao/surfelao.h, the manual, and what it includes.
 include(CMakePackageConfigHelpers)
 
-set(installed surfels files tree reference)
-install(TARGETS ${installed} EXPORT surfelao
+set(bundled surfels files tree reference gpu engines)
+add_library(surfelao_library STATIC)
+foreach(folder IN LISTS bundled)
+    target_sources(surfelao_library PRIVATE $<TARGET_OBJECTS:${folder}>)
+endforeach()
+set_target_properties(surfelao_library PROPERTIES
+    EXPORT_NAME surfelao OUTPUT_NAME surfelao LINKER_LANGUAGE CXX)
+target_compile_features(surfelao_library PUBLIC cxx_std_20)
+target_link_libraries(surfelao_library
+    PUBLIC glm::glm
+    PRIVATE embree hwy::hwy OpenMeshCore TBB::tbb Threads::Threads TinyGLTF::TinyGLTF
+        ${CMAKE_DL_LIBS})
+target_sources(surfelao_library
+    PUBLIC FILE_SET manual TYPE HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}
+    FILES ${PROJECT_SOURCE_DIR}/surfelao/surfelao.h
+    PUBLIC FILE_SET included TYPE HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}
+    FILES
+        ${PROJECT_SOURCE_DIR}/engines/engine.h
+        ${PROJECT_SOURCE_DIR}/engines/threads.h
+        ${PROJECT_SOURCE_DIR}/files/scene_io.h
+        ${PROJECT_SOURCE_DIR}/surfels/errors.h
+        ${PROJECT_SOURCE_DIR}/surfels/geometry.h
+        ${PROJECT_SOURCE_DIR}/surfels/occlusion.h
+        ${PROJECT_SOURCE_DIR}/surfels/progress.h
+        ${PROJECT_SOURCE_DIR}/surfels/receiver.h
+        ${PROJECT_SOURCE_DIR}/surfels/scene.h)
+add_library(surfelao::surfelao ALIAS surfelao_library)
+
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/surfelao)
+install(TARGETS surfelao_library EXPORT surfelao
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/surfelao)
+    FILE_SET manual DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+    FILE_SET included DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/surfelao)
 install(EXPORT surfelao NAMESPACE surfelao::
-    DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/surfelao FILE surfelaoTargets.cmake)
+    DESTINATION ${package_folder} FILE surfelaoTargets.cmake)
 configure_package_config_file(cmake/surfelaoConfig.cmake.in surfelaoConfig.cmake
-    INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/surfelao)
+    INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(surfelaoConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES
     ${CMAKE_CURRENT_BINARY_DIR}/surfelaoConfig.cmake
     ${CMAKE_CURRENT_BINARY_DIR}/surfelaoConfigVersion.cmake
-    DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/surfelao)
+    DESTINATION ${package_folder})

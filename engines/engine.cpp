@@ -14,8 +14,14 @@
 #include "tree/disks/disks.h"
 #include "tree/masks/masks.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 
@@ -104,8 +110,8 @@ Prepared prepare(const Geometry& geometry, const EngineChoice& choice)
 {
     auto impl = std::make_unique<Prepared::Impl>();
     impl->choice = choice;
-    if (!runs_on(choice.engine, choice.device))
-        throw SettingsError(name_of(choice.engine) + " do not run on the GPU");
+    require(runs_on(choice.engine, choice.device),
+            name_of(choice.engine) + " do not run on the GPU");
     const bool on_gpu = choice.device == Device::gpu;
     if (!on_gpu)
         impl->choice.context = nullptr;
@@ -169,15 +175,41 @@ std::optional<double> residual_of(const std::vector<double>& residuals)
     return residuals.empty() ? std::nullopt : std::optional(residuals.back());
 }
 
+/// Throws InputError for the first that no engine can answer.
+void check_receivers(std::span<const Receiver> receivers)
+{
+    const auto fits = [](const Receiver& receiver) {
+        const glm::vec3 p = glm::abs(receiver.position);
+        const float length2 = glm::dot(receiver.normal, receiver.normal);
+        return p.x <= kFarthestReceiver && p.y <= kFarthestReceiver && p.z <= kFarthestReceiver &&
+               (std::abs(length2 - 1.0f) <= 2.0f * kUnitLength || length2 == 0.0f);
+    };
+    constexpr std::size_t kGrain = 16384;
+    const bool all_fit = tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, receivers.size(), kGrain), true,
+        [&](const tbb::blocked_range<std::size_t>& range, bool all) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i)
+                all &= fits(receivers[i]);
+            return all;
+        },
+        std::logical_and<bool>());
+    if (all_fit)
+        return;
+    const auto wrong = std::ranges::find_if_not(receivers, fits);
+    throw InputError("receiver " + std::to_string(wrong - receivers.begin()) +
+                     ": its position must be finite and within a million diagonals, its normal of "
+                     "length 1, or zero");
+}
+
 }  // namespace
 
 DeviceSolution solve_on_device(const Prepared& prepared, std::span<const Receiver> receivers,
                                const SolveSettings& settings, const Progress& progress)
 {
     const Prepared::Impl& impl = prepared.impl();
-    if (impl.choice.device != Device::gpu)
-        throw SettingsError("answers stay on the device only where it is the GPU");
+    require(impl.choice.device == Device::gpu, "device must be gpu for answers that stay on it");
     check_settings(impl.choice, settings);
+    check_receivers(receivers);
     impl.context()->make_current();
     Stopwatch watch;
     if (impl.gpu_masks) {
@@ -194,14 +226,19 @@ Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
                const SolveSettings& settings, const Progress& progress)
 {
     const Prepared::Impl& impl = prepared.impl();
-    check_settings(impl.choice, settings);
-    Stopwatch watch;
     Solution solution;
     if (impl.choice.device == Device::gpu) {
         const DeviceSolution solved = solve_on_device(prepared, receivers, settings, progress);
+        Stopwatch watch;
         solution.occlusion = read_answers(solved.answers, solved.count);
         solution.residual = solved.residual;
-    } else if (impl.masks) {
+        solution.seconds = solved.seconds + watch.lap();
+        return solution;
+    }
+    check_settings(impl.choice, settings);
+    check_receivers(receivers);
+    Stopwatch watch;
+    if (impl.masks) {
         solution.occlusion =
             solve_masks(*impl.masks, receivers, mask_options(impl.choice, settings), progress);
     } else if (impl.disks) {
@@ -224,6 +261,8 @@ std::vector<Solution> solve_lists(const Prepared& prepared,
 {
     const Prepared::Impl& impl = prepared.impl();
     check_settings(impl.choice, settings);
+    for (const std::span<const Receiver> receivers : lists)
+        check_receivers(receivers);
     Stopwatch watch;
     std::vector<Solution> solutions;
     if (impl.disks && impl.choice.device == Device::cpu && !lists.empty()) {
@@ -252,30 +291,22 @@ std::vector<Solution> solve_lists(const Prepared& prepared,
 
 void check_settings(const EngineChoice& choice, const SolveSettings& settings)
 {
-    const auto must = [](bool holds, const std::string& what) {
-        if (!holds)
-            throw SettingsError(what);
-    };
-    const Definition& definition = settings.definition;
-    must(definition.max_distance > 0.0f, "max_distance must be above 0");
-    must(definition.offset > 0.0f && std::isfinite(definition.offset), "offset must be above 0");
-    must(definition.falloff == Falloff::none || std::isfinite(definition.max_distance),
-         "a falloff needs a max_distance");
-    must(knows_kernel(choice.engine, definition.kernel),
-         name_of(choice.engine) + " do not know this kernel");
+    check_definition(settings.definition);
+    require(knows_kernel(choice.engine, settings.definition.kernel),
+            name_of(choice.engine) + " know the cosine kernel only");
     if (choice.engine == Engine::rays) {
-        must(settings.rays >= 1 && settings.rays <= kMostRays,
-             "rays must be between 1 and " + std::to_string(kMostRays));
+        require(settings.rays >= 1 && settings.rays <= kMostRays,
+                "rays must be between 1 and " + std::to_string(kMostRays));
         return;
     }
-    must(settings.quality >= least_quality(choice.engine) &&
-             settings.quality <= most_quality(choice.engine),
-         "quality of " + name_of(choice.engine) + " must be between " +
-             exact(least_quality(choice.engine)) + " and " + exact(most_quality(choice.engine)));
+    require(settings.quality >= least_quality(choice.engine) &&
+                settings.quality <= most_quality(choice.engine),
+            "quality of " + name_of(choice.engine) + " must be between " +
+                exact(least_quality(choice.engine)) + " and " + exact(most_quality(choice.engine)));
     if (choice.engine == Engine::disks) {
-        must(settings.passes >= 1, "passes must be at least 1");
-        must(settings.strength >= 0.0f && std::isfinite(settings.strength),
-             "strength must be 0 or more");
+        require(settings.passes >= 1, "passes must be at least 1");
+        require(settings.strength >= 0.0f && std::isfinite(settings.strength),
+                "strength must be 0 or more, and finite");
     }
 }
 
@@ -289,7 +320,7 @@ std::string name_of(Engine engine)
         case Engine::rays:
             return "rays";
     }
-    std::abort();
+    throw SettingsError("engine must be masks, disks or rays");
 }
 
 float least_quality(Engine engine)
@@ -307,7 +338,7 @@ float most_quality(Engine engine)
         case Engine::rays:
             return 0.0f;
     }
-    std::abort();
+    throw SettingsError("engine must be masks, disks or rays");
 }
 
 bool knows_kernel(Engine engine, Kernel kernel)
@@ -330,6 +361,9 @@ std::string setting_of(const EngineSettings& settings)
 
 Definition definition_of(const DistanceLimit& limit, Kernel kernel, const Frame& frame)
 {
+    require(limit.value > 0.0, "max_distance must be above 0");
+    require(limit.falloff == Falloff::none || std::isfinite(limit.value),
+            "a falloff needs a max_distance");
     const double share = limit.percent ? limit.value / 100.0 : limit.value / frame.diagonal;
     Definition definition;
     definition.kernel = kernel;

@@ -15,7 +15,7 @@ struct ThreadLimit::Impl {
 
 ThreadLimit::ThreadLimit(int threads)
 {
-    SURFELAO_CHECK(threads >= 1);
+    require(threads >= 1, "threads must be at least 1");
     impl_.reset(new Impl{tbb::global_control(tbb::global_control::max_allowed_parallelism,
                                              static_cast<std::size_t>(threads))});
 }

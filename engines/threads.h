@@ -8,7 +8,7 @@ namespace surfelao {
 /// Limits all parallel work of the process while it lives; the smallest limit alive counts.
 class ThreadLimit {
 public:
-    explicit ThreadLimit(int threads);  ///< >= 1
+    explicit ThreadLimit(int threads);  ///< >= 1, else SettingsError; above the cores: no limit
     ~ThreadLimit();
     ThreadLimit(const ThreadLimit&) = delete;
     ThreadLimit& operator=(const ThreadLimit&) = delete;

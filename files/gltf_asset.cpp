@@ -4,6 +4,8 @@
 #include "files/gltf_uri.h"
 #include "surfels/errors.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -163,8 +165,8 @@ std::string load_uri(const std::string& uri, const fs::path& path, const std::st
 
 void load_buffers(GltfAsset& asset)
 {
-    const auto section = asset.document.find("buffers");
-    if (section == asset.document.end())
+    const auto section = asset.document->find("buffers");
+    if (section == asset.document->end())
         return;
     if (!section->is_array())
         fail_gltf(asset.path, "buffers", "is not an array");
@@ -228,6 +230,16 @@ void fail_gltf(const fs::path& path, std::string_view element, std::string_view 
     throw InputError(path.string() + ": " + sentence);
 }
 
+GltfAsset::GltfAsset() : document(std::make_unique<json>())
+{
+}
+GltfAsset::~GltfAsset() = default;
+
+std::size_t mesh_text_size(const GltfAsset& asset, std::size_t mesh)
+{
+    return (*asset.document)["meshes"][mesh].dump().size();
+}
+
 void load_gltf_asset(const fs::path& path, std::string contents, GltfAsset& asset)
 {
     asset.path = path;
@@ -235,12 +247,12 @@ void load_gltf_asset(const fs::path& path, std::string contents, GltfAsset& asse
     asset.byte_count = asset.file.size();
     const bool binary = asset.file.starts_with("glTF");
     const Container container = binary ? open_glb(asset.file, path) : Container{asset.file, {}, {}};
-    asset.document = parse_document(container.text, path);
+    *asset.document = parse_document(container.text, path);
     asset.bin = container.bin;
     asset.other_chunks = container.other_chunks;
     if (!binary)
         asset.file = {};
-    check_version(asset.document, path);
+    check_version(*asset.document, path);
     load_buffers(asset);
 }
 

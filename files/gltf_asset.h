@@ -7,7 +7,7 @@
 
 #include <glm/mat3x3.hpp>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
 #include <map>
@@ -26,15 +26,16 @@ struct GltfBuffer {
 
 /// Everything a writer needs to hand the file back with attributes added.
 struct GltfAsset : SourceAsset {
-    GltfAsset() = default;
+    GltfAsset();
+    ~GltfAsset() override;
     GltfAsset(const GltfAsset&) = delete;  // the views below point into `file` and `buffers`
     GltfAsset& operator=(const GltfAsset&) = delete;
 
     std::filesystem::path path;
     std::string file;            ///< a GLB as read; empty for text, of which nothing else is needed
     std::size_t byte_count = 0;  ///< of the file and its buffers
-    nlohmann::json document;     ///< an object
-    std::string_view bin;        ///< the binary chunk of a GLB; empty without one
+    std::unique_ptr<nlohmann::json> document;    ///< an object
+    std::string_view bin;                        ///< the binary chunk of a GLB; empty without one
     std::vector<std::string_view> other_chunks;  ///< of a GLB: neither JSON nor BIN, with headers
     std::vector<GltfBuffer> buffers;
     std::map<std::size_t, GltfAccessor> colors;  ///< COLOR_0 by accessor index, of all parts
@@ -48,6 +49,9 @@ struct GltfAsset : SourceAsset {
 /// Throws InputError: cut, not glTF 2, not JSON, nested deeper than 256 levels, a buffer that is
 /// missing, shorter than declared, or outside the file's folder.
 void load_gltf_asset(const std::filesystem::path& path, std::string contents, GltfAsset& asset);
+
+/// The length of a mesh's entry in the document, written close together.
+[[nodiscard]] std::size_t mesh_text_size(const GltfAsset& asset, std::size_t mesh);
 
 /// Text out of the file for use in a message: cut to a bearable length, between characters.
 [[nodiscard]] std::string shortened(std::string_view text);

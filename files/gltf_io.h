@@ -64,6 +64,11 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
 /// .gltf: the new data stand in the file as a data URI. Beside the original the other buffers and
 /// images stay where they are; in another folder they become data URIs too, so that the file opens.
 ///
+/// What an earlier bake has added is replaced (gltf_old_results.h): baking twice gives the same
+/// file as baking once, but for colours.
+///
+/// options.mark stands as the string `surfelao` in asset.extras (maker_mark.h).
+///
 /// Equal input gives equal bytes. Throws InputError when the scene did not come from glTF, when a
 /// colour to be multiplied is not finite, and when a .glb would exceed the format's 4 GiB.
 [[nodiscard]] std::string gltf_contents(const std::filesystem::path& path, const Scene& scene,

@@ -31,10 +31,10 @@ constexpr double kAffineTolerance = 1e-6;
 constexpr std::int32_t kNoParent = -1;
 
 /// The checked document as tinygltf's structs. tinygltf trusts what it reads and opens files, so it
-/// is handed neither more than geometry_document() lets through nor any uri.
+/// is handed neither more than geometry_text() lets through nor any uri.
 tinygltf::Model parse_model(const GltfAsset& asset)
 {
-    const std::string text = geometry_document(asset.document, asset.path).dump();
+    const std::string text = geometry_text(*asset.document, asset.path);
     if (text.size() > std::numeric_limits<unsigned int>::max())
         fail_gltf(asset.path, "JSON", "is larger than 4 GiB");
     tinygltf::TinyGLTF parser;
@@ -422,7 +422,7 @@ private:
                          " bytes of JSON: there are more repetitions than a file of this size may "
                          "stand for");
             if (mesh_bytes[use.mesh] == 0)
-                mesh_bytes[use.mesh] = asset_.document["meshes"][use.mesh].dump().size();
+                mesh_bytes[use.mesh] = mesh_text_size(asset_, use.mesh);
             for (const Group& group : *meshes_[use.mesh]) {
                 vertices += group.positions.count;
                 for (const Primitive& primitive : group.primitives)

@@ -2,6 +2,8 @@
 
 #include "files/gltf_asset.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -301,7 +303,7 @@ json checked_mesh(const Checker& check, const json& value, const std::string& el
 
 }  // namespace
 
-json geometry_document(const json& document, const fs::path& path)
+std::string geometry_text(const json& document, const fs::path& path)
 {
     check_extensions(document, path);
     const Checker check(document, path);
@@ -340,7 +342,7 @@ json geometry_document(const json& document, const fs::path& path)
     collect("scenes", "scene", [&](const json& value, const std::string& element) {
         return check.object(value, kScene, element);
     });
-    return geometry;
+    return geometry.dump();
 }
 
 }  // namespace surfelao

@@ -2,21 +2,22 @@
 /// Internal to the glTF reader.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
+#include <string>
 
 namespace surfelao {
 
-/// A document with the scenes, nodes, meshes (POSITION, COLOR_0 and indices), accessors and buffer
-/// views of `document`, and of those only the fields that geometry needs. What stands in it is of
-/// the type that the specification asks for, nothing required is missing, whole numbers are not
-/// written as fractions, every index lies inside the section it points into, and no number is too
-/// large for what tinygltf stores it in. Entries keep their indices.
+/// As JSON text, a document with the scenes, nodes, meshes (POSITION, COLOR_0 and indices),
+/// accessors and buffer views of `document`, and of those only the fields that geometry needs. What
+/// stands in it is of the type that the specification asks for, nothing required is missing, whole
+/// numbers are not written as fractions, every index lies inside the section it points into, and no
+/// number is too large for what tinygltf stores it in. Entries keep their indices.
 ///
 /// Throws InputError naming the element at fault (`path` is for the message), and for an extension
 /// that the file requires and that changes geometry in a way this reader does not know.
-[[nodiscard]] nlohmann::json geometry_document(const nlohmann::json& document,
-                                               const std::filesystem::path& path);
+[[nodiscard]] std::string geometry_text(const nlohmann::json& document,
+                                        const std::filesystem::path& path);
 
 }  // namespace surfelao

@@ -1,4 +1,5 @@
-/// gltf_uri.h: the URIs of buffers and images. Internal to the glTF reader and writer.
+/// gltf_uri.h: the URIs of buffers and images. For the glTF reader and writer; reports embed their
+/// pictures by make_data_uri() too.
 #pragma once
 
 #include <filesystem>

@@ -1,11 +1,15 @@
 #include "files/gltf_io.h"
 
 #include "files/file_contents.h"
+#include "files/file_type.h"
 #include "files/gltf_accessor.h"
 #include "files/gltf_asset.h"
+#include "files/gltf_old_results.h"
 #include "files/gltf_uri.h"
+#include "files/maker_mark.h"
 #include "surfels/errors.h"
-#include "surfels/extension.h"
+
+#include <nlohmann/json.hpp>
 
 #include <glm/geometric.hpp>
 
@@ -289,23 +293,23 @@ void for_each_external_image(json& document, const fs::path& model, Embed&& embe
 }
 
 /// Makes one binary chunk of all buffers and turns the document's references to it.
-std::string merge_buffers(json& document, const GltfAsset& asset)
+std::string merge_buffers(json& document, std::span<const GltfBuffer> buffers_as_read)
 {
     std::string bin;
-    std::vector<std::size_t> bases(asset.buffers.size(), 0);
-    std::vector<std::size_t> kept_as(asset.buffers.size(), 0);
+    std::vector<std::size_t> bases(buffers_as_read.size(), 0);
+    std::vector<std::size_t> kept_as(buffers_as_read.size(), 0);
     json buffers = json::array();
-    buffers.push_back(asset.buffers[0].bytes.empty() ? json::object() : document["buffers"][0]);
+    buffers.push_back(buffers_as_read[0].bytes.empty() ? json::object() : document["buffers"][0]);
     buffers[0].erase("uri");
-    for (std::size_t i = 0; i < asset.buffers.size(); ++i) {
-        if (asset.buffers[i].bytes.empty()) {  // its contents come from an extension
+    for (std::size_t i = 0; i < buffers_as_read.size(); ++i) {
+        if (buffers_as_read[i].bytes.empty()) {  // its contents come from an extension
             kept_as[i] = buffers.size();
             buffers.push_back(document["buffers"][i]);
             continue;
         }
         pad_to_four(bin, '\0');
         bases[i] = bin.size();
-        bin += asset.buffers[i].bytes;
+        bin += buffers_as_read[i].bytes;
     }
     pad_to_four(bin, '\0');
     document["buffers"] = buffers;
@@ -325,7 +329,7 @@ std::string merge_buffers(json& document, const GltfAsset& asset)
             const auto place = extensions->find(name);
             if (place != extensions->end() && place->is_object() && place->contains("buffer") &&
                 (*place)["buffer"].is_number_unsigned() &&
-                (*place)["buffer"].get<std::size_t>() < asset.buffers.size())
+                (*place)["buffer"].get<std::size_t>() < buffers_as_read.size())
                 relocate(*place);
         }
     }
@@ -366,12 +370,12 @@ std::string make_glb(const json& document, const std::string& bin, const GltfAss
 
 /// For a .glb: all that has been a buffer or a file of its own becomes one chunk, which is
 /// returned.
-std::string gather(json& document, const GltfAsset& asset)
+std::string gather(json& document, std::span<const GltfBuffer> buffers, const fs::path& model)
 {
-    std::string bin = merge_buffers(document, asset);
+    std::string bin = merge_buffers(document, buffers);
     json& views = document["bufferViews"];
     for_each_external_image(
-        document, asset.path, [&](json& image, const std::string& type, const std::string& bytes) {
+        document, model, [&](json& image, const std::string& type, const std::string& bytes) {
             image.erase("uri");
             image["mimeType"] = type;
             image["bufferView"] = views.size();
@@ -384,22 +388,36 @@ std::string gather(json& document, const GltfAsset& asset)
 }
 
 /// For a .gltf: a binary chunk, and for another folder the files too, become data URIs.
-void embed(json& document, const GltfAsset& asset, bool same_folder)
+void embed(json& document, std::span<const GltfBuffer> buffers, const fs::path& model,
+           bool same_folder)
 {
-    for (std::size_t i = 0; i < asset.buffers.size(); ++i) {
+    for (std::size_t i = 0; i < buffers.size(); ++i) {
         json& buffer = document["buffers"][i];
         const auto uri = buffer.find("uri");
-        const bool stays = asset.buffers[i].bytes.empty() ||
+        const bool stays = buffers[i].bytes.empty() ||
                            (uri != buffer.end() &&
                             (same_folder || is_data_uri(uri->get_ref<const std::string&>())));
         if (!stays)
-            buffer["uri"] = make_data_uri("application/octet-stream", asset.buffers[i].bytes);
+            buffer["uri"] = make_data_uri("application/octet-stream", buffers[i].bytes);
     }
     if (!same_folder)
-        for_each_external_image(document, asset.path,
+        for_each_external_image(document, model,
                                 [](json& image, const std::string& type, const std::string& bytes) {
                                     image["uri"] = make_data_uri(type, bytes);
                                 });
+}
+
+/// Where the extras of the asset are no object, there is no place for a mark.
+void set_mark(json& document, const std::string& mark)
+{
+    json& asset = document["asset"];
+    const auto extras = asset.find("extras");
+    if (extras != asset.end() && !extras->is_object())
+        return;
+    if (!mark.empty())
+        asset["extras"][kMarkKey] = mark;
+    else if (extras != asset.end())
+        extras->erase(kMarkKey);
 }
 
 bool in_one_folder(const fs::path& a, const fs::path& b)
@@ -419,16 +437,19 @@ std::string gltf_contents(const fs::path& path, const Scene& scene,
                          ": only a scene that was read from glTF can be written as glTF");
     SURFELAO_CHECK(occlusion.size() == scene.positions.size());
 
-    json document = asset->document;
-    const bool binary = lower_extension(path) == ".glb";
+    json document = *asset->document;
+    std::vector<GltfBuffer> buffers_as_read = asset->buffers;
+    drop_old_results(document, buffers_as_read, scene);
+    const bool binary = type_of(path) == FileType::glb;
     std::string bytes;
     if (binary)
-        bytes = gather(document, *asset);
+        bytes = gather(document, buffers_as_read, asset->path);
     else
-        embed(document, *asset, in_one_folder(path, asset->path));
+        embed(document, buffers_as_read, asset->path, in_one_folder(path, asset->path));
 
     json& buffers = document["buffers"];
     const std::size_t buffer = binary ? 0 : buffers.size();
+    set_mark(document, options.mark);
     NewAccessors accessors(document);
     add_attributes(document, *asset, scene, occlusion, options, accessors);
     bytes += accessors.finish(buffer, bytes.size());

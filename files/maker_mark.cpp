@@ -1,5 +1,6 @@
 #include "files/maker_mark.h"
 
+#include "files/file_type.h"
 #include "files/gltf_strings.h"
 #include "files/text_cursor.h"
 #include "surfels/extension.h"
@@ -61,6 +62,13 @@ std::string mark_of_ply(std::string_view text)
         text.remove_prefix(std::min(text.size(), line.size() + 1));
     }
     return {};
+}
+
+std::string mark_of_obj(std::string_view text)
+{
+    if (text.starts_with(kByteOrderMark))
+        text.remove_prefix(kByteOrderMark.size());
+    return std::string(mark_behind("# ", first_line(text)));
 }
 
 std::string mark_of_off(std::string_view text)
@@ -127,22 +135,19 @@ std::size_t obj_mark_size(std::string_view text)
 
 std::string read_mark(const fs::path& path)
 {
-    const std::string extension = lower_extension(path);
-    if (extension == ".ply")
-        return mark_of_ply(part_of(path, false));
-    if (extension == ".obj") {
-        const std::string head = part_of(path, false);
-        const std::string_view text = head;
-        return std::string(
-            mark_behind("# ", first_line(text.substr(text.starts_with(kByteOrderMark) ? 3 : 0))));
+    switch (type_of(path)) {
+        case FileType::ply:
+            return mark_of_ply(part_of(path, false));
+        case FileType::obj:
+            return mark_of_obj(part_of(path, false));
+        case FileType::off:
+            return mark_of_off(part_of(path, true));
+        case FileType::gltf:
+        case FileType::glb:
+            return mark_of_gltf(path);
+        default:
+            return lower_extension(path) == ".html" ? mark_of_html(part_of(path, false)) : "";
     }
-    if (extension == ".off")
-        return mark_of_off(part_of(path, true));
-    if (extension == ".gltf" || extension == ".glb")
-        return mark_of_gltf(path);
-    if (extension == ".html")
-        return mark_of_html(part_of(path, false));
-    return {};
 }
 
 }  // namespace surfelao

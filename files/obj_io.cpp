@@ -1,5 +1,6 @@
 #include "files/obj_io.h"
 
+#include "files/maker_mark.h"
 #include "files/mesh_source.h"
 #include "files/text_cursor.h"
 #include "surfels/errors.h"
@@ -110,11 +111,28 @@ void append_grey(std::string& text, const Occlusion& occlusion)
     }
 }
 
-std::string with_new_vertex_lines(const std::string& old, std::span<const Occlusion> occlusion)
+/// The mark as the first line, which ends as the first line of `like` does.
+void append_mark_line(std::string& text, std::string_view mark, std::string_view like)
+{
+    if (mark.empty())
+        return;
+    const std::string_view end = like.substr(std::min(like.find_first_of("\r\n"), like.size()));
+    text.append("# ").append(mark);
+    if (end.empty())
+        text += '\n';
+    else
+        text.append(end.substr(0, end.starts_with("\r\n") ? 2 : 1));
+}
+
+std::string with_new_vertex_lines(const std::string& old, std::span<const Occlusion> occlusion,
+                                  std::string_view mark)
 {
     std::string text;
-    text.reserve(old.size() + occlusion.size() * 28);
-    std::size_t copied = 0;
+    text.reserve(old.size() + mark.size() + occlusion.size() * 28);
+    std::size_t copied = old.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+    text.append(old, 0, copied);
+    append_mark_line(text, mark, old);
+    copied += obj_mark_size(std::string_view(old).substr(copied));
     std::size_t vertex = 0;
     TextCursor cursor("", old, kObjRules);
     while (cursor.next_line()) {
@@ -135,11 +153,13 @@ std::string with_new_vertex_lines(const std::string& old, std::span<const Occlus
 
 }  // namespace
 
-std::string obj_contents(const Scene& scene, std::span<const Occlusion> occlusion)
+std::string obj_contents(const Scene& scene, std::span<const Occlusion> occlusion,
+                         std::string_view mark)
 {
     if (const auto* source = dynamic_cast<const ObjSource*>(scene.asset.get()))
-        return with_new_vertex_lines(source->text, occlusion);
+        return with_new_vertex_lines(source->text, occlusion, mark);
     std::string text;
+    append_mark_line(text, mark, {});
     for (std::size_t v = 0; v < scene.positions.size(); ++v) {
         text += 'v';
         for (int axis = 0; axis < 3; ++axis) {

@@ -13,6 +13,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace surfelao {
 
@@ -23,6 +24,8 @@ namespace surfelao {
 /// The scene as OBJ with the visibility as the grey colour of each vertex (`v x y z grey grey
 /// grey`, six decimals). A scene that came from OBJ gives the text of its file with nothing changed
 /// but the `v` lines, whose coordinates stay as they are written (w and former colours go).
-[[nodiscard]] std::string obj_contents(const Scene& scene, std::span<const Occlusion> occlusion);
+/// mark: a comment as the first line, in the place of an older one (maker_mark.h); empty: none.
+[[nodiscard]] std::string obj_contents(const Scene& scene, std::span<const Occlusion> occlusion,
+                                       std::string_view mark = {});
 
 }  // namespace surfelao

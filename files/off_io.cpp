@@ -148,7 +148,8 @@ Scene read_off(const std::string& file_name, std::string contents)
                            std::make_shared<MeshSource>());
 }
 
-std::string off_contents(const Scene& scene, std::span<const Occlusion> occlusion)
+std::string off_contents(const Scene& scene, std::span<const Occlusion> occlusion,
+                         std::string_view mark)
 {
     std::string text = "COFF\n";
     append_integer(text, static_cast<std::int64_t>(scene.positions.size()));
@@ -174,6 +175,8 @@ std::string off_contents(const Scene& scene, std::span<const Occlusion> occlusio
         }
         text += '\n';
     });
+    if (!mark.empty())
+        text.append("# ").append(mark) += '\n';
     return text;
 }
 

@@ -12,6 +12,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace surfelao {
 
@@ -21,6 +22,8 @@ namespace surfelao {
 /// The scene as COFF: vertices with the visibility as grey (`x y z g g g 255`, g in 0..255), the
 /// polygons of its source where it has them. Normals, texture coordinates and face colours of an
 /// OFF source are not carried over.
-[[nodiscard]] std::string off_contents(const Scene& scene, std::span<const Occlusion> occlusion);
+/// mark: a comment as the last line (maker_mark.h); empty: none.
+[[nodiscard]] std::string off_contents(const Scene& scene, std::span<const Occlusion> occlusion,
+                                       std::string_view mark = {});
 
 }  // namespace surfelao

@@ -10,8 +10,14 @@
 #include "surfels/occlusion.h"
 #include "surfels/scene.h"
 
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <functional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace surfelao {
 
@@ -28,7 +34,38 @@ namespace surfelao {
 /// Any other scene gives binary_little_endian with the polygons of its source. Coordinates are
 /// float, or double where rounding to float would move some vertex by more than kFloatSlack of the
 /// bounding box's diagonal (small things far from the origin).
-[[nodiscard]] std::string ply_contents(const Scene& scene, std::span<const Occlusion> occlusion);
+/// mark: a comment behind the line `format`, in the place of an older one (maker_mark.h); empty:
+/// none.
+[[nodiscard]] std::string ply_contents(const Scene& scene, std::span<const Occlusion> occlusion,
+                                       std::string_view mark = {});
+
+/// What stands at the vertices of a new file behind their coordinates.
+struct PlyValues {
+    std::vector<std::string> properties;  ///< "float error"
+    /// Appends the bytes of one vertex, in the order of the properties.
+    std::function<void(std::string& row, std::size_t vertex)> append;
+};
+
+enum class PlyCoordinates {
+    near_enough,  ///< float or double, as above
+    exact,        ///< double
+};
+
+/// The scene with the polygons of its source as a new binary_little_endian file.
+[[nodiscard]] std::string new_ply(const Scene& scene, const PlyValues& values,
+                                  std::string_view mark,
+                                  PlyCoordinates coordinates = PlyCoordinates::near_enough);
+
+/// The bytes of a number as a binary PLY holds them.
+template <class Value>
+void append_bytes(std::string& text, Value value, std::endian endian = std::endian::little)
+{
+    char bytes[sizeof(Value)];
+    std::memcpy(bytes, &value, sizeof(Value));
+    if (endian != std::endian::native)
+        std::reverse(bytes, bytes + sizeof(Value));
+    text.append(bytes, sizeof(Value));
+}
 
 /// Twice the rounding of a float as a share of the number: half an offset unit would be 1e-4.
 inline constexpr double kFloatSlack = 1.2e-7;

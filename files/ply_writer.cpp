@@ -1,3 +1,4 @@
+#include "files/maker_mark.h"
 #include "files/mesh_source.h"
 #include "files/ply_file.h"
 #include "files/ply_io.h"
@@ -8,9 +9,7 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 namespace surfelao {
@@ -18,25 +17,22 @@ namespace {
 
 using namespace ply;
 
-constexpr std::string_view kWrittenProperties[] = {"occlusion", "bent_nx", "bent_ny", "bent_nz",
-                                                   "red",       "green",   "blue"};
+constexpr std::string_view kWrittenProperties[] = {
+    "float occlusion", "float bent_nx", "float bent_ny", "float bent_nz",
+    "uchar red",       "uchar green",   "uchar blue"};
 
-void append_property_lines(std::string& text, std::string_view newline)
+template <class Properties>
+void append_property_lines(std::string& text, const Properties& properties,
+                           std::string_view newline)
 {
-    for (std::size_t p = 0; p < std::size(kWrittenProperties); ++p)
-        text.append(p < 4 ? "property float " : "property uchar ")
-            .append(kWrittenProperties[p])
-            .append(newline);
+    for (const auto& property : properties)
+        text.append("property ").append(property).append(newline);
 }
 
-template <class Value>
-void append_bytes(std::string& text, Value value, std::endian endian)
+void append_mark_line(std::string& text, std::string_view mark, std::string_view newline)
 {
-    char bytes[sizeof(Value)];
-    std::memcpy(bytes, &value, sizeof(Value));
-    if (endian != std::endian::native)
-        std::reverse(bytes, bytes + sizeof(Value));
-    text.append(bytes, sizeof(Value));
+    if (!mark.empty())
+        text.append("comment ").append(mark).append(newline);
 }
 
 std::array<float, 4> floats_of(const Occlusion& o)
@@ -65,41 +61,60 @@ void append_ascii(std::string& text, const Occlusion& occlusion)
 
 bool is_written(std::string_view property)
 {
-    return std::ranges::find(kWrittenProperties, property) != std::end(kWrittenProperties);
+    return std::ranges::any_of(kWrittenProperties, [&](std::string_view written) {
+        return written.substr(written.find(' ') + 1) == property;
+    });
 }
 
-/// The header of the source with the written properties behind the other ones of the vertex.
-void append_header(std::string& text, const PlySource& source)
+/// The header of the source with the written properties behind the other ones of the vertex and
+/// the mark behind the format; older ones of both are left out.
+void append_header(std::string& text, const PlySource& source, std::string_view mark)
 {
     const std::string_view old =
         std::string_view(source.contents).substr(0, source.header.data_begin);
+    const std::string& newline = source.header.newline;
     const std::size_t insert_at = find_element(source.header, "vertex")->lines_end;
     std::size_t copied = 0;
+    const auto copy_to = [&](std::size_t end) {
+        text.append(old.substr(copied, end - copied));
+        copied = end;
+    };
     bool in_vertex = false;
+    bool inserted = false;
     TextCursor cursor({}, old, {});
-    while (copied < insert_at && cursor.next_line()) {
+    while (cursor.next_line()) {
         const std::size_t line_begin = cursor.offset();
-        if (line_begin >= insert_at)
-            break;
+        if (!inserted && line_begin >= insert_at) {
+            copy_to(insert_at);
+            inserted = true;
+            append_property_lines(text, kWrittenProperties, newline);
+        }
         const std::string_view keyword = cursor.word();
         std::string_view last;
         if (keyword == "element")
             in_vertex = cursor.word() == "vertex";
+        const std::size_t words_begin = cursor.at_line_end() ? copied : cursor.offset();
         while (!cursor.at_line_end())
             last = cursor.word();
-        if (keyword == "property" && in_vertex && is_written(last)) {
-            text.append(old.substr(copied, line_begin - copied));
-            copied = line_after(old, cursor.offset());
+        const std::size_t line_end = line_after(old, cursor.offset());
+        const bool is_old_mark =
+            keyword == "comment" &&
+            !command_of_mark(old.substr(words_begin, cursor.offset() - words_begin)).empty();
+        if (is_old_mark || (keyword == "property" && in_vertex && is_written(last))) {
+            copy_to(line_begin);
+            copied = line_end;
+        } else if (keyword == "format") {
+            copy_to(line_end);
+            append_mark_line(text, mark, newline);
         }
     }
-    text.append(old.substr(copied, insert_at - copied));
-    append_property_lines(text, source.header.newline);
-    text.append(old.substr(insert_at));
+    text.append(old.substr(copied));
 }
 
 /// The source's file with every vertex row's written properties replaced.
 template <class Data>
-std::string spliced(const PlySource& source, std::span<const Occlusion> occlusion)
+std::string spliced(const PlySource& source, std::span<const Occlusion> occlusion,
+                    std::string_view mark)
 {
     const Element& vertices = *find_element(source.header, "vertex");
     const bool ascii = source.header.format == Format::ascii;
@@ -107,7 +122,7 @@ std::string spliced(const PlySource& source, std::span<const Occlusion> occlusio
         source.header.format == Format::big_endian ? std::endian::big : std::endian::little;
     std::string text;
     text.reserve(source.contents.size() + 256 + occlusion.size() * (ascii ? 60 : 19));
-    append_header(text, source);
+    append_header(text, source, mark);
     text.append(source.data().substr(0, source.vertices_begin));
 
     const std::string_view rows =
@@ -148,9 +163,12 @@ bool needs_double(const std::vector<glm::dvec3>& positions)
     return !(largest_shift <= kFloatSlack * glm::distance(low, high));
 }
 
-std::string new_file(const Scene& scene, std::span<const Occlusion> occlusion)
+}  // namespace
+
+std::string new_ply(const Scene& scene, const PlyValues& values, std::string_view mark,
+                    PlyCoordinates coordinates)
 {
-    const bool wide = needs_double(scene.positions);
+    const bool wide = coordinates == PlyCoordinates::exact || needs_double(scene.positions);
     const bool many = scene.positions.size() > std::numeric_limits<std::int32_t>::max();
     std::size_t most_corners = 0;
     std::size_t corner_count = 0;
@@ -159,12 +177,14 @@ std::string new_file(const Scene& scene, std::span<const Occlusion> occlusion)
         corner_count += corners.size();
     });
     const bool big_polygons = most_corners > 255;
-    std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex ";
+    std::string text = "ply\nformat binary_little_endian 1.0\n";
+    append_mark_line(text, mark, "\n");
+    text += "element vertex ";
     append_integer(text, static_cast<std::int64_t>(scene.positions.size()));
     text += '\n';
     for (const char* axis : {"x\n", "y\n", "z\n"})
         text.append(wide ? "property double " : "property float ").append(axis);
-    append_property_lines(text, "\n");
+    append_property_lines(text, values.properties, "\n");
     text += "element face ";
     append_integer(text, static_cast<std::int64_t>(face_count(scene)));
     text.append("\nproperty list ")
@@ -172,39 +192,44 @@ std::string new_file(const Scene& scene, std::span<const Occlusion> occlusion)
         .append(many ? "uint" : "int")
         .append(" vertex_indices\nend_header\n");
 
+    // of the values 19 bytes: what a bake has at a vertex
     text.reserve(text.size() + scene.positions.size() * (wide ? 43 : 31) +
                  face_count(scene) * (big_polygons ? 4 : 1) + corner_count * 4);
     for (std::size_t v = 0; v < scene.positions.size(); ++v) {
         for (int axis = 0; axis < 3; ++axis) {
             const double value = scene.positions[v][axis];
             if (wide)
-                append_bytes(text, value, std::endian::little);
+                append_bytes(text, value);
             else
-                append_bytes(text, static_cast<float>(value), std::endian::little);
+                append_bytes(text, static_cast<float>(value));
         }
-        append_binary(text, occlusion[v], std::endian::little);
+        values.append(text, v);
     }
     for_each_face(scene, [&](std::span<const std::uint32_t> corners) {
         const std::uint32_t size = static_cast<std::uint32_t>(corners.size());
         if (big_polygons)
-            append_bytes(text, size, std::endian::little);
+            append_bytes(text, size);
         else
             text += static_cast<char>(size);
         for (const std::uint32_t corner : corners)
-            append_bytes(text, corner, std::endian::little);
+            append_bytes(text, corner);
     });
     return text;
 }
 
-}  // namespace
-
-std::string ply_contents(const Scene& scene, std::span<const Occlusion> occlusion)
+std::string ply_contents(const Scene& scene, std::span<const Occlusion> occlusion,
+                         std::string_view mark)
 {
     const auto* source = dynamic_cast<const PlySource*>(scene.asset.get());
-    if (!source)
-        return new_file(scene, occlusion);
-    return source->header.format == Format::ascii ? spliced<AsciiData>(*source, occlusion)
-                                                  : spliced<BinaryData>(*source, occlusion);
+    if (!source) {
+        const PlyValues values{{std::begin(kWrittenProperties), std::end(kWrittenProperties)},
+                               [&](std::string& row, std::size_t v) {
+                                   append_binary(row, occlusion[v], std::endian::little);
+                               }};
+        return new_ply(scene, values, mark);
+    }
+    return source->header.format == Format::ascii ? spliced<AsciiData>(*source, occlusion, mark)
+                                                  : spliced<BinaryData>(*source, occlusion, mark);
 }
 
 }  // namespace surfelao

@@ -1,6 +1,7 @@
 #include "files/scene_io.h"
 
 #include "files/file_contents.h"
+#include "files/file_type.h"
 #include "files/gltf_io.h"
 #include "files/obj_io.h"
 #include "files/off_io.h"
@@ -8,7 +9,6 @@
 #include "files/stl_io.h"
 #include "surfels/atomic_file.h"
 #include "surfels/errors.h"
-#include "surfels/extension.h"
 
 #include <string>
 
@@ -16,26 +16,6 @@ namespace surfelao {
 namespace {
 
 namespace fs = std::filesystem;
-
-enum class FileType { obj, ply, off, stl, gltf, glb, unknown };
-
-FileType type_of(const fs::path& path)
-{
-    const std::string extension = lower_extension(path);
-    constexpr std::pair<const char*, FileType> kTypes[] = {
-        {".obj", FileType::obj}, {".ply", FileType::ply},   {".off", FileType::off},
-        {".stl", FileType::stl}, {".gltf", FileType::gltf}, {".glb", FileType::glb}};
-    for (const auto& [name, type] : kTypes) {
-        if (extension == name)
-            return type;
-    }
-    return FileType::unknown;
-}
-
-bool is_gltf(FileType type)
-{
-    return type == FileType::gltf || type == FileType::glb;
-}
 
 std::string unknown_type(const fs::path& path, const std::string& known)
 {
@@ -73,11 +53,6 @@ Scene read_scene(const fs::path& path)
     return scene;
 }
 
-bool is_mesh_name(const fs::path& path)
-{
-    return type_of(path) != FileType::unknown;
-}
-
 void check_output(const fs::path& input, const fs::path& output)
 {
     const auto refuse = [&](const std::string& fault) {
@@ -96,15 +71,23 @@ void check_output(const fs::path& input, const fs::path& output)
 void write_scene(const fs::path& path, const Scene& scene, std::span<const Occlusion> occlusion,
                  const WriteOptions& options)
 {
-    SURFELAO_CHECK(occlusion.size() == scene.positions.size());
+    require(occlusion.size() == scene.positions.size(),
+            "writing takes one answer per vertex: there are " +
+                std::to_string(scene.positions.size()) + " vertices and " +
+                std::to_string(occlusion.size()) + " answers");
+    const bool covered =
+        scene.parts.empty() ||
+        scene.parts.back().first_vertex + scene.parts.back().vertex_count == scene.positions.size();
+    if (!covered)
+        throw InputError(path.string() + ": the scene's parts do not cover its vertices");
     check_output(path, path);
     switch (type_of(path)) {
         case FileType::obj:
-            return write_atomically(path, obj_contents(scene, occlusion));
+            return write_atomically(path, obj_contents(scene, occlusion, options.mark));
         case FileType::off:
-            return write_atomically(path, off_contents(scene, occlusion));
+            return write_atomically(path, off_contents(scene, occlusion, options.mark));
         case FileType::ply:
-            return write_atomically(path, ply_contents(scene, occlusion));
+            return write_atomically(path, ply_contents(scene, occlusion, options.mark));
         default:
             return write_atomically(path, gltf_contents(path, scene, occlusion, options));
     }

@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 
 namespace surfelao {
 
@@ -19,12 +20,10 @@ namespace surfelao {
 /// memory stay in proportion to the file's size, whatever its counts claim.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path);
 
-/// Whether the extension is one of those that read_scene() knows.
-[[nodiscard]] bool is_mesh_name(const std::filesystem::path& path);
-
 struct WriteOptions {
     bool colors =
         false;  ///< glTF: also write COLOR_0 (visibility as grey). PLY and OBJ always have it
+    std::string mark = {};  ///< who made the file, and how (maker_mark.h); empty: it says nothing
 };
 
 /// Throws InputError when a scene from `input` could not be written to `output` at all: unknown
@@ -34,8 +33,9 @@ void check_output(const std::filesystem::path& input, const std::filesystem::pat
 
 /// Writes the scene with one Occlusion per scene vertex, in scene order. The file appears under its
 /// name only when it is complete (written to a temporary name beside it, then renamed): on any
-/// error an existing file is untouched and nothing is left behind. Throws std::runtime_error when
-/// the machine refuses (disk full).
+/// error an existing file is untouched and nothing is left behind. Throws SettingsError when the
+/// number of answers is another one, InputError as check_output does, std::runtime_error when the
+/// machine refuses (disk full).
 void write_scene(const std::filesystem::path& path, const Scene& scene,
                  std::span<const Occlusion> occlusion, const WriteOptions& options = {});
 

@@ -1,8 +1,8 @@
 #include "files/sidecars.h"
 
+#include "files/file_type.h"
 #include "files/gltf_strings.h"
 #include "files/gltf_uri.h"
-#include "surfels/extension.h"
 
 #include <algorithm>
 #include <fstream>
@@ -111,12 +111,12 @@ std::vector<fs::path> sidecars_of(const fs::path& mesh)
     std::error_code error;
     if (!fs::is_regular_file(mesh, error))
         return files;
-    const std::string extension = lower_extension(mesh);
-    if (extension == ".obj")
+    const FileType type = type_of(mesh);
+    if (type == FileType::obj)
         add_of_obj(mesh, files);
-    else if (extension == ".ply")
+    else if (type == FileType::ply)
         add_of_ply(mesh, files);
-    else if (extension == ".gltf" || extension == ".glb")
+    else if (is_gltf(type))
         add_of_gltf(mesh, files);
     return files;
 }

@@ -149,10 +149,6 @@ struct GlContext::Impl {
             info.software = info.software || info.renderer.find(name) != std::string::npos;
         info.max_texture_size = integer_of(gl, GL_MAX_TEXTURE_SIZE);
         info.max_buffer_texels = integer_of(gl, GL_MAX_TEXTURE_BUFFER_SIZE);
-        info.max_samples = integer_of(gl, GL_MAX_SAMPLES);
-        GLfloat sizes[2] = {0, 0};
-        gl.GetFloatv(GL_POINT_SIZE_RANGE, sizes);
-        info.max_point_size = sizes[1];
 
         // the same in every context: rows without padding, seams of cube maps and the like unused
         gl.PixelStorei(GL_PACK_ALIGNMENT, 1);

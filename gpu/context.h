@@ -35,8 +35,6 @@ struct GlInfo {
     bool software = false;      ///< drawn by the CPU (llvmpipe and its kind)
     int max_texture_size = 0;   ///< widest and highest texture, framebuffer and viewport
     int max_buffer_texels = 0;  ///< longest texture buffer
-    int max_samples = 0;        ///< per pixel
-    float max_point_size = 0;   ///< in pixels; larger points are drawn this large without a word
 };
 
 /// How to get at a context that somebody else owns (a window). All three are called in the thread

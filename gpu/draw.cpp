@@ -20,10 +20,8 @@ void apply(const GlTable& gl, const Framebuffer& target, const DrawState& state)
         gl.Scissor(state.scissor->x, state.scissor->y, state.scissor->width, state.scissor->height);
 
     enable(gl, GL_DEPTH_TEST, state.depth != DepthTest::off);
-    gl.DepthFunc(state.depth == DepthTest::equal_or_less ? GL_LEQUAL : GL_LESS);
-    const bool write_depth =
-        state.depth == DepthTest::less || state.depth == DepthTest::equal_or_less;
-    gl.DepthMask(write_depth ? GL_TRUE : GL_FALSE);
+    gl.DepthFunc(GL_LESS);
+    gl.DepthMask(state.depth == DepthTest::less ? GL_TRUE : GL_FALSE);
 
     enable(gl, GL_BLEND, state.blend != Blend::off);
     gl.BlendEquation(GL_FUNC_ADD);
@@ -33,26 +31,9 @@ void apply(const GlTable& gl, const Framebuffer& target, const DrawState& state)
         gl.BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ONE);
 
     enable(gl, GL_CULL_FACE, state.cull != Cull::none);
-    gl.CullFace(state.cull == Cull::front ? GL_FRONT : GL_BACK);
+    gl.CullFace(GL_BACK);
     const GLboolean write_color = state.write_color ? GL_TRUE : GL_FALSE;
     gl.ColorMask(write_color, write_color, write_color, write_color);
-    gl.Enable(GL_PROGRAM_POINT_SIZE);
-    gl.Enable(GL_MULTISAMPLE);
-}
-
-GLenum name_of(Primitive primitive)
-{
-    switch (primitive) {
-        case Primitive::triangles:
-            return GL_TRIANGLES;
-        case Primitive::triangle_strip:
-            return GL_TRIANGLE_STRIP;
-        case Primitive::lines:
-            return GL_LINES;
-        case Primitive::points:
-            break;
-    }
-    return GL_POINTS;
 }
 
 }  // namespace
@@ -60,20 +41,17 @@ GLenum name_of(Primitive primitive)
 void draw(const Framebuffer& target, const Program& program, const VertexArray& vertices,
           const DrawCall& call, const DrawState& state)
 {
-    if (call.count == 0 || call.instances == 0)
+    if (call.count == 0)
         return;
     const GlTable& gl = target.gl();
     apply(gl, target, state);
     program.use();
     gl.BindVertexArray(vertices.id());
-    const GLenum primitive = name_of(call.primitive);
     const GLsizei count = static_cast<GLsizei>(call.count);
-    const GLsizei instances = static_cast<GLsizei>(call.instances);
     if (call.indexed)
-        gl.DrawElementsInstanced(primitive, count, GL_UNSIGNED_INT,
-                                 reinterpret_cast<const void*>(call.first * 4), instances);
+        gl.DrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, nullptr);
     else
-        gl.DrawArraysInstanced(primitive, static_cast<GLint>(call.first), count, instances);
+        gl.DrawArrays(GL_TRIANGLES, 0, count);
     check_gl(gl, "drawing");
 }
 

@@ -9,12 +9,9 @@
 
 namespace surfelao {
 
-enum class Primitive { triangles, triangle_strip, lines, points };
-
 enum class DepthTest {
-    off,   ///< neither tested nor written
-    less,  ///< nearer wins, and is written
-    equal_or_less,
+    off,        ///< neither tested nor written
+    less,       ///< nearer wins, and is written
     read_only,  ///< nearer wins, nothing is written
 };
 
@@ -24,7 +21,7 @@ enum class Blend {
     add,   ///< out = old + new, alpha too
 };
 
-enum class Cull { none, back, front };  ///< counter-clockwise triangles show their front
+enum class Cull { none, back };  ///< counter-clockwise triangles show their front
 
 struct DrawState {
     DepthTest depth = DepthTest::off;
@@ -36,14 +33,11 @@ struct DrawState {
 };
 
 struct DrawCall {
-    Primitive primitive = Primitive::triangles;
-    std::size_t first = 0;  ///< vertex, or index where `indexed`
-    std::size_t count = 0;  ///< of vertices or indices, per instance
-    std::size_t instances = 1;
-    bool indexed = false;  ///< through VertexArray::indices
+    std::size_t count = 0;  ///< of vertices or indices: three a triangle
+    bool indexed = false;   ///< through VertexArray::indices
 };
 
-/// Points take their size from gl_PointSize. Throws std::runtime_error on any error of the device.
+/// Draws triangles. Throws std::runtime_error on any error of the device.
 void draw(const Framebuffer& target, const Program& program, const VertexArray& vertices,
           const DrawCall& call, const DrawState& state = {});
 

@@ -5,7 +5,7 @@
 #include "gpu/receiver_grid.h"
 #include "gpu/rows.h"
 #include "tree/disks/gather.h"
-#include "tree/receiver_group.h"
+#include "tree/receiver_groups.h"
 
 #include <glm/vec4.hpp>
 
@@ -97,9 +97,9 @@ struct GatherGrid {
     ReceiverGrid grid;
     TextureBuffer groups;
 
-    GatherGrid(const GlContext& context, std::span<const ReceiverGroup> receivers)
-        : grid(context, receivers, {{"u_sums", TexelFormat::rgba32f}}),
-          groups(upload_groups(context, receivers))
+    GatherGrid(const GlContext& context, const ReceiverGroups& receivers)
+        : grid(context, receivers, receivers.leaves, {{"u_sums", TexelFormat::rgba32f}}),
+          groups(upload_groups(context, receivers, receivers.leaves))
     {
     }
     /// Sums of disks_gather.frag, at pixel_of_slot().
@@ -115,7 +115,7 @@ TextureBuffer upload_slots(const GlContext& context, std::vector<std::uint32_t> 
 /// One side of all surfels: where they are asked, and what they find.
 struct FarSide {
     float sign;  ///< +1: the side of the casting normal
-    std::vector<ReceiverGroup> groups;
+    ReceiverGroups groups;
     GatherGrid gathered;
     TextureBuffer slots;  ///< of each record in the grid
     Framebuffer found;    ///< disks_fit.frag: visibility and its change
@@ -191,10 +191,10 @@ public:
         for (int side = 0; side < side_count() && options_.passes > 1; ++side)
             sides.emplace_back(scene_.context, scene_.octree, scene_.records,
                                options_.definition.offset, side == 0 ? 1.0f : -1.0f);
-        const std::vector<ReceiverGroup> groups = group_receivers(receivers);
-        std::uint64_t work = groups.size();
+        const ReceiverGroups groups = group_receivers(receivers);
+        std::uint64_t work = groups.leaves.size();
         for (const FarSide& side : sides)
-            work += side.groups.size() * static_cast<std::uint64_t>(options_.passes - 1);
+            work += side.groups.leaves.size() * static_cast<std::uint64_t>(options_.passes - 1);
         ProgressMeter meter(progress, work);
 
         std::vector<double> residuals;
@@ -299,8 +299,7 @@ private:
         scene_.context.finish("averaging visibility");
     }
 
-    TextureBuffer answer(std::span<const ReceiverGroup> groups, std::size_t count,
-                         ProgressMeter& meter)
+    TextureBuffer answer(const ReceiverGroups& groups, std::size_t count, ProgressMeter& meter)
     {
         GatherGrid gathered(scene_.context, groups);
         gather(gathered, options_.opening, options_.definition.max_distance, meter);

@@ -8,7 +8,7 @@
 #include "tree/masks/limits.h"
 #include "tree/masks/raster.h"
 #include "tree/masks/tree.h"
-#include "tree/receiver_group.h"
+#include "tree/receiver_groups.h"
 
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
@@ -33,10 +33,10 @@ static_assert(kBatchGroups * kGroupSize % kRowTexels == 0);
 /// Nodes that a receiver looks at in one draw; see disks_gather.frag.
 constexpr int kStepLimit = 8192;
 
-/// What one walk draws: rows 0 to 7 or 8 to 15 of a face. A whole face and what of it clusters have
+/// What one walk draws: rows 0 to 7 or 8 to 15 of a face. A whole face and what of it sheets have
 /// set would be more outputs than a device must have.
 constexpr int kHalves = 2;
-constexpr std::array<const char*, 4> kHalfOutputs = {"words0", "words1", "loose0", "loose1"};
+constexpr std::array<const char*, 4> kHalfOutputs = {"words0", "words1", "sheets0", "sheets1"};
 
 /// The tree in preorder, kMaskFirstChild replaced by the node after the subtree.
 std::vector<MaskNode> in_preorder(const MaskTree& tree)
@@ -100,18 +100,9 @@ std::vector<glm::vec4> raster_moments()
     return texels;
 }
 
-std::vector<Receiver> in_mask_frame(std::span<const Receiver> receivers)
-{
-    std::vector<Receiver> turned;
-    turned.reserve(receivers.size());
-    for (const Receiver& receiver : receivers)
-        turned.push_back({kMaskFrame * receiver.position, kMaskFrame * receiver.normal});
-    return turned;
-}
-
 /// As masks_answer.frag reads them: the normal's bits and the slot.
 TextureBuffer upload_asked(const GlContext& context, std::span<const Receiver> receivers,
-                           std::span<const ReceiverGroup> groups)
+                           const ReceiverGroups& groups)
 {
     const std::vector<std::uint32_t> slots = slots_of_receivers(groups, receivers.size());
     std::vector<glm::uvec4> texels(padded_to_rows(receivers.size()), glm::uvec4(kNoSlot));
@@ -151,15 +142,15 @@ public:
     TextureBuffer solve(std::span<const Receiver> receivers, std::span<const float> limits,
                         const Progress& progress)
     {
-        const std::vector<ReceiverGroup> groups = group_receivers(in_mask_frame(receivers));
-        ProgressMeter meter(progress, groups.size() * limits.size() * kMaskFaces * kHalves);
+        const ReceiverGroups groups = group_receivers(receivers, kMaskFrame);
+        const std::span<const std::uint32_t> leaves(groups.leaves);
+        ProgressMeter meter(progress, leaves.size() * limits.size() * kMaskFaces * kHalves);
         const Framebuffer sums =
-            make_rows(scene_.context, groups.size() * kGroupSize, {TexelFormat::rgba32f});
+            make_rows(scene_.context, leaves.size() * kGroupSize, {TexelFormat::rgba32f});
         sums.clear_color(glm::vec4(0.0f));
-        for (std::size_t first = 0; first < groups.size(); first += kBatchGroups) {
-            const auto batch =
-                std::span(groups).subspan(first, std::min(kBatchGroups, groups.size() - first));
-            Batch work(scene_.context, batch);
+        for (std::size_t first = 0; first < leaves.size(); first += kBatchGroups) {
+            const auto batch = leaves.subspan(first, std::min(kBatchGroups, leaves.size() - first));
+            Batch work(scene_.context, groups, batch);
             for (const float limit : limits)
                 solve_batch(work, limit, first * kGroupSize, sums, meter);
         }
@@ -181,10 +172,11 @@ public:
 private:
     /// What all walks of one batch use.
     struct Batch {
-        Batch(const GlContext& context, std::span<const ReceiverGroup> groups)
-            : group_texels(upload_groups(context, groups)),
-              halves{ReceiverGrid(context, groups, half_values()),
-                     ReceiverGrid(context, groups, half_values())},
+        Batch(const GlContext& context, const ReceiverGroups& groups,
+              std::span<const std::uint32_t> leaves)
+            : group_texels(upload_groups(context, groups, leaves)),
+              halves{ReceiverGrid(context, groups, leaves, half_values()),
+                     ReceiverGrid(context, groups, leaves, half_values())},
               sums(context, {.width = halves[0].rect().width,
                              .height = halves[0].rect().height,
                              .colors = std::vector<TexelFormat>(4, TexelFormat::rgba32f)})

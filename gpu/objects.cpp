@@ -22,8 +22,6 @@ FormatNames names_of(TexelFormat format)
     switch (format) {
         case TexelFormat::rgba8:
             return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
-        case TexelFormat::rgba16f:
-            return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8};
         case TexelFormat::r32f:
             return {GL_R32F, GL_RED, GL_FLOAT, 4};
         case TexelFormat::rg32f:
@@ -56,14 +54,6 @@ GlHandle make_texture(const GlTable& gl)
                     [](const GlTable& table, unsigned name) { table.DeleteTextures(1, &name); });
 }
 
-GlHandle make_renderbuffer(const GlTable& gl)
-{
-    GLuint id = 0;
-    gl.GenRenderbuffers(1, &id);
-    return GlHandle(
-        gl, id, [](const GlTable& table, unsigned name) { table.DeleteRenderbuffers(1, &name); });
-}
-
 GlHandle make_framebuffer(const GlTable& gl)
 {
     GLuint id = 0;
@@ -90,8 +80,8 @@ void check_size(const GlInfo& info, const char* what, int width, int height)
 
 std::size_t texels_of(TexelFormat format, std::span<const std::byte> bytes)
 {
-    SURFELAO_CHECK(bytes.size() % texel_bytes(format) == 0);
-    return bytes.size() / texel_bytes(format);
+    SURFELAO_CHECK(bytes.size() % names_of(format).bytes == 0);
+    return bytes.size() / names_of(format).bytes;
 }
 
 /// Bytes to allocate for a texture buffer: an empty one gets a texel, drivers differ on no bytes.
@@ -102,15 +92,10 @@ std::size_t checked_buffer_size(const GlInfo& info, TexelFormat format, std::siz
         throw std::runtime_error("OpenGL: a texture buffer of " + std::to_string(texels) +
                                  " texels cannot be made; this device takes " +
                                  std::to_string(limit));
-    return std::max<std::size_t>(texels, 1) * texel_bytes(format);
+    return std::max<std::size_t>(texels, 1) * names_of(format).bytes;
 }
 
 }  // namespace
-
-std::size_t texel_bytes(TexelFormat format)
-{
-    return names_of(format).bytes;
-}
 
 // --- Buffer
 // ---------------------------------------------------------------------------------------
@@ -210,27 +195,14 @@ Framebuffer::Framebuffer(const GlContext& context, const FramebufferOptions& opt
     : gl_(&context.gl()), width_(options.width), height_(options.height)
 {
     check_size(context.info(), "framebuffer", width_, height_);
-    if (options.samples < 1 || options.samples > context.info().max_samples)
-        throw std::runtime_error("OpenGL: a framebuffer of " + std::to_string(options.samples) +
-                                 " samples a pixel cannot be made; 1 to " +
-                                 std::to_string(context.info().max_samples) + " can");
     handle_ = make_framebuffer(*gl_);
     gl_->BindFramebuffer(GL_FRAMEBUFFER, handle_.id());
 
     const auto attach = [&](GLenum where, TexelFormat format) {
-        if (options.samples > 1) {
-            GlHandle& target = renderbuffers_.emplace_back(make_renderbuffer(*gl_));
-            gl_->BindRenderbuffer(GL_RENDERBUFFER, target.id());
-            gl_->RenderbufferStorageMultisample(GL_RENDERBUFFER, options.samples,
-                                                static_cast<GLenum>(names_of(format).internal),
-                                                width_, height_);
-            gl_->FramebufferRenderbuffer(GL_FRAMEBUFFER, where, GL_RENDERBUFFER, target.id());
-            return;
-        }
         Texture2D texture(context, width_, height_, format);
         gl_->FramebufferTexture2D(GL_FRAMEBUFFER, where, GL_TEXTURE_2D, texture.binding().id, 0);
         if (where == GL_DEPTH_ATTACHMENT)
-            depth_ = std::make_unique<Texture2D>(std::move(texture));
+            depth_.emplace(std::move(texture));
         else
             colors_.push_back(std::move(texture));
     };
@@ -354,35 +326,12 @@ std::vector<float> Framebuffer::read_red(const Rect& part, std::size_t index) co
     return result;
 }
 
-std::vector<float> Framebuffer::read_depth(const Rect& part) const
-{
-    std::vector<float> result(static_cast<std::size_t>(part.width) *
-                              static_cast<std::size_t>(part.height));
-    gl_->BindFramebuffer(GL_FRAMEBUFFER, id());
-    read(part, GL_DEPTH_COMPONENT, result.data());
-    return result;
-}
-
 // --- VertexArray
 // ----------------------------------------------------------------------------------
 
 VertexArray::VertexArray(const GlContext& context) : handle_(make_vertex_array(context.gl()))
 {
     check_gl(context.gl(), "making a vertex array");
-}
-
-void VertexArray::attribute(unsigned location, const Buffer& buffer, const Attribute& attribute)
-{
-    const GlTable& gl = handle_.gl();
-    gl.BindVertexArray(id());
-    gl.BindBuffer(GL_ARRAY_BUFFER, buffer.id());
-    gl.EnableVertexAttribArray(location);
-    gl.VertexAttribPointer(
-        location, attribute.components, attribute.bytes ? GL_UNSIGNED_BYTE : GL_FLOAT,
-        attribute.bytes ? GL_TRUE : GL_FALSE, static_cast<GLsizei>(attribute.stride),
-        reinterpret_cast<const void*>(attribute.offset));
-    gl.VertexAttribDivisor(location, attribute.per_instance ? 1 : 0);
-    check_gl(gl, "describing vertices");
 }
 
 void VertexArray::indices(const Buffer& buffer)

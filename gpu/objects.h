@@ -16,7 +16,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -97,10 +97,7 @@ private:
 
 /// How a texel is stored. Float formats come back from the device with all their bits; *ui formats
 /// are fetched as integers by usampler*, so that no bit of a mixed record is touched.
-enum class TexelFormat { rgba8, rgba16f, r32f, rg32f, rgba32f, r32ui, rgba32ui, depth32f };
-
-/// Bytes of one texel.
-[[nodiscard]] std::size_t texel_bytes(TexelFormat format);
+enum class TexelFormat { rgba8, r32f, rg32f, rgba32f, r32ui, rgba32ui, depth32f };
 
 /// Can be bound to a sampler of a program.
 struct TextureBinding {
@@ -151,9 +148,7 @@ struct TextureOptions {
 /// width x height texels; row 0 is the bottom row, as everywhere in OpenGL.
 class Texture2D {
 public:
-    using Options = TextureOptions;
-
-    /// `texels` are width * height records of texel_bytes(format); empty: not filled.
+    /// `texels` are width * height records in the format's layout; empty: not filled.
     template <typename T>
     Texture2D(const GlContext& context, int width, int height, TexelFormat format,
               std::span<const T> texels, const TextureOptions& options = {})
@@ -181,14 +176,11 @@ struct FramebufferOptions {
     int width = 0, height = 0;  ///< > 0
     std::vector<TexelFormat> colors = {TexelFormat::rgba8};
     bool depth = false;  ///< a float depth buffer
-    int samples = 1;     ///< 1 .. GlInfo::max_samples; above 1: resolve before reading
 };
 
-/// A target to draw into. With one sample its colours and depth are textures; with more they are
-/// renderbuffers, to be resolved into a framebuffer of one sample.
+/// A target to draw into. Its colours and its depth are textures.
 class Framebuffer {
 public:
-    using Options = FramebufferOptions;
     Framebuffer(const GlContext& context, const FramebufferOptions& options);
 
     /// The default framebuffer of a window's context, whose size its owner knows. Zero-size windows
@@ -199,7 +191,7 @@ public:
     int height() const { return height_; }
     Rect rect() const { return {0, 0, width_, height_}; }
 
-    /// Of a framebuffer of one sample that is not a window.
+    /// Of a framebuffer that is not a window.
     const Texture2D& color(std::size_t index = 0) const { return colors_[index]; }
     const Texture2D& depth() const { return *depth_; }
 
@@ -207,8 +199,8 @@ public:
     void clear_color(glm::vec4 value, std::size_t index = 0) const;
     void clear_depth(float value = 1.0f) const;
 
-    /// Averages the samples, or copies, colour `index` to the same of `target`. Sizes must agree,
-    /// or this must have one sample (then it is stretched, with linear filtering).
+    /// Copies colour `index` to the same of `target`; stretched, with linear filtering, where sizes
+    /// differ.
     void copy_to(const Framebuffer& target, std::size_t index = 0) const;
 
     /// Copies the texels of colour `index` in `part`, rgba32f, to `out` from byte `offset` on, row
@@ -217,12 +209,10 @@ public:
                     std::size_t index = 0) const;
 
     /// The texels of colour `index` in `part`, row by row from the bottom, waiting for the drawing.
-    /// Not for *ui formats, nor for several samples.
+    /// Not for *ui formats.
     std::vector<glm::vec4> read_color(const Rect& part, std::size_t index = 0) const;
     /// The same, for r32f: one float a texel.
     std::vector<float> read_red(const Rect& part, std::size_t index = 0) const;
-    /// 0 = near plane, 1 = far plane or nothing drawn.
-    std::vector<float> read_depth(const Rect& part) const;
 
     unsigned id() const { return handle_.id(); }
     const GlTable& gl() const { return *gl_; }
@@ -234,26 +224,15 @@ private:
     const GlTable* gl_ = nullptr;
     GlHandle handle_;  // empty for a window: GL's framebuffer 0
     std::vector<Texture2D> colors_;
-    std::unique_ptr<Texture2D> depth_;
-    std::vector<GlHandle> renderbuffers_;
+    std::optional<Texture2D> depth_;
     int width_ = 0, height_ = 0;
 };
 
-/// Where the vertices of a drawing come from. An empty one is enough for shaders that make them
-/// from gl_VertexID. The buffers must outlive it.
+/// Which vertices a drawing has: none of its own, since shaders make them from gl_VertexID, and
+/// maybe indices. The buffer must outlive it.
 class VertexArray {
 public:
     explicit VertexArray(const GlContext& context);
-
-    struct Attribute {
-        int components = 3;         ///< 1 .. 4 floats
-        std::size_t stride = 0;     ///< bytes from one vertex to the next; 0 = tightly packed
-        std::size_t offset = 0;     ///< bytes before the first
-        bool per_instance = false;  ///< one value per instance instead of one per vertex
-        bool bytes = false;         ///< unsigned bytes, 255 = 1.0, in place of floats
-    };
-    /// in_name at `layout(location = location)`.
-    void attribute(unsigned location, const Buffer& buffer, const Attribute& attribute);
 
     /// 32-bit indices for draws with `indexed`.
     void indices(const Buffer& buffer);

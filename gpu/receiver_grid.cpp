@@ -14,14 +14,15 @@ namespace {
 constexpr double kPieceSeconds = 0.05;
 constexpr double kMaxGrowth = 4.0;
 
-std::vector<glm::vec4> receiver_texels(std::span<const ReceiverGroup> groups)
+std::vector<glm::vec4> receiver_texels(const ReceiverGroups& groups,
+                                       std::span<const std::uint32_t> leaves)
 {
     std::vector<glm::vec4> texels;
-    texels.reserve(groups.size() * kGroupSize * 2);
-    for (const ReceiverGroup& group : groups) {
-        for (std::uint32_t lane = 0; lane < kGroupSize; ++lane) {
-            for (const auto& vector : {group.position, group.normal})
-                texels.emplace_back(vector[0][lane], vector[1][lane], vector[2][lane], 0.0f);
+    texels.reserve(leaves.size() * kGroupSize * 2);
+    for (const std::uint32_t leaf : leaves) {
+        for (std::size_t i = groups.groups[leaf].begin; i < groups.groups[leaf].end; ++i) {
+            for (const auto* columns : {&groups.position, &groups.normal})
+                texels.emplace_back((*columns)[0][i], (*columns)[1][i], (*columns)[2][i], 0.0f);
         }
     }
     return texels;
@@ -49,36 +50,39 @@ std::uint64_t divide_up(std::uint64_t a, std::uint64_t b)
 
 }  // namespace
 
-std::vector<std::uint32_t> slots_of_receivers(std::span<const ReceiverGroup> groups,
+std::vector<std::uint32_t> slots_of_receivers(const ReceiverGroups& groups,
                                               std::size_t receiver_count)
 {
     std::vector<std::uint32_t> slots(receiver_count, kNoSlot);
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-        for (std::uint32_t lane = 0; lane < groups[g].count; ++lane)
-            slots[groups[g].receiver[lane]] = static_cast<std::uint32_t>(g * kGroupSize + lane);
-    }
+    for (std::uint32_t slot = 0; slot < groups.order.size(); ++slot)
+        slots[groups.order[slot]] = slot;
     return slots;
 }
 
-TextureBuffer upload_groups(const GlContext& context, std::span<const ReceiverGroup> groups)
+TextureBuffer upload_groups(const GlContext& context, const ReceiverGroups& groups,
+                            std::span<const std::uint32_t> leaves)
 {
     std::vector<glm::vec4> texels;
-    texels.reserve(groups.size() * 3);
-    for (const ReceiverGroup& group : groups) {
-        texels.emplace_back(group.center, group.radius);
-        texels.emplace_back(group.axis, group.cone_cos);
-        texels.emplace_back(group.cone_sin, group.sag, 0.0f, 0.0f);
+    texels.reserve(leaves.size() * 3);
+    for (const std::uint32_t leaf : leaves) {
+        const ReceiverGroup& group = groups.groups[leaf];
+        texels.emplace_back(group.center[0], group.center[1], group.center[2], group.radius);
+        texels.emplace_back(group.axis[0], group.axis[1], group.axis[2], group.cone_cos);
+        texels.emplace_back(group.cone_sin, rise_of_cone(group), 0.0f, 0.0f);
     }
     return TextureBuffer(context, TexelFormat::rgba32f, std::span<const glm::vec4>(texels));
 }
 
-ReceiverGrid::ReceiverGrid(const GlContext& context, std::span<const ReceiverGroup> groups,
-                           std::vector<GridValue> values)
+ReceiverGrid::ReceiverGrid(const GlContext& context, const ReceiverGroups& groups,
+                           std::span<const std::uint32_t> leaves, std::vector<GridValue> values)
     : context_(&context),
-      group_count_(groups.size()),
-      blocks_per_row_(square_side(divide_up(groups.size(), kBlockGroups))),
+      group_count_(leaves.size()),
+      slot_count_(leaves.empty() ? 0
+                                 : static_cast<int>(groups.groups[leaves.back()].end -
+                                                    groups.groups[leaves.front()].begin)),
+      blocks_per_row_(square_side(divide_up(leaves.size(), kBlockGroups))),
       receivers_(context, TexelFormat::rgba32f,
-                 std::span<const glm::vec4>(receiver_texels(groups))),
+                 std::span<const glm::vec4>(receiver_texels(groups, leaves))),
       values_(std::move(values)),
       empty_(context),
       targets_{make_target(context, blocks_per_row_ * kBlockSide, values_),

@@ -11,7 +11,7 @@
 #include "gpu/objects.h"
 #include "gpu/program.h"
 #include "surfels/progress.h"
-#include "tree/receiver_group.h"
+#include "tree/receiver_groups.h"
 
 #include <array>
 #include <cstdint>
@@ -26,12 +26,13 @@ namespace surfelao {
 inline constexpr std::uint32_t kNoSlot = 0xFFFFFFFF;
 
 /// slots[i] is the place of receiver i in the groups, or kNoSlot.
-[[nodiscard]] std::vector<std::uint32_t> slots_of_receivers(std::span<const ReceiverGroup> groups,
+[[nodiscard]] std::vector<std::uint32_t> slots_of_receivers(const ReceiverGroups& groups,
                                                             std::size_t receiver_count);
 
-/// RGBA32F, 3 texels a group: center.xyz radius | axis.xyz cone_cos | cone_sin sag 0 0.
-[[nodiscard]] TextureBuffer upload_groups(const GlContext& context,
-                                          std::span<const ReceiverGroup> groups);
+/// RGBA32F, 3 texels a leaf: center.xyz radius | axis.xyz cone_cos | cone_sin rise_of_cone 0 0.
+/// leaves: of the groups, side by side.
+[[nodiscard]] TextureBuffer upload_groups(const GlContext& context, const ReceiverGroups& groups,
+                                          std::span<const std::uint32_t> leaves);
 
 /// One value that a computation finds: an output of its fragment shader, in the order of locations,
 /// and the sampler through which the next draw goes on with it.
@@ -43,8 +44,8 @@ struct GridValue {
 class ReceiverGrid {
 public:
     /// Throws std::runtime_error when the device cannot hold so many.
-    ReceiverGrid(const GlContext& context, std::span<const ReceiverGroup> groups,
-                 std::vector<GridValue> values);
+    ReceiverGrid(const GlContext& context, const ReceiverGroups& groups,
+                 std::span<const std::uint32_t> leaves, std::vector<GridValue> values);
 
     /// Runs the program over all slots and counts finished groups into `meter`. Each receiver goes
     /// along a list that ends at `end`; its place is the last output, R32UI, and comes back in
@@ -61,7 +62,7 @@ public:
 
     /// RGBA32F, 2 texels a slot: position.xyz 0 | normal.xyz 0
     const TextureBuffer& receivers() const { return receivers_; }
-    int slot_count() const { return static_cast<int>(group_count_ * kGroupSize); }
+    int slot_count() const { return slot_count_; }
 
 private:
     void compute_piece(Program& program, std::uint32_t end, const Rect& piece);
@@ -69,6 +70,7 @@ private:
     static constexpr std::uint64_t kBlockGroups = kBlockSide * kBlockSide / kGroupSize;
     const GlContext* context_;
     std::uint64_t group_count_;
+    int slot_count_;
     int blocks_per_row_;
     TextureBuffer receivers_;
     std::vector<GridValue> values_;

@@ -1,6 +1,6 @@
 #include "image/difference.h"
 
-#include "image/heat_map.h"
+#include "image/color_map.h"
 #include "surfels/errors.h"
 
 #include <algorithm>

@@ -20,8 +20,8 @@ inline constexpr float kShownTolerance = 4.0f / 255.0f;
 [[nodiscard]] ImageDifference compare_images(const Image& a, const Image& b,
                                              float tolerance = kShownTolerance);
 
-/// The difference of each pixel as a colour of heat_map.h, `full_scale` and more being the hottest.
-/// Same demands; full_scale > 0.
+/// The difference of each pixel as a heat colour (color_map.h), `full_scale` and more being the
+/// hottest. Same demands; full_scale > 0.
 [[nodiscard]] Image difference_image(const Image& a, const Image& b, float full_scale);
 
 }  // namespace surfelao

@@ -358,7 +358,9 @@ RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 std::vector<Occlusion> trace_occlusion(const RayScene& scene, std::span<const Receiver> receivers,
                                        const RayOptions& options, const Progress& progress)
 {
-    SURFELAO_CHECK(options.rays >= 1 && options.rays <= kMostRays);
+    check_definition(options.definition);
+    require(options.rays >= 1 && options.rays <= kMostRays,
+            "rays must be between 1 and " + std::to_string(kMostRays));
     const RayScene::Impl& impl = scene.impl();
     return impl.wide ? trace_all<16>(impl.scene, receivers, options, progress)
                      : trace_all<8>(impl.scene, receivers, options, progress);

@@ -60,7 +60,8 @@ inline constexpr std::uint32_t kMostRays = 1u << 20;
 
 /// One Occlusion per receiver, in the receivers' order. The error is noise without bias, about
 /// 0.4 * rays^-0.73 RMS on a detailed mesh. All cores, same bytes for any number of threads.
-/// Receivers without a normal get occlusion 0. Throws Cancelled.
+/// Receivers without a normal get occlusion 0. Throws SettingsError where an option is out of its
+/// range, Cancelled.
 [[nodiscard]] std::vector<Occlusion> trace_occlusion(const RayScene& scene,
                                                      std::span<const Receiver> receivers,
                                                      const RayOptions& options,

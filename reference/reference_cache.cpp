@@ -237,7 +237,10 @@ fs::path cache_folder()
 Reference trace_reference(const Geometry& geometry, std::span<const Receiver> receivers,
                           const ReferenceOptions& options, const Progress& progress)
 {
-    SURFELAO_CHECK(options.rays >= 2 && options.rays <= kMostRays && options.rays % 2 == 0);
+    check_definition(options.definition);
+    require(
+        options.rays >= 2 && options.rays <= kMostRays && options.rays % 2 == 0,
+        "rays of the reference must be an even number between 2 and " + std::to_string(kMostRays));
     const fs::path folder = options.use_cache ? cache_folder() : fs::path();
     if (folder.empty())
         return trace(geometry, receivers, options, progress);

@@ -1,5 +1,6 @@
 #include "reference/smoothing.h"
 
+#include "surfels/edges.h"
 #include "surfels/errors.h"
 
 #include <tbb/blocked_range.h>
@@ -7,46 +8,20 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <numeric>
+#include <string>
 
 namespace surfelao {
-namespace {
-
-/// The one-ring of every position as one array with offsets. A neighbour stands twice in it where
-/// two triangles share the edge: all inner edges count alike, and borders half as much.
-struct OneRings {
-    std::vector<std::uint32_t> first;  ///< into neighbours; one more than positions
-    std::vector<std::uint32_t> neighbours;
-};
-
-OneRings one_rings(const Geometry& geometry)
-{
-    OneRings rings;
-    rings.first.assign(geometry.positions.size() + 1, 0);
-    for (const glm::uvec3 triangle : geometry.triangles) {
-        for (int corner = 0; corner < 3; ++corner)
-            rings.first[geometry.welded[triangle[corner]] + 1] += 2;
-    }
-    std::partial_sum(rings.first.begin(), rings.first.end(), rings.first.begin());
-    rings.neighbours.resize(rings.first.back());
-    std::vector<std::uint32_t> next(rings.first.begin(), rings.first.end() - 1);
-    for (const glm::uvec3 triangle : geometry.triangles) {
-        for (int corner = 0; corner < 3; ++corner) {
-            std::uint32_t& place = next[geometry.welded[triangle[corner]]];
-            rings.neighbours[place++] = geometry.welded[triangle[(corner + 1) % 3]];
-            rings.neighbours[place++] = geometry.welded[triangle[(corner + 2) % 3]];
-        }
-    }
-    return rings;
-}
-
-}  // namespace
 
 std::vector<Occlusion> smooth_occlusion(const Geometry& geometry,
                                         std::span<const Occlusion> occlusion)
 {
-    SURFELAO_CHECK(occlusion.size() == geometry.positions.size());
-    const OneRings rings = one_rings(geometry);
+    require(occlusion.size() == geometry.positions.size(),
+            "smoothing takes one answer per vertex: there are " +
+                std::to_string(geometry.positions.size()) + " vertices and " +
+                std::to_string(occlusion.size()) + " answers");
+    // a neighbour is met twice where two triangles share the edge: all inner edges count alike, and
+    // borders half as much
+    const Buckets<std::uint32_t> corners = corners_around(geometry.triangles, geometry.welded);
     std::vector<Occlusion> result(occlusion.begin(), occlusion.end());
     const tbb::blocked_range<std::size_t> all(0, result.size(), 1024);
     tbb::parallel_for(all, [&](const auto& range) {
@@ -54,20 +29,23 @@ std::vector<Occlusion> smooth_occlusion(const Geometry& geometry,
             const glm::vec3 normal = geometry.normals[v];
             if (normal == glm::vec3(0.0f))
                 continue;
-            // every neighbour is listed about twice, so the vertex counts four times for a weight
+            // every neighbour is met about twice, so the vertex counts four times for a weight
             // of 2
             float weight_sum = 4.0f;
             float sum = 4.0f * occlusion[v].occlusion;
             glm::vec3 bent = 4.0f * occlusion[v].bent_normal;
-            const std::uint32_t position = geometry.welded[v];
-            for (std::uint32_t i = rings.first[position]; i < rings.first[position + 1]; ++i) {
-                const std::uint32_t neighbour = rings.neighbours[i];
+            const auto add = [&](std::uint32_t neighbour) {
                 const float cosine = std::max(0.0f, glm::dot(normal, geometry.normals[neighbour]));
                 const float cosine2 = cosine * cosine, cosine4 = cosine2 * cosine2;
                 const float weight = cosine4 * cosine4;
                 weight_sum += weight;
                 sum += weight * occlusion[neighbour].occlusion;
                 bent += weight * occlusion[neighbour].bent_normal;
+            };
+            for (const std::uint32_t corner : corners[geometry.welded[v]]) {
+                const glm::uvec3 triangle = geometry.triangles[corner / 3];
+                add(geometry.welded[triangle[static_cast<int>((corner + 1) % 3)]]);
+                add(geometry.welded[triangle[static_cast<int>((corner + 2) % 3)]]);
             }
             const float length = glm::length(bent);
             result[v].occlusion = std::min(1.0f, sum / weight_sum);

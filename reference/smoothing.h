@@ -15,8 +15,8 @@ namespace surfelao {
 
 /// One normal-weighted one-ring step over the mesh: weight 2 for the vertex itself, and for each
 /// neighbour max(0, cosine of the angle between the normals)^8. Welded vertices are one vertex.
-/// occlusion: one per scene vertex. Vertices without a normal keep their value. O(n), all cores,
-/// same bytes for any number of threads.
+/// occlusion: one per scene vertex, SettingsError if not. Vertices without a normal keep their
+/// value. O(n), all cores, same bytes for any number of threads.
 [[nodiscard]] std::vector<Occlusion> smooth_occlusion(const Geometry& geometry,
                                                       std::span<const Occlusion> occlusion);
 

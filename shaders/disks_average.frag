@@ -11,7 +11,7 @@
 //            u_records       (disk_record.glsl)
 //            u_record_count
 // Writes     out_far         RGBA32F: FarVisibility
-// CPU twin   average_over_nodes in tree/disks.cpp
+// CPU twin   average_over_nodes in tree/disks/disks.cpp
 uniform sampler2D u_far;
 uniform sampler2D u_chunks;
 uniform usamplerBuffer u_records;

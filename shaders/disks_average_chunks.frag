@@ -15,7 +15,7 @@
 // Writes       out_front      RGBA32F: sum of area * visibility on the node's front side: surfels that
 //                             face against the node give their other side
 //              out_back       the same for the node's back                       (TWO_SIDED)
-// CPU twin     average_over_nodes in tree/disks.cpp
+// CPU twin     average_over_nodes in tree/disks/disks.cpp
 #ifndef TWO_SIDED
 #define TWO_SIDED 0
 #endif

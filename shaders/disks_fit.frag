@@ -15,7 +15,7 @@
 //            u_weight          share of the way that the visibility goes
 // Writes     out_far           RGBA32F: FarVisibility, slope.xyz constant; nodes: zero
 //            out_change        R32F: square of the change of the mean over the hemisphere
-// CPU twin   fit and FarSide::update in tree/disks.cpp
+// CPU twin   fit and FarSide::update in tree/disks/disks.cpp
 uniform sampler2D u_sums;
 uniform int u_blocks_per_row;
 uniform usamplerBuffer u_records;

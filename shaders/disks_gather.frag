@@ -19,8 +19,8 @@
 //                                side that the casting normal points to: slope.xyz constant
 //              u_far_back        the same for the other side                    (TWO_SIDED)
 //              u_receivers       RGBA32F, 2 texels a slot: position.xyz 0 | normal.xyz 0
-//              u_groups          RGBA32F, 3 texels a group of 16 slots (tree/receiver_group.h):
-//                                center.xyz radius | axis.xyz cone_cos | cone_sin sag 0 0
+//              u_groups          RGBA32F, 3 texels a group of 16 slots (tree/receiver_groups.h):
+//                                center.xyz radius | axis.xyz cone_cos | cone_sin rise 0 0
 //              u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
 //              u_sums, u_at      out_sum and out_at of the draw before
 //              u_continued       0: there was none
@@ -85,7 +85,7 @@ void main()
     vec4  cone     = texelFetch(u_groups, slot / 16 * 3 + 1);
     vec2  rest     = texelFetch(u_groups, slot / 16 * 3 + 2).xy;
     float cone_sin = rest.x;
-    float sag      = rest.y;
+    float rise     = rest.y;
 
     vec4 sum = u_continued != 0 ? texelFetch(u_sums, pixel, 0) : vec4(0.0);
     int  at  = u_continued != 0 ? int(texelFetch(u_at, pixel, 0).x) : 0;
@@ -101,9 +101,9 @@ void main()
             vec3  offset    = ball.xyz - group.xyz;
             float distance2 = dot(offset, offset);
             float distance  = sqrt(distance2) - group.w;
-            // wholly below every receiver's horizon (receiver_group.h: sag), or out of reach
+            // wholly below every receiver's horizon (rise_of_cone), or out of reach
             float along   = dot(offset, cone.xyz);
-            float top     = along * cone.w + sag + max(0.0, ball.w);
+            float top     = along * cone.w + rise + max(0.0, ball.w);
             float across2 = (distance2 - along * along) * cone_sin * cone_sin;
             bool  skip    = top < 0.0 && across2 < top * top;
 #if LIMITED

@@ -12,7 +12,7 @@
 //            u_slots           R32UI: slot of each receiver; 0xFFFFFFFF: it has no normal
 //            u_strength        as DiskOptions::strength
 // Writes     out_result        RGBA32F: bent normal | occlusion (surfels/occlusion.h)
-// CPU twin   to_occlusion in tree/disks.cpp
+// CPU twin   to_occlusion in tree/disks/disks.cpp
 uniform sampler2D u_sums;
 uniform int u_blocks_per_row;
 uniform samplerBuffer u_receivers;

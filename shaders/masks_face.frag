@@ -6,9 +6,9 @@
 //
 // Vertices   fullscreen.vert
 // Drawn by   gpu/gpu_masks.cpp, after masks_walk.frag
-// Reads      u_low_words0, u_low_words1, u_low_loose0, u_low_loose1
-//                              outputs of masks_walk.frag for half 0: rows, and what clusters have set
-//            u_high_words0, u_high_words1, u_high_loose0, u_high_loose1
+// Reads      u_low_words0, u_low_words1, u_low_sheets0, u_low_sheets1
+//                              outputs of masks_walk.frag for half 0: rows, and what sheets have set
+//            u_high_words0, u_high_words1, u_high_sheets0, u_high_sheets1
 //                              the same for half 1
 //            u_fill            0: as drawn is all there is
 //            u_moments         RGBA32F, 3 texels a nibble, row by row: what a set bit of it is worth
@@ -22,15 +22,16 @@
 //                              those left open by filling, over those left open by closing
 //            out_bent, out_bent_filled, out_bent_closed
 //                              RGBA32F: integral of w (n.w) over the same bits, mask frame, 0
-// CPU twin   first_moments, second_moments, horizon, fill, close in tree/masks/kernel_body.h
+// CPU twin   first_moments and second_moments in tree/masks/kernel_sums.h, horizon in _raster.h, fill
+//            and close in _cracks.h
 uniform usampler2D u_low_words0;
 uniform usampler2D u_low_words1;
-uniform usampler2D u_low_loose0;
-uniform usampler2D u_low_loose1;
+uniform usampler2D u_low_sheets0;
+uniform usampler2D u_low_sheets1;
 uniform usampler2D u_high_words0;
 uniform usampler2D u_high_words1;
-uniform usampler2D u_high_loose0;
-uniform usampler2D u_high_loose1;
+uniform usampler2D u_high_sheets0;
+uniform usampler2D u_high_sheets1;
 uniform int u_fill;
 uniform samplerBuffer u_moments;
 uniform samplerBuffer u_receivers;
@@ -105,21 +106,21 @@ void main()
     uvec4 drawn[4] = uvec4[4](texelFetch(u_low_words0, pixel, 0), texelFetch(u_low_words1, pixel, 0),
                               texelFetch(u_high_words0, pixel, 0),
                               texelFetch(u_high_words1, pixel, 0));
-    uvec4 clusters[4] = uvec4[4](
-        texelFetch(u_low_loose0, pixel, 0), texelFetch(u_low_loose1, pixel, 0),
-        texelFetch(u_high_loose0, pixel, 0), texelFetch(u_high_loose1, pixel, 0));
+    uvec4 of_sheets[4] = uvec4[4](
+        texelFetch(u_low_sheets0, pixel, 0), texelFetch(u_low_sheets1, pixel, 0),
+        texelFetch(u_high_sheets0, pixel, 0), texelFetch(u_high_sheets1, pixel, 0));
 
     // rows with an empty one before the first and behind the last; what lies below the horizon is no
     // opening
-    uint closed[18], loose[18], above[18];
-    closed[0] = loose[0] = closed[17] = loose[17] = above[0] = above[17] = 0u;
+    uint closed[18], sheets[18], above[18];
+    closed[0] = sheets[0] = closed[17] = sheets[17] = above[0] = above[17] = 0u;
     Side horizon = side_of(n);
     for (int q = 0; q < 4; ++q) {
         uvec4 hemisphere = bits_of(horizon, q);
         for (int i = 0; i < 4; ++i) {
             above[1 + 4 * q + i]  = hemisphere[i];
             closed[1 + 4 * q + i] = drawn[q][i] | ~hemisphere[i];
-            loose[1 + 4 * q + i]  = clusters[q][i];
+            sheets[1 + 4 * q + i] = of_sheets[q][i];
         }
     }
     Sums whole = kNothing;
@@ -133,28 +134,28 @@ void main()
     if (u_fill == 0)
         return;
 
-    // cracks of one bit: neighbours on both sides are set, and a cluster has set one of them
+    // cracks of one bit: neighbours on both sides are set, and a sheet has set one of them
     uint filled[18];
     filled[0] = filled[17] = 0u;
     for (int y = 0; y < 16; ++y) {
         uint m    = closed[1 + y];
-        uint l    = loose[1 + y];
+        uint l    = sheets[1 + y];
         uint low  = closed[y];
         uint high = closed[2 + y];
         uint sides   = (m << 1) & (m >> 1) & ((l << 1) | (l >> 1));
         uint stacked = low & beside(low, y - 1, y) & high & beside(high, y + 1, y);
-        uint near    = loose[y] | beside(loose[y], y - 1, y) | loose[2 + y] |
-                    beside(loose[2 + y], y + 1, y);
+        uint near    = sheets[y] | beside(sheets[y], y - 1, y) | sheets[2 + y] |
+                    beside(sheets[2 + y], y + 1, y);
         filled[1 + y] = m | sides | (stacked & near);
     }
     // cracks of two bits: grown by one bit along the rows, then across them, and shrunk again, where
-    // a cluster has set a bit nearby
-    uint grown[18], wide_loose[18];
-    grown[0] = grown[17] = wide_loose[0] = wide_loose[17] = 0u;
+    // a sheet has set a bit nearby
+    uint grown[18], wide_sheets[18];
+    grown[0] = grown[17] = wide_sheets[0] = wide_sheets[17] = 0u;
     for (int y = 0; y < 16; ++y) {
-        uint l            = loose[1 + y];
+        uint l            = sheets[1 + y];
         grown[1 + y]      = grown_across(filled, y);
-        wide_loose[1 + y] = l | (l << 1) | (l >> 1);
+        wide_sheets[1 + y] = l | (l << 1) | (l >> 1);
     }
     Sums cracks  = kNothing;
     Sums closing = kNothing;
@@ -170,7 +171,7 @@ void main()
         uint rim     = left | (left << 1) | (left >> 1) | (y > 0 ? ~filled[y] : 0u) |
                    (y < 15 ? ~filled[2 + y] : 0u);
         add(cracks, y, ~closed[1 + y] & ~rim);
-        add(closing, y, (m | ((rows | columns) & grown_across(wide_loose, y))) & ~closed[1 + y]);
+        add(closing, y, (m | ((rows | columns) & grown_across(wide_sheets, y))) & ~closed[1 + y]);
     }
     Sums rest = Sums(open.first - cracks.first, open.second - cracks.second,
                      open.rest - cracks.rest);

@@ -1,4 +1,5 @@
 #version 330 core
+#include "mask_constants.glsl"
 #include "receiver_grid.glsl"
 #include "rows.glsl"
 // masks_result.frag: occlusion and bent normal of each slot from the sums over all faces. Where much
@@ -13,7 +14,7 @@
 //            u_first_slot      before those that are computed
 // Writes     out_result      RGBA32F: bent normal, mask frame, any length, zero where all is closed |
 //                            occlusion (surfels/occlusion.h)
-// CPU twin   solve in tree/masks/kernel_body.h
+// CPU twin   openness_of in tree/masks/kernel_solve.h
 uniform sampler2D u_share;
 uniform sampler2D u_bent;
 uniform sampler2D u_bent_filled;
@@ -24,12 +25,6 @@ uniform int u_blocks_per_row;
 uniform int u_first_slot;
 
 out vec4 out_result;
-
-const float kFillFrom   = 0.3;
-const float kFillRange  = 0.6;
-const float kFillShare  = 1.3;
-const float kCloseFrom  = 0.95;
-const float kCloseRange = 0.04;
 
 void main()
 {
@@ -43,11 +38,11 @@ void main()
     float openness = shares.x;
     out_result.xyz = texelFetch(u_bent, pixel, 0).xyz;
 
-    float fill = (1.0 - openness - kFillFrom) / kFillRange;
+    float fill = (1.0 - openness - kMaskFillFrom) / kMaskFillRange;
     if (fill > 0.0 && openness > 0.0) {
-        openness -= min(fill, 1.0) * kFillShare * (shares.x - shares.y);
+        openness -= min(fill, 1.0) * kMaskFillShare * (shares.x - shares.y);
         out_result.xyz = texelFetch(u_bent_filled, pixel, 0).xyz;
-        float close = (1.0 - openness - kCloseFrom) / kCloseRange;
+        float close = (1.0 - openness - kMaskCloseFrom) / kMaskCloseRange;
         if (u_close > 0.0 && close > 0.0 && openness > 0.0) {
             openness += min(close, 1.0) * u_close * min(shares.z - openness, 0.0);
             out_result.xyz = texelFetch(u_bent_closed, pixel, 0).xyz;

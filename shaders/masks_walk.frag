@@ -7,7 +7,7 @@
 // Vertices   fullscreen.vert
 // Drawn by   gpu/gpu_masks.cpp, in pieces, once per half face
 // Reads      u_nodes           RGBA32UI, 4 texels a node: MaskNode of tree/masks/tree.h in preorder,
-//                              the last word the flags of tree/masks/kernel.h and the node after
+//                              the last word flags of tree/masks/constants.inc and the node after
 //                              its subtree
 //            u_node_count
 //            u_receivers       RGBA32F, 2 texels a slot, mask frame: position.xyz 0 | normal.xyz 0
@@ -18,13 +18,14 @@
 //            u_cluster, u_cluster_limit, u_share, u_graze, u_one_sided, u_max_distance  MaskSettings of
 //                              tree/masks/kernel.h; u_share is share_leaf; no limit: the largest float
 //            u_exact_radius    nodes with no larger open_radius are drawn as they are; -1: leaves alone
-//            u_words0, u_words1, u_loose0, u_loose1, u_at  the outputs of the draw before
+//            u_words0, u_words1, u_sheets0, u_sheets1, u_at  the outputs of the draw before
 //            u_continued       0: there was none
 //            u_step_limit      nodes looked at in one draw; each may go round two loops
 // Writes     out_words0, 1     RGBA32UI: the mask's rows
-//            out_loose0, 1     the same: what of it clusters have set
+//            out_sheets0, 1     the same: what of it sheets have set
 //            out_at            R32UI: node to go on with; u_node_count or more: done
-// CPU twin   walk<true>, draw_near and draw in tree/masks/kernel_body.h: the same decisions for groups of 16, but
+// CPU twin   walk<true>, draw_near and draw in tree/masks/kernel_walk.h, _solve.h and _raster.h: the same
+//            decisions for groups of 16, but
 //            the CPU's larger groups share what is far: tests/gpu/gpu_masks_test.cpp says how much
 //            that makes
 uniform usamplerBuffer u_nodes;
@@ -44,27 +45,17 @@ uniform float u_max_distance;
 uniform float u_exact_radius;
 uniform usampler2D u_words0;
 uniform usampler2D u_words1;
-uniform usampler2D u_loose0;
-uniform usampler2D u_loose1;
+uniform usampler2D u_sheets0;
+uniform usampler2D u_sheets1;
 uniform usampler2D u_at;
 uniform int u_continued;
 uniform int u_step_limit;
 
 layout(location = 0) out uvec4 out_words0;
 layout(location = 1) out uvec4 out_words1;
-layout(location = 2) out uvec4 out_loose0;
-layout(location = 3) out uvec4 out_loose1;
+layout(location = 2) out uvec4 out_sheets0;
+layout(location = 3) out uvec4 out_sheets1;
 layout(location = 4) out uint out_at;
-
-const uint  kSheet           = 0x80000000u;  // these five as in tree/masks/kernel.h
-const uint  kSolid           = 0x40000000u;
-const uint  kHollow          = 0x20000000u;
-const uint  kTriangle        = 0x10000000u;
-const uint  kNext            = 0x0FFFFFFFu;
-const float kHollowGrowth    = 1.1;
-const float kImportanceFloor = 0.1;
-const float kFaceReach       = 1.4143;  // a ball's radius to the planes that bound it, sqrt(2)
-const float kTinyLength2     = 1e-30;
 
 // Negative where the point lies beyond one of the four planes that bound the half face.
 vec4 within_half(vec3 p)
@@ -77,12 +68,12 @@ vec4 within_half(vec3 p)
 vec3 normal_of(vec3 axis_a, vec3 axis_b)
 {
     vec3 n = cross(axis_a, axis_b);
-    return n * inversesqrt(max(dot(n, n), kTinyLength2));
+    return n * inversesqrt(max(dot(n, n), kMaskTiny));
 }
 
 void main()
 {
-    out_words0 = out_words1 = out_loose0 = out_loose1 = uvec4(0u);
+    out_words0 = out_words1 = out_sheets0 = out_sheets1 = uvec4(0u);
     out_at     = 0xFFFFFFFFu;
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     int   slot  = slot_at_pixel(pixel, u_blocks_per_row);
@@ -98,18 +89,18 @@ void main()
     vec4  cone     = texelFetch(u_groups, slot / 16 * 3 + 1);
     vec2  rest     = texelFetch(u_groups, slot / 16 * 3 + 2).xy;
     float cone_sin = rest.x;
-    float sag      = min(rest.y, 1e9);
+    float sag      = min(rest.y, kMaskLargestSag);
 
     uvec4 words0 = uvec4(0u);
     uvec4 words1 = uvec4(0u);
-    uvec4 loose0 = uvec4(0u);
-    uvec4 loose1 = uvec4(0u);
+    uvec4 sheets0 = uvec4(0u);
+    uvec4 sheets1 = uvec4(0u);
     int   at     = 0;
     if (u_continued != 0) {
         words0 = texelFetch(u_words0, pixel, 0);
         words1 = texelFetch(u_words1, pixel, 0);
-        loose0 = texelFetch(u_loose0, pixel, 0);
-        loose1 = texelFetch(u_loose1, pixel, 0);
+        sheets0 = texelFetch(u_sheets0, pixel, 0);
+        sheets1 = texelFetch(u_sheets1, pixel, 0);
         at     = int(texelFetch(u_at, pixel, 0).x);
     }
     int q     = 2 * u_half;  // the half's first quarter
@@ -129,7 +120,7 @@ void main()
             float open_radius = axis_a.w;
             // how high above any of the group's horizons it may reach, and so how much it may weigh
             vec3  to_node   = ball.xyz - group.xyz;
-            float distance2 = max(dot(to_node, to_node), 1e-30);
+            float distance2 = max(dot(to_node, to_node), kMaskTiny);
             float inverse   = inversesqrt(distance2);
             float distance  = distance2 * inverse;
             float height    = dot(to_node, cone.xyz);
@@ -141,16 +132,16 @@ void main()
             float top       = base + min(ball.w, ball.w * tilt + thickness) + sag;
             float nearest   = distance - ball.w;
             vec4  within    = within_half(u_face * (ball.xyz - position));
-            bool  before    = all(greaterThan(within, vec4(-kFaceReach * ball.w)));
+            bool  before    = all(greaterThan(within, vec4(-kMaskFaceReach * ball.w)));
             bool  alive     = before && top > max(u_graze * (nearest - group.w), 0.0) &&
                          nearest - group.w < u_max_distance;
-            float relax     = inversesqrt(clamp(top * inverse, kImportanceFloor, 1.0));
+            float relax     = inversesqrt(clamp(top * inverse, kMaskImportanceFloor, 1.0));
             float cluster   = min(u_cluster * relax, u_cluster_limit);
             shared = group.w < u_share * relax * nearest;
             float from_all = shared ? distance : distance - group.w;
             found = alive && (open_radius <= u_exact_radius || open_radius < cluster * from_all);
             if (!alive)
-                at = int(axis_b.w & kNext);
+                at = int(axis_b.w & kMaskFirstChild);
             else if (!found)
                 ++at;
         } while (!found && at < u_node_count && steps < u_step_limit);
@@ -159,9 +150,9 @@ void main()
 
         uvec4 third    = texelFetch(u_nodes, at * 4 + 2);
         uvec4 last     = texelFetch(u_nodes, at * 4 + 3);
-        bool  triangle = (last.w & kTriangle) != 0u;
+        bool  triangle = (last.w & kMaskTriangle) != 0u;
         bool  exact    = uintBitsToFloat(third.w) <= u_exact_radius;
-        bool  loose    = !exact && (last.w & kSheet) != 0u;
+        bool  sheet    = !exact && (last.w & kMaskSheet) != 0u;
         vec4  ball     = uintBitsToFloat(texelFetch(u_nodes, at * 4));
         vec3  center   = u_face * (ball.xyz - position);
         float radius   = ball.w;
@@ -171,8 +162,8 @@ void main()
         vec3  normal   = normal_of(axis_a, axis_b);
         float away     = dot(normal, ball.xyz - group.xyz);
         float own_away = shared ? away : dot(normal, ball.xyz - position);
-        bool  dropped = u_one_sided != 0 && (last.w & kSolid) != 0u && own_away < 0.0;
-        float grow    = loose && (last.w & kHollow) != 0u && away < 0.0 ? kHollowGrowth : 1.0;
+        bool  dropped = u_one_sided != 0 && (last.w & kMaskSolid) != 0u && own_away < 0.0;
+        float grow    = sheet && (last.w & kMaskHollow) != 0u && away < 0.0 ? kMaskHollowGrowth : 1.0;
         vec3  skew = u_face * uintBitsToFloat(texelFetch(u_nodes, at * 4 + 1).xyz);
         axis_a     = u_face * axis_a;
         axis_b     = u_face * axis_b;
@@ -183,7 +174,7 @@ void main()
         float least = u_graze * u_graze * (dot(center, center) - radius * radius);
         axis_a *= grow;
         axis_b *= grow;
-        at = int(last.w & kNext);
+        at = int(last.w & kMaskFirstChild);
 
         // planes through the receiver and each edge, turned inward; a triangle's first counts twice
         vec3 c0 = center + skew + axis_a;
@@ -204,7 +195,7 @@ void main()
 
         // planes beyond the limit are dropped, polygons that cross it cut to a cone
         normal = cross(c1 - c0, c2 - c0);
-        normal *= inversesqrt(max(dot(normal, normal), kTinyLength2));
+        normal *= inversesqrt(max(dot(normal, normal), kMaskTiny));
         float height = dot(normal, c0);
         if (height < 0.0) {
             normal = -normal;
@@ -225,15 +216,15 @@ void main()
         bool seen = !dropped && volume != 0.0 && top > 0.0 && (shared || top * top > least) &&
                     all(greaterThanEqual(beside, vec4(0.0))) && height < u_max_distance;
         uvec4 drawn       = uvec4(seen ? 0xFFFFFFFFu : 0u);
-        uvec4 drawn_loose = uvec4(seen && loose ? 0xFFFFFFFFu : 0u);
+        uvec4 drawn_sheet = uvec4(seen && sheet ? 0xFFFFFFFFu : 0u);
         words0 |= inside0 & drawn;
         words1 |= inside1 & drawn;
-        loose0 |= inside0 & drawn_loose;
-        loose1 |= inside1 & drawn_loose;
+        sheets0 |= inside0 & drawn_sheet;
+        sheets1 |= inside1 & drawn_sheet;
     }
     out_words0 = words0;
     out_words1 = words1;
-    out_loose0 = loose0;
-    out_loose1 = loose1;
+    out_sheets0 = sheets0;
+    out_sheets1 = sheets1;
     out_at     = uint(at);
 }

@@ -1,6 +1,6 @@
 // receiver_grid.glsl: which receiver a pixel stands for, and where a receiver's pixel is.
 //
-// A slot is a receiver's place in the list of groups: 16 * group + lane (tree/receiver_group.h). Slots
+// A slot is a receiver's place in the list of groups: 16 * group + lane (tree/receiver_groups.h). Slots
 // fill blocks of 32 x 32 pixels, block after block along rows of blocks, and a Z-order curve inside a
 // block. So a group, whose receivers make the same decisions, is a square of 4 x 4 pixels, and what a
 // GPU runs in lockstep stands close together in space.

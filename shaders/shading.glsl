@@ -3,7 +3,7 @@
 // Right of u_wipe_x (pixels) the reference stands in for the result.
 //   u_colors            the value of Colors in viewer/view_options.h
 //   u_difference_scale  occlusion difference that is shown hottest
-//   u_heat              256 x 1, heat_colors() of image/heat_map.h
+//   u_heat              256 x 1, heat_colors() of image/color_map.h
 //   u_irradiance        irradiance_map() of viewer/environment.h, row 0 = sky
 #include "panorama.glsl"
 
@@ -24,7 +24,7 @@ const int kNormals = 4;
 const int kLevels = 5;
 const int kEnvironment = 6;
 
-// Twin of heat_color in image/heat_map.cpp: x = 0 and 1 are the middles of the outer texels.
+// Twin of heat_color in image/color_map.cpp: x = 0 and 1 are the middles of the outer texels.
 vec3 heat_color(float x)
 {
     return texture(u_heat, vec2((clamp(x, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5)).rgb;

@@ -1,5 +1,7 @@
 #include "surfels/geometry.h"
 
+#include "surfels/edges.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -7,7 +9,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <utility>
+#include <vector>
 
 namespace surfelao {
 namespace {
@@ -114,31 +117,20 @@ void for_each_repeated(const std::vector<glm::uvec3>& triangles,
 /// (breadth first, so chains of degenerate triangles end at a real neighbour).
 void borrow_normals(const std::vector<glm::uvec3>& dropped, Geometry& geometry)
 {
-    // the dropped triangles around each position, as one array with offsets
+    if (dropped.empty())
+        return;
     const std::vector<std::uint32_t>& welded = geometry.welded;
-    std::vector<std::uint32_t> first(welded.size() + 1, 0);
-    for (const glm::uvec3 triangle : dropped) {
-        for (int corner = 0; corner < 3; ++corner)
-            ++first[welded[triangle[corner]] + 1];
-    }
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<std::uint32_t> around(dropped.size() * 3);
-    std::vector<std::uint32_t> next = first;
-    for (std::uint32_t t = 0; t < dropped.size(); ++t) {
-        for (int corner = 0; corner < 3; ++corner)
-            around[next[welded[dropped[t][corner]]]++] = t;
-    }
-
+    const Buckets<std::uint32_t> corners = corners_around(dropped, welded);
     std::vector<std::uint32_t> queue;
     for (std::uint32_t v = 0; v < welded.size(); ++v) {
-        if (first[v] != first[v + 1] && geometry.normals[v] != glm::vec3(0.0f))
+        if (!corners[v].empty() && geometry.normals[v] != glm::vec3(0.0f))
             queue.push_back(v);
     }
     for (std::size_t head = 0; head < queue.size(); ++head) {
         const std::uint32_t from = queue[head];
-        for (std::uint32_t i = first[from]; i < first[from + 1]; ++i) {
+        for (const std::uint32_t at : corners[from]) {
             for (int corner = 0; corner < 3; ++corner) {
-                const std::uint32_t to = welded[dropped[around[i]][corner]];
+                const std::uint32_t to = welded[dropped[at / 3][corner]];
                 if (geometry.normals[to] == glm::vec3(0.0f)) {
                     geometry.normals[to] = geometry.normals[from];
                     queue.push_back(to);
@@ -148,36 +140,46 @@ void borrow_normals(const std::vector<glm::uvec3>& dropped, Geometry& geometry)
     }
 }
 
-}  // namespace
+/// What the kept triangles give to the places and vertices around them.
+struct Sums {
+    explicit Sums(std::size_t vertex_count)
+        : position_vector(vertex_count, glm::dvec3(0.0)),
+          own_vector(vertex_count, glm::dvec3(0.0)),
+          position_area(vertex_count, 0.0),
+          own_area(vertex_count, 0.0),
+          repeated_area(vertex_count, 0.0),
+          largest(vertex_count, {0.0, kNone})
+    {
+    }
 
-Geometry make_geometry(const Scene& scene)
+    std::vector<glm::dvec3> position_vector, own_vector;  ///< vector areas
+    std::vector<double> position_area, own_area;
+    std::vector<double> repeated_area;  ///< of triangles whose place an earlier one has
+    std::vector<std::pair<double, std::uint32_t>> largest;  ///< own triangle: area, index
+};
+
+/// Vertices of the scene in the unit frame, in double.
+struct UnitPositions {
+    const Scene& scene;
+    const Frame& frame;
+    glm::dvec3 operator[](std::uint32_t v) const
+    {
+        return (scene.positions[v] - frame.centre) / frame.diagonal;
+    }
+};
+
+/// Keeps the triangles with area and sums their vector areas, per position and per vertex. Returns
+/// the others.
+std::vector<glm::uvec3> keep_triangles(const std::vector<glm::uvec3>& triangles,
+                                       const UnitPositions& positions, Geometry& geometry,
+                                       Sums& sums)
 {
-    Geometry geometry;
-    const std::size_t vertex_count = scene.positions.size();
-    geometry.frame = frame_of(scene);
-    geometry.welded = weld(scene.positions);
-    geometry.positions.resize(vertex_count);
-    geometry.normals.assign(vertex_count, glm::vec3(0.0f));
-    geometry.areas.assign(vertex_count, 0.0f);
-    geometry.triangles.reserve(scene.triangles.size());
-
-    const auto to_unit = [&](std::uint32_t v) {
-        return (scene.positions[v] - geometry.frame.centre) / geometry.frame.diagonal;
-    };
-    for (std::uint32_t v = 0; v < vertex_count; ++v)
-        geometry.positions[v] = glm::vec3(to_unit(v));
-
-    // triangles: keep those with area; sum vector areas per position and per vertex
-    std::vector<glm::dvec3> position_sum(vertex_count, glm::dvec3(0.0));
-    std::vector<glm::dvec3> own_sum(vertex_count, glm::dvec3(0.0));
-    std::vector<double> position_area(vertex_count, 0.0);
-    std::vector<double> own_area(vertex_count, 0.0);
-    std::vector<std::pair<double, std::uint32_t>> largest(vertex_count, {0.0, kNone});
     std::vector<glm::uvec3> dropped;
-    for (const glm::uvec3 triangle : scene.triangles) {
-        const glm::dvec3 a = to_unit(triangle[0]);
-        const glm::dvec3 b = to_unit(triangle[1]);
-        const glm::dvec3 c = to_unit(triangle[2]);
+    geometry.triangles.reserve(triangles.size());
+    for (const glm::uvec3 triangle : triangles) {
+        const glm::dvec3 a = positions[triangle[0]];
+        const glm::dvec3 b = positions[triangle[1]];
+        const glm::dvec3 c = positions[triangle[2]];
         const glm::dvec3 doubled = glm::cross(b - a, c - a);
         const double longest2 =
             std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});
@@ -194,48 +196,77 @@ Geometry make_geometry(const Scene& scene)
         for (int corner = 0; corner < 3; ++corner) {
             const std::uint32_t v = triangle[corner];
             const std::uint32_t w = geometry.welded[v];
-            position_sum[w] += 0.5 * doubled;
-            position_area[w] += area;
-            own_sum[v] += 0.5 * doubled;
-            own_area[v] += area;
-            if (area > largest[v].first)
-                largest[v] = {area, index};
+            sums.position_vector[w] += 0.5 * doubled;
+            sums.position_area[w] += area;
+            sums.own_vector[v] += 0.5 * doubled;
+            sums.own_area[v] += area;
+            if (area > sums.largest[v].first)
+                sums.largest[v] = {area, index};
         }
     }
-    geometry.dropped_triangles = dropped.size();
-
-    std::vector<double> repeated_area(vertex_count, 0.0);
     for_each_repeated(geometry.triangles, geometry.welded, [&](glm::uvec3 triangle) {
-        const glm::dvec3 a = to_unit(triangle[0]);
+        const glm::dvec3 a = positions[triangle[0]];
         const double area =
-            0.5 * glm::length(glm::cross(to_unit(triangle[1]) - a, to_unit(triangle[2]) - a));
+            0.5 * glm::length(glm::cross(positions[triangle[1]] - a, positions[triangle[2]] - a));
         for (int corner = 0; corner < 3; ++corner)
-            repeated_area[geometry.welded[triangle[corner]]] += area;
+            sums.repeated_area[geometry.welded[triangle[corner]]] += area;
     });
+    return dropped;
+}
+
+void set_areas_and_normals(const UnitPositions& positions, const Sums& sums, Geometry& geometry)
+{
+    const auto vertex_count = static_cast<std::uint32_t>(geometry.positions.size());
     for (std::uint32_t v = 0; v < vertex_count; ++v) {
         const std::uint32_t w = geometry.welded[v];
         if (w == v)
-            geometry.areas[v] = static_cast<float>((position_area[v] - repeated_area[v]) / 3.0);
-        if (own_area[v] == 0.0)
+            geometry.areas[v] =
+                static_cast<float>((sums.position_area[v] - sums.repeated_area[v]) / 3.0);
+        if (sums.own_area[v] == 0.0)
             continue;
-        glm::dvec3 sum = position_sum[w];
-        if (glm::length(sum) <= kCancelled * position_area[w])
-            sum = own_sum[v];
-        if (glm::length(sum) <= kCancelled * own_area[v]) {
-            const glm::uvec3 triangle = geometry.triangles[largest[v].second];
-            sum = glm::cross(to_unit(triangle[1]) - to_unit(triangle[0]),
-                             to_unit(triangle[2]) - to_unit(triangle[0]));
+        glm::dvec3 sum = sums.position_vector[w];
+        if (glm::length(sum) <= kCancelled * sums.position_area[w])
+            sum = sums.own_vector[v];
+        if (glm::length(sum) <= kCancelled * sums.own_area[v]) {
+            const glm::uvec3 triangle = geometry.triangles[sums.largest[v].second];
+            sum = glm::cross(positions[triangle[1]] - positions[triangle[0]],
+                             positions[triangle[2]] - positions[triangle[0]]);
         }
         geometry.normals[v] = glm::vec3(glm::normalize(sum));
     }
     // the lowest vertex carries the area of its position, so it needs a normal even when no kept
-    // triangle uses that very vertex; then everyone at a position has one as soon as anyone has
+    // triangle uses that very vertex
     for (std::uint32_t v = 0; v < vertex_count; ++v) {
         const std::uint32_t w = geometry.welded[v];
         if (geometry.normals[w] == glm::vec3(0.0f))
             geometry.normals[w] = geometry.normals[v];
     }
+}
+
+}  // namespace
+
+Geometry make_geometry(const Scene& scene)
+{
+    check_scene(scene);
+    Geometry geometry;
+    const std::size_t vertex_count = scene.positions.size();
+    geometry.frame = frame_of(scene);
+    geometry.welded = weld(scene.positions);
+    geometry.positions.resize(vertex_count);
+    geometry.normals.assign(vertex_count, glm::vec3(0.0f));
+    geometry.areas.assign(vertex_count, 0.0f);
+
+    const UnitPositions positions{scene, geometry.frame};
+    for (std::uint32_t v = 0; v < vertex_count; ++v)
+        geometry.positions[v] = glm::vec3(positions[v]);
+    Sums sums(vertex_count);
+    const std::vector<glm::uvec3> dropped =
+        keep_triangles(scene.triangles, positions, geometry, sums);
+    geometry.dropped_triangles = dropped.size();
+    set_areas_and_normals(positions, sums, geometry);
     borrow_normals(dropped, geometry);
+
+    // everyone at a position has a normal as soon as anyone has
     for (std::uint32_t v = 0; v < vertex_count; ++v) {
         if (geometry.normals[v] == glm::vec3(0.0f))
             geometry.normals[v] = geometry.normals[geometry.welded[v]];

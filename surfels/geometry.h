@@ -47,7 +47,8 @@ inline constexpr double kZeroAreaRatio = 1e-12;
 /// triangle uses takes the normal of its position; where nothing else stands there it has none
 /// (zero).
 ///
-/// O(n) expected; equal input gives equal bytes.
+/// O(n) expected; equal input gives equal bytes. A scene without triangles is allowed; throws
+/// InputError as check_scene does.
 [[nodiscard]] Geometry make_geometry(const Scene& scene);
 
 }  // namespace surfelao

@@ -29,6 +29,7 @@ public:
     QuietOpenMesh& operator=(const QuietOpenMesh&) = delete;
 };
 
+/// Not from edges.h: loops and fans are what OpenMesh finds while faces are added one by one.
 Mesh build(const Geometry& geometry, std::uint64_t& complex_triangle_count)
 {
     const std::size_t vertex_count = geometry.positions.size();

@@ -46,10 +46,13 @@ enum class Falloff {
 struct Definition {
     float max_distance = std::numeric_limits<float>::infinity();  ///< > 0, in diagonals
     Falloff falloff = Falloff::none;  ///< must be `none` where max_distance is infinite
-    float offset = 1e-4f;             ///< > 0, in diagonals
+    float offset = 1e-4f;             ///< > 0 and finite, in diagonals
     Kernel kernel = Kernel::cosine;
     bool operator==(const Definition&) const = default;
 };
+
+/// Throws SettingsError where a member is out of its range, or the falloff has no limit to fall to.
+void check_definition(const Definition& definition);
 
 /// The weight in [0, 1] of a hit at distance t >= 0; 0 at and beyond max_distance.
 [[nodiscard]] float hit_weight(const Definition& definition, float t);

@@ -3,15 +3,16 @@
 /// A scene is everything in the file: all nodes and instances occlude each other. It is flat: a
 /// mesh used by three nodes stands here three times, because each use gets occlusion of its own.
 ///
-/// Invariants (read_scene guarantees them; nothing behind it checks again): every coordinate is
-/// finite, every index is in range, the parts cover all vertices and triangles in order and without
-/// overlap, and there is at least one triangle.
+/// Invariants (read_scene and make_scene guarantee them): every coordinate is finite, every index
+/// is in range, the parts cover all vertices and triangles in order and without overlap, and there
+/// is at least one triangle.
 #pragma once
 
 #include <glm/vec3.hpp>
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,5 +43,19 @@ struct Scene {
     std::vector<Part> parts;
     std::shared_ptr<const SourceAsset> asset;  ///< null for scenes made in code
 };
+
+/// A scene of one part from arrays. Throws InputError naming the element where a coordinate is not
+/// finite or beyond kFarthest, a triangle uses a vertex that there is not, or there is no triangle.
+[[nodiscard]] Scene make_scene(std::span<const glm::dvec3> positions,
+                               std::span<const glm::uvec3> triangles);
+
+/// Throws InputError as make_scene does, but takes a scene without triangles.
+void check_scene(const Scene& scene);
+
+/// Largest coordinate, either way: the size of the box is then a double too.
+inline constexpr double kFarthest = 1e300;
+
+/// Vertices and triangles that a scene may have, each.
+inline constexpr std::uint32_t kMostElements = 0x7fffffff;
 
 }  // namespace surfelao

@@ -10,12 +10,13 @@
 
 namespace surfelao {
 
-/// Two RGBA32F texels on the GPU: position.xyz area | normal.xyz 0.
+/// A flat disk, seen from its front or its back as OccluderSide (topology.h) says.
+/// 32 bytes: SIMD code fetches the fields of several surfels by that stride.
 struct Surfel {
     glm::vec3 position{0.0f};  ///< unit frame
     float area = 0.0f;         ///< in diagonals squared; the disk's radius is sqrt(area / pi)
     glm::vec3 normal{0.0f};    ///< unit length
-    float padding = 0.0f;
+    float padding = 0.0f;      ///< of no meaning
 };
 static_assert(sizeof(Surfel) == 32);
 

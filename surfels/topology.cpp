@@ -1,5 +1,7 @@
 #include "surfels/topology.h"
 
+#include "surfels/buckets.h"
+#include "surfels/edges.h"
 #include "surfels/errors.h"
 #include "surfels/union_find.h"
 
@@ -8,8 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <span>
 
 namespace surfelao {
@@ -21,45 +21,6 @@ constexpr double kFlatThickness = 1e-7;
 
 /// Holes that are to be small span at most this share of their body's area.
 constexpr double kSmallHoles = 0.03;
-
-/// Items sorted by an owner below `owner_count`, then by value: counting sort, then each owner's
-/// own (few, unless a vertex has an enormous valence; then n log n).
-template <class Item>
-class Buckets {
-public:
-    /// for_each(put) must call put(owner, item) for every item, in the same order each time.
-    template <class ForEach>
-    Buckets(std::size_t owner_count, const ForEach& for_each) : first_(owner_count + 1, 0)
-    {
-        for_each([this](std::uint32_t owner, const Item&) { ++first_[owner + 1]; });
-        std::partial_sum(first_.begin(), first_.end(), first_.begin());
-        items_.resize(first_.back());
-        std::vector<std::uint64_t> next(first_.begin(), first_.end() - 1);
-        for_each([&](std::uint32_t owner, const Item& item) { items_[next[owner]++] = item; });
-        for (std::size_t owner = 0; owner < owner_count; ++owner)
-            std::sort(items_.begin() + static_cast<std::ptrdiff_t>(first_[owner]),
-                      items_.begin() + static_cast<std::ptrdiff_t>(first_[owner + 1]));
-    }
-
-    /// Calls visit(owner, items) for each run of an owner's items that are alike.
-    template <class Alike, class Visit>
-    void for_each_run(const Alike& alike, const Visit& visit) const
-    {
-        for (std::uint32_t owner = 0; owner + 1 < first_.size(); ++owner) {
-            for (std::uint64_t begin = first_[owner]; begin < first_[owner + 1];) {
-                std::uint64_t end = begin + 1;
-                while (end < first_[owner + 1] && alike(items_[begin], items_[end]))
-                    ++end;
-                visit(owner, std::span<const Item>(&items_[begin], end - begin));
-                begin = end;
-            }
-        }
-    }
-
-private:
-    std::vector<std::uint64_t> first_;
-    std::vector<Item> items_;
-};
 
 /// Corners of a triangle by rising index, and whether the turn was changed by that.
 struct Sorted {
@@ -101,7 +62,7 @@ std::vector<bool> find_left_out(const std::vector<glm::uvec3>& triangles, std::s
     const auto alike = [](const Item& a, const Item& b) {
         return a.middle == b.middle && a.high == b.high;
     };
-    by_lowest.for_each_run(alike, [&](std::uint32_t, std::span<const Item> same) {
+    const auto judge = [&](std::span<const Item> same) {
         duplicate_count += same.size() - 1;
         std::array<std::size_t, 2> wound{};
         for (const Item& item : same)
@@ -113,7 +74,13 @@ std::vector<bool> find_left_out(const std::vector<glm::uvec3>& triangles, std::s
             left_out[item.face] = !missing || wound[turned] < wound[!turned];
             missing = missing && left_out[item.face];
         }
-    });
+    };
+    std::vector<Item> items;
+    for (std::size_t lowest = 0; lowest < vertex_count; ++lowest) {
+        items.assign(by_lowest[lowest].begin(), by_lowest[lowest].end());
+        std::sort(items.begin(), items.end());
+        for_each_run(std::span<const Item>(items), alike, judge);
+    }
     return left_out;
 }
 
@@ -125,14 +92,64 @@ struct OpenEdge {
     std::uint32_t body = 0, loop = 0;
 };
 
-/// What it takes to close each body, at its root: the vector areas of the loops of its open edges,
-/// that is, of the least surfaces that could fill its holes or turn its misoriented patches.
-std::vector<double> hole_areas(const Geometry& geometry, std::vector<OpenEdge> edges,
-                               UnionFind& loops, UnionFind& bodies)
+/// What hangs together over edges. A body is named by its lowest triangle.
+struct Bodies {
+    UnionFind of_face;
+    UnionFind loops;  ///< of open edges, over vertices
+    std::vector<OpenEdge> open_edges;
+    std::vector<bool> open;  ///< at a body's name: neither all its faces nor those that count
+                             ///< balance at every edge
+};
+
+Bodies find_bodies(const Geometry& geometry, const std::vector<bool>& left_out, Topology& topology)
 {
+    const std::size_t face_count = geometry.triangles.size();
+    Bodies bodies{UnionFind(face_count), UnionFind(geometry.positions.size()), {}, {}};
+    std::vector<bool> open_with_all(face_count, false);
+    std::vector<bool> open_without(face_count, false);
+    Edges(geometry).for_each([&](std::uint32_t lower, std::span<const EdgeSide> sides) {
+        const std::uint32_t first = sides[0].triangle();
+        int all_forward = 0;  // faces in the one direction less those in the other
+        int forward = 0;
+        int count = 0;
+        for (const EdgeSide& side : sides) {
+            const int step = side.rises() ? 1 : -1;
+            const int counts = left_out[side.triangle()] ? 0 : 1;
+            all_forward += step;
+            forward += counts * step;
+            count += counts;
+            bodies.of_face.join(first, side.triangle());
+        }
+        topology.boundary_edge_count += count == 1 ? 1 : 0;
+        topology.nonmanifold_edge_count += count > 2 ? 1 : 0;
+        topology.misoriented_edge_count += count == 2 && forward != 0 ? 1 : 0;
+        if (all_forward != 0)
+            open_with_all[first] = true;
+        if (forward != 0) {
+            open_without[first] = true;
+            bodies.loops.join(lower, sides[0].upper);
+            bodies.open_edges.push_back({lower, sides[0].upper, first, forward});
+        }
+    });
+    for (std::uint32_t face = 0; face < face_count; ++face) {
+        const std::uint32_t body = bodies.of_face.root(face);
+        open_with_all[body] = open_with_all[body] || open_with_all[face];
+        open_without[body] = open_without[body] || open_without[face];
+    }
+    bodies.open.resize(face_count);
+    for (std::uint32_t face = 0; face < face_count; ++face)
+        bodies.open[face] = open_with_all[face] && open_without[face];
+    return bodies;
+}
+
+/// What it takes to close each body, at its name: the vector areas of the loops of its open edges,
+/// that is, of the least surfaces that could fill its holes or turn its misoriented patches.
+std::vector<double> hole_areas(const Geometry& geometry, Bodies& bodies)
+{
+    std::vector<OpenEdge>& edges = bodies.open_edges;
     for (OpenEdge& edge : edges) {
-        edge.body = bodies.root(edge.face);
-        edge.loop = loops.root(edge.lower);
+        edge.body = bodies.of_face.root(edge.face);
+        edge.loop = bodies.loops.root(edge.lower);
     }
     const auto key = [](const OpenEdge& edge) {
         return std::array{edge.body, edge.loop, edge.lower, edge.upper};
@@ -140,19 +157,74 @@ std::vector<double> hole_areas(const Geometry& geometry, std::vector<OpenEdge> e
     std::sort(edges.begin(), edges.end(),
               [&](const OpenEdge& a, const OpenEdge& b) { return key(a) < key(b); });
     std::vector<double> areas(geometry.triangles.size(), 0.0);
-    for (std::size_t i = 0; i < edges.size();) {
-        const OpenEdge& first = edges[i];
-        const glm::dvec3 origin = geometry.positions[first.loop];
+    const auto same_loop = [](const OpenEdge& a, const OpenEdge& b) {
+        return a.body == b.body && a.loop == b.loop;
+    };
+    for_each_run(std::span<const OpenEdge>(edges), same_loop, [&](std::span<const OpenEdge> loop) {
+        const glm::dvec3 origin = geometry.positions[loop[0].loop];
         glm::dvec3 vector_area(0.0);
-        for (; i < edges.size() && edges[i].body == first.body && edges[i].loop == first.loop;
-             ++i) {
-            const glm::dvec3 a = glm::dvec3(geometry.positions[edges[i].lower]) - origin;
-            const glm::dvec3 b = glm::dvec3(geometry.positions[edges[i].upper]) - origin;
-            vector_area += 0.5 * edges[i].forward * glm::cross(a, b);
+        for (const OpenEdge& edge : loop) {
+            const glm::dvec3 a = glm::dvec3(geometry.positions[edge.lower]) - origin;
+            const glm::dvec3 b = glm::dvec3(geometry.positions[edge.upper]) - origin;
+            vector_area += 0.5 * edge.forward * glm::cross(a, b);
         }
-        areas[first.body] += glm::length(vector_area);
-    }
+        areas[loop[0].body] += glm::length(vector_area);
+    });
     return areas;
+}
+
+/// Which side casts, for each body at its name.
+std::vector<OccluderSide> sides_of_bodies(const Geometry& geometry,
+                                          const std::vector<glm::uvec3>& triangles,
+                                          const std::vector<bool>& left_out, Bodies& bodies)
+{
+    // signed volume and area of each body, about a corner of its own
+    std::vector<double> volume(triangles.size(), 0.0);
+    std::vector<double> area(triangles.size(), 0.0);
+    for (std::uint32_t face = 0; face < triangles.size(); ++face) {
+        if (left_out[face])
+            continue;
+        const glm::uvec3 t = triangles[face];
+        const std::uint32_t body = bodies.of_face.root(face);
+        const glm::dvec3 origin = geometry.positions[triangles[body].x];
+        const glm::dvec3 a = glm::dvec3(geometry.positions[t.x]) - origin;
+        const glm::dvec3 b = glm::dvec3(geometry.positions[t.y]) - origin;
+        const glm::dvec3 c = glm::dvec3(geometry.positions[t.z]) - origin;
+        volume[body] += glm::dot(a, glm::cross(b, c)) / 6.0;
+        area[body] += glm::length(glm::cross(b - a, c - a)) / 2.0;
+    }
+    const std::vector<double> holes = hole_areas(geometry, bodies);
+    std::vector<OccluderSide> sides(triangles.size(), OccluderSide::both);
+    for (std::uint32_t body = 0; body < triangles.size(); ++body) {
+        const bool has_a_back = !bodies.open[body] || holes[body] <= kSmallHoles * area[body];
+        if (has_a_back && std::abs(volume[body]) > kFlatThickness * area[body])
+            sides[body] = volume[body] > 0.0 ? OccluderSide::back : OccluderSide::front;
+    }
+    return sides;
+}
+
+/// A component is closed when it has bodies and all of them are.
+void count_components(const std::vector<glm::uvec3>& triangles, std::size_t vertex_count,
+                      const std::vector<bool>& left_out, Bodies& bodies, Topology& topology)
+{
+    UnionFind components(vertex_count);
+    for (const glm::uvec3 t : triangles) {
+        components.join(t.x, t.y);
+        components.join(t.y, t.z);
+    }
+    enum : std::uint8_t { unused, sheets, closed, ajar };
+    std::vector<std::uint8_t> state(vertex_count, unused);
+    for (std::uint32_t face = 0; face < triangles.size(); ++face) {
+        const std::uint8_t is = left_out[face]                           ? sheets
+                                : bodies.open[bodies.of_face.root(face)] ? ajar
+                                                                         : closed;
+        std::uint8_t& of_component = state[components.root(triangles[face].x)];
+        of_component = std::max(of_component, is);
+    }
+    for (const std::uint8_t is : state) {
+        topology.component_count += is != unused ? 1 : 0;
+        topology.closed_component_count += is == closed ? 1 : 0;
+    }
 }
 
 }  // namespace
@@ -161,98 +233,15 @@ Topology analyse_topology(const Geometry& geometry)
 {
     const std::size_t vertex_count = geometry.positions.size();
     std::vector<glm::uvec3> triangles = geometry.triangles;  // over welded vertices
-    SURFELAO_CHECK(triangles.size() < (std::size_t{1} << 31));
     for (glm::uvec3& t : triangles)
         t = {geometry.welded[t.x], geometry.welded[t.y], geometry.welded[t.z]};
 
     Topology topology;
     const std::vector<bool> left_out =
         find_left_out(triangles, vertex_count, topology.duplicate_triangle_count);
-
-    // the faces at each edge, found at its lower vertex: other vertex, face, direction in 64 bits
-    const auto face_of = [](std::uint64_t item) {
-        return static_cast<std::uint32_t>(item & 0xFFFFFFFFu) >> 1;
-    };
-    const Buckets<std::uint64_t> by_lower(vertex_count, [&](const auto& put) {
-        for (std::uint32_t face = 0; face < triangles.size(); ++face) {
-            for (int corner = 0; corner < 3; ++corner) {
-                const std::uint32_t from = triangles[face][corner];
-                const std::uint32_t to = triangles[face][(corner + 1) % 3];
-                const std::uint64_t forward = from < to ? 1 : 0;
-                put(std::min(from, to),
-                    std::uint64_t{std::max(from, to)} << 32 | std::uint64_t{face} << 1 | forward);
-            }
-        }
-    });
-
-    // bodies hang together over edges; they stay closed while all edges are balanced, either with
-    // all faces or without those left out
-    UnionFind bodies(triangles.size());
-    UnionFind loops(vertex_count);  // of open edges
-    std::vector<OpenEdge> open_edges;
-    std::vector<bool> open_with_all(triangles.size(), false);
-    std::vector<bool> open_without(triangles.size(), false);
-    const auto same_edge = [](std::uint64_t a, std::uint64_t b) { return a >> 32 == b >> 32; };
-    by_lower.for_each_run(
-        same_edge, [&](std::uint32_t lower, std::span<const std::uint64_t> faces) {
-            const std::uint32_t first = face_of(faces[0]);
-            int all_forward = 0;  // faces in the one direction less those in the other
-            int forward = 0;
-            int count = 0;
-            for (const std::uint64_t face : faces) {
-                const int step = face & 1 ? 1 : -1;
-                const int counts = left_out[face_of(face)] ? 0 : 1;
-                all_forward += step;
-                forward += counts * step;
-                count += counts;
-                bodies.join(first, face_of(face));
-            }
-            topology.boundary_edge_count += count == 1 ? 1 : 0;
-            topology.nonmanifold_edge_count += count > 2 ? 1 : 0;
-            topology.misoriented_edge_count += count == 2 && forward != 0 ? 1 : 0;
-            if (all_forward != 0)
-                open_with_all[first] = true;
-            if (forward != 0) {
-                open_without[first] = true;
-                const auto upper = static_cast<std::uint32_t>(faces[0] >> 32);
-                loops.join(lower, upper);
-                open_edges.push_back({lower, upper, first, forward});
-            }
-        });
-    for (std::uint32_t face = 0; face < triangles.size(); ++face) {
-        const std::uint32_t body = bodies.root(face);
-        open_with_all[body] = open_with_all[body] || open_with_all[face];
-        open_without[body] = open_without[body] || open_without[face];
-    }
-    const auto is_open = [&](std::uint32_t body) {
-        return open_with_all[body] && open_without[body];
-    };
-
-    // signed volume and area of each body, at its root, about a corner of its own
-    std::vector<double> volume(triangles.size(), 0.0);
-    std::vector<double> area(triangles.size(), 0.0);
-    UnionFind components(vertex_count);
-    for (std::uint32_t face = 0; face < triangles.size(); ++face) {
-        const glm::uvec3 t = triangles[face];
-        components.join(t.x, t.y);
-        components.join(t.y, t.z);
-        if (left_out[face])
-            continue;
-        const std::uint32_t body = bodies.root(face);
-        const glm::dvec3 origin = geometry.positions[triangles[body].x];
-        const glm::dvec3 a = glm::dvec3(geometry.positions[t.x]) - origin;
-        const glm::dvec3 b = glm::dvec3(geometry.positions[t.y]) - origin;
-        const glm::dvec3 c = glm::dvec3(geometry.positions[t.z]) - origin;
-        volume[body] += glm::dot(a, glm::cross(b, c)) / 6.0;
-        area[body] += glm::length(glm::cross(b - a, c - a)) / 2.0;
-    }
-    const std::vector<double> holes = hole_areas(geometry, open_edges, loops, bodies);
-    const auto side_of_body = [&](std::uint32_t body) {
-        const bool has_a_back = !is_open(body) || holes[body] <= kSmallHoles * area[body];
-        if (!has_a_back || std::abs(volume[body]) <= kFlatThickness * area[body])
-            return OccluderSide::both;
-        return volume[body] > 0.0 ? OccluderSide::back : OccluderSide::front;
-    };
+    Bodies bodies = find_bodies(geometry, left_out, topology);
+    const std::vector<OccluderSide> sides = sides_of_bodies(geometry, triangles, left_out, bodies);
+    count_components(triangles, vertex_count, left_out, bodies, topology);
 
     // a vertex has the side that all its bodies agree on
     std::vector<bool> has_body(vertex_count, false);
@@ -260,7 +249,7 @@ Topology analyse_topology(const Geometry& geometry)
     for (std::uint32_t face = 0; face < triangles.size(); ++face) {
         if (left_out[face])
             continue;
-        const OccluderSide side = side_of_body(bodies.root(face));
+        const OccluderSide side = sides[bodies.of_face.root(face)];
         for (int corner = 0; corner < 3; ++corner) {
             const std::uint32_t v = triangles[face][corner];
             if (!has_body[v] || topology.sides[v] == side)
@@ -269,21 +258,6 @@ Topology analyse_topology(const Geometry& geometry)
                 topology.sides[v] = OccluderSide::both;
             has_body[v] = true;
         }
-    }
-
-    // a component is closed when it has bodies and all of them are
-    enum : std::uint8_t { unused, sheets, closed, ajar };
-    std::vector<std::uint8_t> state(vertex_count, unused);
-    for (std::uint32_t face = 0; face < triangles.size(); ++face) {
-        const std::uint8_t is = left_out[face]               ? sheets
-                                : is_open(bodies.root(face)) ? ajar
-                                                             : closed;
-        std::uint8_t& of_component = state[components.root(triangles[face].x)];
-        of_component = std::max(of_component, is);
-    }
-    for (std::uint32_t v = 0; v < vertex_count; ++v) {
-        topology.component_count += state[v] != unused ? 1 : 0;
-        topology.closed_component_count += state[v] == closed ? 1 : 0;
     }
     for (std::uint32_t v = 0; v < vertex_count; ++v)
         topology.sides[v] = topology.sides[geometry.welded[v]];

@@ -45,7 +45,7 @@ struct Topology {
 };
 
 /// O(n), and O(k log k) for a vertex with k triangles. Equal input gives equal bytes. Fewer than
-/// 2^31 triangles.
+/// 2^31 / 3 triangles (edges.h).
 [[nodiscard]] Topology analyse_topology(const Geometry& geometry);
 
 /// Per surfel: the side of the surface at its vertex.

@@ -1,6 +1,6 @@
 #include "viewer/panel_widgets.h"
 
-#include "image/heat_map.h"
+#include "image/color_map.h"
 
 #include <imgui.h>
 

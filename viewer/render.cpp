@@ -1,6 +1,6 @@
 #include "viewer/render.h"
 
-#include "image/heat_map.h"
+#include "image/color_map.h"
 #include "surfels/errors.h"
 #include "viewer/renderer.h"
 

@@ -2,7 +2,7 @@
 
 #include "gpu/draw.h"
 #include "gpu/program.h"
-#include "image/heat_map.h"
+#include "image/color_map.h"
 #include "surfels/errors.h"
 #include "viewer/environment.h"
 

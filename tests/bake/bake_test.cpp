@@ -139,18 +139,50 @@ TEST(Batch, ResultsHaveTheirInputsNames)
     EXPECT_EQ(output_in_folder("x/a.glb", "out"), fs::path("out/a.glb"));
 }
 
-TEST(Batch, FinishedMeansThereAndNotOlder)
+TEST(Batch, FinishedMeansThereNotOlderAndMadeWithTheSameSettings)
 {
     const TemporaryFolder folder;
-    std::ofstream(folder / "in") << "1";
-    EXPECT_FALSE(is_finished(folder / "in", folder / "out"));
-    std::ofstream(folder / "out") << "2";
-    const auto now = fs::last_write_time(folder / "out");
-    fs::last_write_time(folder / "in", now - std::chrono::seconds(10));
-    EXPECT_TRUE(is_finished(folder / "in", folder / "out"));
-    fs::last_write_time(folder / "in", now + std::chrono::seconds(10));
-    EXPECT_FALSE(is_finished(folder / "in", folder / "out"));
-    EXPECT_FALSE(is_finished(folder / "none", folder / "out"));
+    write_obj(folder / "in.obj", scenes::bumpy_sphere(4));
+    for (const char* name : {"out.ply", "out.obj", "out.off"}) {
+        BakeSettings settings = settings_for(folder / "in.obj", folder / name);
+        EXPECT_FALSE(is_finished(settings)) << name;
+        static_cast<void>(bake(settings));
+        EXPECT_TRUE(is_finished(settings)) << name;
+
+        BakeSettings other = settings;
+        other.engine.quality = kBest;
+        EXPECT_FALSE(is_finished(other)) << name;
+        other = settings;
+        other.max_distance = {10.0, true, Falloff::smooth};
+        EXPECT_FALSE(is_finished(other)) << name;
+
+        const auto made = fs::last_write_time(folder / name);
+        fs::last_write_time(folder / "in.obj", made + std::chrono::seconds(10));
+        EXPECT_FALSE(is_finished(settings)) << name;
+        fs::last_write_time(folder / "in.obj", made - std::chrono::seconds(10));
+    }
+    EXPECT_FALSE(is_finished(settings_for(folder / "none.obj", folder / "out.obj")));
+}
+
+TEST(Batch, MarksNameTheSettingsOfTheEngineAtHand)
+{
+    BakeSettings settings = settings_for("in.obj", "out.obj");
+    EXPECT_NE(mark_of(settings).find(" bake: engine=masks device=cpu quality=1 kernel=cosine "
+                                     "max_distance=none falloff=none colors=no"),
+              std::string::npos)
+        << mark_of(settings);
+    settings.engine.engine = Engine::disks;
+    settings.engine.device = Device::gpu;
+    settings.engine.quality = 0.1f;
+    settings.kernel = Kernel::bunnell;
+    settings.max_distance = {12.5, true, Falloff::smooth};
+    settings.colors = true;
+    EXPECT_NE(mark_of(settings).find("engine=disks device=gpu quality=0.1 passes=2 strength=1 "
+                                     "kernel=bunnell max_distance=12.5% falloff=smooth colors=yes"),
+              std::string::npos)
+        << mark_of(settings);
+    settings.engine.engine = Engine::rays;
+    EXPECT_NE(mark_of(settings).find("engine=rays device=gpu rays=16 kernel"), std::string::npos);
 }
 
 TEST(Threads, TheLimitLivesAsLongAsItsObject)

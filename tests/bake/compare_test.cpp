@@ -127,6 +127,9 @@ TEST_F(Compare, ReportsHaveTheirKeysAndColumns)
                             "rmse", "bias", "p95", "max", "embree_ratio"})
         EXPECT_TRUE(json["rows"][0].contains(key)) << key;
     EXPECT_TRUE(json["rows"][1]["embree_ratio"].is_null());
+    EXPECT_EQ(json["rows"][1]["settings"]["smoothed"], false);
+    EXPECT_EQ(json["rows"][4]["settings"]["smoothed"], true);
+    EXPECT_FALSE(json["rows"][0]["settings"].contains("smoothed"));
 
     std::istringstream csv(csv_of(c));
     std::string line;

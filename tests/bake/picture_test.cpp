@@ -5,8 +5,6 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-#include <limits>
-
 namespace surfelao {
 namespace {
 
@@ -56,15 +54,6 @@ TEST(Picture, AllInOnePointDrawsNothing)
     point.positions.assign(3, {1, 1, 1});
     point.triangles = {{0, 1, 2}};
     EXPECT_EQ(covered(draw(point, {0, 0, 0})), 0u);
-}
-
-TEST(ColorOfError, IsWhiteAtZeroRedAboveBlueBelowGreyUnknown)
-{
-    EXPECT_EQ(color_of_error(0.0f, 0.1f), kWhite);
-    EXPECT_EQ(color_of_error(0.1f, 0.1f), (Rgb{255, 0, 0}));
-    EXPECT_EQ(color_of_error(-5.0f, 0.1f), (Rgb{0, 0, 255}));
-    EXPECT_EQ(color_of_error(0.05f, 0.1f), (Rgb{255, 128, 128}));
-    EXPECT_EQ(color_of_error(std::numeric_limits<float>::quiet_NaN(), 0.1f), (Rgb{128, 128, 128}));
 }
 
 std::uint32_t big_endian(const std::string& bytes, std::size_t at)

@@ -2,7 +2,7 @@
 # Speed against error over all scenes at hand, one run, one machine: bench.sh BUILD [SCENE...]
 # Generated scenes (six times finer than the committed ones), the Debian packages' models and, where
 # present, ../shared/models beside the project; or only the scenes given. Tables go to the terminal,
-# report.html, CSV and JSON to out/bench/.
+# report.html, CSV and JSON to out/bench/. What the pages tell is measured by measure.py.
 set -euo pipefail
 build=$1
 shift
@@ -18,7 +18,7 @@ if [ $# -eq 0 ]; then
         [ ! -e "$model" ] || set -- "$@" "$model"
     done
 fi
-"$build/bin/surfelao" compare --frontier "$@" -o "$out" \
+"$build/bin/surfelao" compare --frontier "$@" -o "$out" --overwrite \
     --json "$out/frontier.json" --csv "$out/frontier.csv"
 "$build/bin/scaling" masks
 "$build/bin/scaling" disks

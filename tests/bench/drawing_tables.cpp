@@ -74,7 +74,8 @@ void run(GlBackend backend)
                 context.info().platform.c_str());
     std::printf(
         "| vertices | triangles | report | splats | report, covering | affine | points | covering "
-        "radius | report | pixels a splat is wide |\n|---|---|---|---|---|---|---|---|---|---|\n");
+        "radius | report, radius | pixels a splat is wide "
+        "|\n|---|---|---|---|---|---|---|---|---|---|\n");
     Renderer renderer(context);
     const Framebuffer target = renderer.make_target(kWidth, kHeight);
     for (const ReportRow& row : kRows) {

@@ -15,11 +15,9 @@ limits=(--largest "${LARGEST:-1100000}" --largest-masks "${MASKS:-1100000}")
 "$build/bin/gpu_tables" --backend egl "${limits[@]}"
 if [ $# -gt 0 ]; then
     "$build/bin/gpu_tables" --backend egl "${limits[@]}" "$@"
-    scratch=$(mktemp -d)
-    trap 'rm -r "$scratch"' EXIT
     for model in "$@"; do
         echo
-        "$build/bin/surfelao" compare "$model" -o "$scratch" --engines masks --devices cpu,gpu \
+        "$build/bin/surfelao" compare "$model" --engines masks --devices cpu,gpu \
             --qualities good --rounds 1 --sample 4000
     done
 fi

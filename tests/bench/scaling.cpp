@@ -2,10 +2,11 @@
 //
 //     scaling masks|disks [VERTICES...]        default: 10000 100000 1000000
 //
-// One line per size; times are processor time on one thread, which other work on the machine
-// disturbs least. The mesh is a sphere with four octaves of bumps, two triangles a vertex; quality
-// good, disks with two passes. Brute force: every triangle drawn, or every disk summed in one pass,
-// for some receivers; beside it the root mean square of what the engine differs from that.
+// A Markdown table, one line per size; times are processor time on one thread, which other work on
+// the machine disturbs least. The mesh is a sphere with four octaves of bumps, two triangles a
+// vertex; quality good, disks with two passes. Brute force: every triangle drawn, or every disk
+// summed in one pass, for some receivers; beside it the root mean square of what the engine differs
+// from that.
 //
 // Memory is what the process holds at most during the step, beyond what it held before: of the
 // build with the tree itself, of the solve with the answers (Linux only; elsewhere zeros).
@@ -21,7 +22,7 @@
 #include "tree/disks/disks.h"
 #include "tree/disks/gather.h"
 #include "tree/masks/masks.h"
-#include "tree/receiver_group.h"
+#include "tree/receiver_groups.h"
 
 #include <tbb/global_control.h>
 
@@ -206,10 +207,11 @@ int main(int argument_count, char** arguments)
     if (wanted.empty())
         wanted = {1e4, 1e5, 1e6};
 
-    std::printf("%-9s %9s %9s %9s %9s %11s %11s\n", name.c_str(), "build", "solve", "brute", "RMS",
-                "build peak", "solve peak");
-    std::printf("%9s %9s %9s %9s %9s %11s %11s\n", "vertices", "us/v", "us/v", "us/v", "to it",
-                "B/triangle", "B/vertex");
+    std::printf(
+        "%s\n\n| vertices | build us/vertex | solve us/vertex | brute force us/vertex | RMS to it "
+        "| build peak bytes/triangle | solve peak bytes/vertex | work |\n"
+        "|---|---|---|---|---|---|---|---|\n",
+        name.c_str());
     std::vector<double> sizes, times;
     for (const double vertices : wanted) {
         const int cells = static_cast<int>(std::lround(std::sqrt(vertices / 6.0)));
@@ -225,7 +227,7 @@ int main(int argument_count, char** arguments)
         const Cost build = cost_of([&] { engine->build(geometry); });
         Answers answers;
         const Cost solve = cost_of([&] { answers = engine->solve(receivers); });
-        std::printf("%9.0f %9.3f %9.3f ", n, 1e6 * build.seconds / n, 1e6 * solve.seconds / n);
+        std::printf("| %.0f | %.3f | %.3f | ", n, 1e6 * build.seconds / n, 1e6 * solve.seconds / n);
         if (receivers.size() <= kBruteVertices) {
             Receivers some;
             for (std::size_t i = 0; i < kBruteReceivers; ++i)
@@ -236,12 +238,12 @@ int main(int argument_count, char** arguments)
             double squares = 0.0;
             for (std::size_t i = 0; i < some.size(); ++i)
                 squares += std::pow(fast[i].occlusion - exact[i].occlusion, 2);
-            std::printf("%9.1f %9.4f", 1e6 * brute.seconds / kBruteReceivers,
+            std::printf("%.1f | %.4f", 1e6 * brute.seconds / kBruteReceivers,
                         std::sqrt(squares / kBruteReceivers));
         } else {
-            std::printf("%9s %9s", "-", "-");
+            std::printf("- | -");
         }
-        std::printf(" %11.0f %11.0f  %s\n",
+        std::printf(" | %.0f | %.0f | %s |\n",
                     build.bytes / static_cast<double>(geometry.triangles.size()), solve.bytes / n,
                     engine->note(receivers).c_str());
         std::fflush(stdout);
@@ -249,6 +251,6 @@ int main(int argument_count, char** arguments)
         times.push_back(solve.seconds);
     }
     if (sizes.size() > 1)
-        std::printf("solve time grows with vertices^%.3f\n", exponent(sizes, times));
+        std::printf("\nsolve time grows with vertices^%.3f\n", exponent(sizes, times));
     return 0;
 }

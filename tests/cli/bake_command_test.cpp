@@ -144,21 +144,34 @@ TEST_F(BakeCommand, OneFailingFileDoesNotStopTheBatch)
     EXPECT_TRUE(json[1].contains("error"));
 }
 
-TEST_F(BakeCommand, ResumeSkipsWhatIsFinishedAndRedoesWhatIsOlder)
+TEST_F(BakeCommand, ResumeSkipsWhatIsFinishedAndRedoesWhatIsOlderOrHasOtherSettings)
 {
-    const std::vector<std::string> arguments = {"bake", folder_ / "a.obj", folder_ / "b.obj",
-                                                "-o",   folder_ / "out",   "--resume"};
-    std::ofstream(folder_ / "out/a.obj") << "finished";
-    Outcome outcome = run(arguments);
+    const fs::path result = folder_ / "out/a.obj";
+    const auto resume = [&](const char* quality) {
+        return run({"bake", folder_ / "a.obj", folder_ / "b.obj", "-o", folder_ / "out", "--resume",
+                    "--quality", quality});
+    };
+    // as "good" left it, and recognisable
+    std::string finished =
+        "# surfelao 0.1.0 bake: engine=masks device=cpu quality=1 "
+        "kernel=cosine max_distance=none falloff=none colors=no\nfinished";
+    std::ofstream(result) << finished;
+    Outcome outcome = resume("good");
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("skipped"), std::string::npos);
-    EXPECT_EQ(contents_of(folder_ / "out/a.obj"), "finished");
+    EXPECT_EQ(contents_of(result), finished);
     EXPECT_TRUE(fs::exists(folder_ / "out/b.obj"));
 
-    fs::last_write_time(folder_ / "a.obj",
-                        fs::last_write_time(folder_ / "out/a.obj") + std::chrono::seconds(5));
-    EXPECT_EQ(run(arguments).code, 0);
-    EXPECT_NE(contents_of(folder_ / "out/a.obj"), "finished");
+    outcome = resume("draft");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.out.find("skipped"), std::string::npos) << outcome.out;
+    EXPECT_NE(contents_of(result).find("quality=0 "), std::string::npos);
+
+    finished = contents_of(result) + "# finished";
+    std::ofstream(result) << finished;
+    fs::last_write_time(folder_ / "a.obj", fs::last_write_time(result) + std::chrono::seconds(5));
+    EXPECT_EQ(resume("draft").code, 0);
+    EXPECT_NE(contents_of(result), finished);
 }
 
 TEST_F(BakeCommand, ReadOnlyTargetIsRefusedAndUntouched)

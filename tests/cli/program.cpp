@@ -15,6 +15,17 @@
 namespace surfelao {
 namespace {
 
+/// Mesa's compiled shaders stay where they are though the cache folder moves: compiling them anew
+/// is most of what a small picture takes.
+void keep_shader_cache()
+{
+    const char* cache = std::getenv("XDG_CACHE_HOME");
+    const char* home = std::getenv("HOME");
+    if (cache != nullptr || home != nullptr)
+        setenv("MESA_SHADER_CACHE_DIR",
+               (cache != nullptr ? std::string(cache) : home + std::string("/.cache")).c_str(), 0);
+}
+
 /// In the child: standard output to the file, standard error to the file or the terminal.
 [[noreturn]] void become_program(const std::vector<std::string>& arguments, const std::string& out,
                                  int err, const std::string& cache)
@@ -22,6 +33,7 @@ namespace {
     const int descriptor = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     dup2(descriptor, STDOUT_FILENO);
     dup2(err, STDERR_FILENO);
+    keep_shader_cache();
     setenv("XDG_CACHE_HOME", cache.c_str(), 1);
     unsetenv("DISPLAY");
     std::vector<char*> words = {const_cast<char*>(SURFELAO_PROGRAM)};

@@ -1,6 +1,9 @@
 /// gltf_maker.h: small glTF files made in code, right ones and broken ones.
 #pragma once
 
+#include "files/gltf_io.h"
+#include "surfels/errors.h"
+
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
@@ -104,6 +107,12 @@ struct GltfMaker {
     }
 };
 
+/// The first one.
+inline nlohmann::json& primitive(GltfMaker& maker)
+{
+    return maker.document["meshes"][0]["primitives"][0];
+}
+
 /// The 36 bytes of one_triangle(): 1.0f is 00 00 80 3F, at bytes 12 and 28.
 inline constexpr const char* kTriangleUri =
     "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
@@ -127,6 +136,18 @@ inline GltfMaker square()
     maker.add("meshes", {{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", 1}}}}});
     maker.add("nodes", {{"mesh", 0}});
     return maker;
+}
+
+/// What reading `contents` as made.glb is refused with.
+inline std::string refusal(const std::string& contents)
+{
+    try {
+        static_cast<void>(read_gltf("made.glb", contents));
+    } catch (const InputError& error) {
+        const std::string what = error.what();
+        return what.starts_with("made.glb: ") ? what.substr(10) : what;
+    }
+    return "was read";
 }
 
 }  // namespace surfelao::test

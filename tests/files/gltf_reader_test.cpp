@@ -18,6 +18,7 @@ using test::bytes_of;
 using test::GltfMaker;
 using test::kTriangleUri;
 using test::one_triangle;
+using test::primitive;
 using test::square;
 
 using Positions = std::vector<glm::dvec3>;
@@ -26,11 +27,6 @@ using Triangles = std::vector<glm::uvec3>;
 Scene read(const GltfMaker& maker)
 {
     return read_gltf("made.glb", maker.glb());
-}
-
-json& primitive(GltfMaker& maker)
-{
-    return maker.document["meshes"][0]["primitives"][0];
 }
 
 const Positions kSquare = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};

@@ -158,6 +158,7 @@ void use_often(GltfMaker& maker, int count, const json& node)
 
 // ---- the table
 
+// long: a table
 std::vector<Hostile> hostile_files()
 {
     const auto zero = [](int) { return 0.0f; };
@@ -403,7 +404,7 @@ std::string outcome_of(const std::filesystem::path& path)
     int status = 0;
     waitpid(child, &status, 0);
     std::string said(2000, '\0');
-    said.resize(static_cast<std::size_t>(std::max<ssize_t>(0, read(ends[0], said.data(), 2000))));
+    said.resize(static_cast<std::size_t>(std::max<ssize_t>(0, ::read(ends[0], said.data(), 2000))));
     close(ends[0]);
     if (WIFSIGNALED(status))
         return WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL

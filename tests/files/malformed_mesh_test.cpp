@@ -115,6 +115,7 @@ const float kInf = std::numeric_limits<float>::infinity();
 // ---- the table
 // -----------------------------------------------------------------------------------
 
+// long: a table
 std::vector<Case> cases()
 {
     const std::string v = kPlyVertex;

@@ -332,5 +332,15 @@ TEST(SceneIo, AFailedWriteLeavesNothing)
     EXPECT_EQ(folder.file_count(), 2);
 }
 
+TEST(SceneIo, AnotherNumberOfAnswersThanVerticesIsRefused)
+{
+    const TemporaryFolder folder;
+    Scene scene = read_scene(folder.file("square.obj", kSquareObj));
+    EXPECT_THROW(write_scene(folder / "out.ply", scene, ramp(4)), SettingsError);
+    scene.positions.pop_back();  // no longer as it was read
+    EXPECT_THROW(write_scene(folder / "out.ply", scene, ramp(4)), InputError);
+    EXPECT_FALSE(fs::exists(folder / "out.ply"));
+}
+
 }  // namespace
 }  // namespace surfelao

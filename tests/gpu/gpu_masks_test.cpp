@@ -176,13 +176,5 @@ TEST(GpuMasks, InsideAClosedBoxAllIsClosedAndAloneAllIsOpen)
     EXPECT_EQ(found[2].occlusion, 0.0f) << "no normal, no hemisphere";
 }
 
-TEST(GpuMasks, StopsWhenAsked)
-{
-    const World world(scenes::bumpy_sphere(8));
-    EXPECT_THROW(static_cast<void>(
-                     solve_on_gpu(*world.tree, world.receivers, {}, [](double) { return false; })),
-                 Cancelled);
-}
-
 }  // namespace
 }  // namespace surfelao

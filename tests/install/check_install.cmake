@@ -17,10 +17,35 @@ function(must)
     if(NOT result EQUAL 0)
         message(FATAL_ERROR "${ARGV}\n${output}")
     endif()
+    set(output "${output}" PARENT_SCOPE)
 endfunction()
 must(${CMAKE_COMMAND} --install ${BUILD} --prefix ${scratch}/prefix)
+
+# no header but the public ones
+file(GLOB_RECURSE headers RELATIVE ${scratch}/prefix/include ${scratch}/prefix/include/*)
+set(public engines/engine.h engines/threads.h files/scene_io.h surfelao.h surfels/errors.h
+    surfels/geometry.h surfels/occlusion.h surfels/progress.h surfels/receiver.h surfels/scene.h)
+list(TRANSFORM public PREPEND surfelao/)
+list(SORT headers)
+list(SORT public)
+if(NOT headers STREQUAL public)
+    message(FATAL_ERROR "installed headers: ${headers}\nwanted: ${public}")
+endif()
+
 must(${CMAKE_COMMAND} -S ${SOURCE}/tests/install -B ${scratch}/build -G Ninja
     -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${scratch}/prefix)
 must(${CMAKE_COMMAND} --build ${scratch}/build)
 must(${scratch}/build/example ${SOURCE}/data/blob.off ${scratch}/blob.ply)
+string(REGEX MATCHALL "mean occlusion 0\\.[0-9]+ in [0-9.]+ s\n" lines "${output}")
+list(LENGTH lines count)
+if(NOT count EQUAL 4)
+    message(FATAL_ERROR "the example must print four lines, but printed\n${output}")
+endif()
 must(${scratch}/prefix/bin/surfelao info ${scratch}/blob.ply)
+
+# a bad setting is one sentence, and no abort (which would not be a number)
+execute_process(COMMAND ${scratch}/build/example ${SOURCE}/data/blob.off ${scratch}/blob.ply 9
+    RESULT_VARIABLE result OUTPUT_VARIABLE said ERROR_VARIABLE said)
+if(NOT result EQUAL 1 OR NOT said STREQUAL "quality of masks must be between -1 and 4\n")
+    message(FATAL_ERROR "quality 9 must be refused by a sentence and exit 1: ${result}\n${said}")
+endif()

@@ -1,33 +1,42 @@
-#include "files/scene_io.h"
-#include "surfels/geometry.h"
-#include "surfels/receiver.h"
-#include "tree/masks/masks.h"
+#include "surfelao/surfelao.h"
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 
-int main(int argument_count, char** arguments)
-{
-    using namespace surfelao;
-    if (argument_count != 3) {
-        std::fprintf(stderr, "usage: example IN OUT\n");
-        return 2;
-    }
-    try {
-        const Scene scene = read_scene(arguments[1]);
-        const Geometry geometry = make_geometry(scene);
-        const auto tree = build_mask_tree(geometry);
-        const MaskOptions options;
-        const auto receivers = receivers_at_vertices(geometry, options.definition.offset);
-        const auto occlusion = solve_masks(*tree, receivers, options);
-        write_scene(arguments[2], scene, occlusion);
+using namespace surfelao;
 
-        double sum = 0.0;
-        for (const Occlusion& at_vertex : occlusion)
-            sum += at_vertex.occlusion;
-        std::printf("mean occlusion %.3f\n", sum / static_cast<double>(occlusion.size()));
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 1;
-    }
+std::vector<Occlusion> ask(const Prepared& prepared, std::span<const Receiver> receivers,
+                           float quality, const char* where)
+{
+    const Solution solution = solve(prepared, receivers, {.quality = quality});
+    double sum = 0.0;
+    for (const Occlusion& answer : solution.occlusion)
+        sum += answer.occlusion;
+    std::printf("%s, quality %g: mean occlusion %.3f in %.4f s\n", where, quality,
+                sum / static_cast<double>(receivers.size()), solution.seconds);
+    return solution.occlusion;
+}
+
+int main(int argument_count, char** arguments)
+try {
+    if (argument_count < 3)
+        throw InputError("usage: example IN OUT [QUALITY]");
+    const float quality = argument_count > 3 ? std::strtof(arguments[3], nullptr) : kGood;
+    check_settings({}, {.quality = quality});      // throws before any work is done
+    const Scene scene = read_scene(arguments[1]);  // or make_scene(positions, triangles)
+    const Geometry geometry = make_geometry(scene);
+    const Prepared prepared = prepare(geometry);
+
+    const std::vector<Receiver> vertices = receivers_at_vertices(geometry, Definition{}.offset);
+    std::vector<Receiver> above = vertices;
+    for (Receiver& receiver : above)
+        receiver.position += 0.05f * receiver.normal;  // a twentieth of the scene's diagonal
+    ask(prepared, vertices, kDraft, "at the vertices");
+    ask(prepared, above, kDraft, "above them");
+    ask(prepared, above, quality, "above them");
+    write_scene(arguments[2], scene, ask(prepared, vertices, quality, "at the vertices"));
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
 }

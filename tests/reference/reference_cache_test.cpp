@@ -1,14 +1,15 @@
 #include "reference/reference_cache.h"
 
+#include "differences.h"
 #include "reference/rays.h"
 #include "scenes.h"
+#include "surfels/errors.h"
+#include "temporary_folder.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 
 namespace surfelao {
@@ -19,18 +20,8 @@ namespace fs = std::filesystem;
 /// A cache folder of its own for every test.
 class ReferenceCache : public testing::Test {
 protected:
-    void SetUp() override
-    {
-        std::string pattern = (fs::temp_directory_path() / "surfelao_cache_XXXXXX").string();
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
-        setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
-    }
-    void TearDown() override
-    {
-        unsetenv("XDG_CACHE_HOME");
-        fs::remove_all(folder_);
-    }
+    void SetUp() override { setenv("XDG_CACHE_HOME", folder_.path().c_str(), 1); }
+    void TearDown() override { unsetenv("XDG_CACHE_HOME"); }
 
     Reference trace(std::uint32_t rays = 64, bool use_cache = true) const
     {
@@ -42,24 +33,21 @@ protected:
     std::vector<fs::path> files() const
     {
         std::vector<fs::path> result;
-        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_)) {
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder_.path())) {
             if (entry.is_regular_file())
                 result.push_back(entry.path());
         }
         return result;
     }
 
-    fs::path folder_;
+    TemporaryFolder folder_;
     Geometry geometry_ = make_geometry(scenes::bumpy_sphere(8));
     std::vector<Receiver> receivers_ = receivers_at_vertices(geometry_, Definition{}.offset);
 };
 
 bool same_bytes(const Reference& a, const Reference& b)
 {
-    return a.occlusion.size() == b.occlusion.size() && a.noise == b.noise &&
-           std::memcmp(a.occlusion.data(), b.occlusion.data(),
-                       a.occlusion.size() * sizeof(Occlusion)) == 0 &&
-           a.change == b.change;
+    return same_bytes(a.occlusion, b.occlusion) && a.noise == b.noise && a.change == b.change;
 }
 
 TEST_F(ReferenceCache, SecondTimeComesFromTheFileWithTheSameBytes)
@@ -166,6 +154,13 @@ TEST_F(ReferenceCache, CancelledLeavesNothing)
     const auto cancel = [](double) { return false; };
     EXPECT_THROW(static_cast<void>(trace_reference(geometry_, receivers_, {}, cancel)), Cancelled);
     EXPECT_TRUE(files().empty());
+}
+
+TEST_F(ReferenceCache, OddNumbersOfRaysAreRefused)
+{
+    for (const std::uint32_t rays : {0u, 7u, kMostRays + 2})
+        EXPECT_THROW(static_cast<void>(trace_reference(geometry_, receivers_, {.rays = rays})),
+                     SettingsError);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "reference/smoothing.h"
 
+#include "differences.h"
 #include "reference/rays.h"
 #include "scenes.h"
+#include "surfels/errors.h"
 
 #include <gtest/gtest.h>
 
@@ -9,14 +11,6 @@
 
 namespace surfelao {
 namespace {
-
-double rms_difference(const std::vector<Occlusion>& a, const std::vector<Occlusion>& b)
-{
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        sum += std::pow(a[i].occlusion - b[i].occlusion, 2);
-    return std::sqrt(sum / static_cast<double>(a.size()));
-}
 
 TEST(Smoothing, AConstantStaysItself)
 {
@@ -65,6 +59,13 @@ TEST(Smoothing, VerticesWithoutANormalKeepTheirValue)
     const std::vector<Occlusion> smooth = smooth_occlusion(geometry, values);
     EXPECT_EQ(smooth[4].occlusion, 0.0f);
     EXPECT_EQ(smooth[4].bent_normal, glm::vec3(0.0f));
+}
+
+TEST(Smoothing, AnotherNumberOfAnswersThanVerticesIsRefused)
+{
+    const Geometry geometry = make_geometry(scenes::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1));
+    EXPECT_THROW(static_cast<void>(smooth_occlusion(geometry, std::vector<Occlusion>(3))),
+                 SettingsError);
 }
 
 }  // namespace

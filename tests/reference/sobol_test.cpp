@@ -11,7 +11,7 @@
 namespace surfelao {
 namespace {
 
-constexpr glm::vec3 kUp{0, 0, 1};
+constexpr glm::vec3 kAxis{0, 0, 1};
 
 /// Undoes the concentric map: where in the unit square a direction over +z comes from.
 std::pair<float, float> square_of(float x, float y)
@@ -37,7 +37,7 @@ TEST(Sobol, ScrambledPointsFillEveryDyadicCellOnce)
         std::set<std::pair<int, int>> square_cells, slabs;
         for (std::uint32_t first = 0; first < count; first += kPacket) {
             DirectionPacket packet;
-            fill_directions(points, first, hemisphere_over(kUp, seed, 5), packet);
+            fill_directions(points, first, hemisphere_over(kAxis, seed, 5), packet);
             for (int lane = 0; lane < kPacket; ++lane) {
                 const auto [u, v] = square_of(packet.x[lane], packet.y[lane]);
                 square_cells.insert({int(u * 16), int(v * 16)});
@@ -54,7 +54,7 @@ TEST(Sobol, APacketFillsOneCell)
     const SobolPoints points = sobol_points_by_cell(256);
     for (std::uint32_t first = 0; first < 256; first += kPacket) {
         DirectionPacket packet;
-        fill_directions(points, first, hemisphere_over(kUp, 3, 8), packet);
+        fill_directions(points, first, hemisphere_over(kAxis, 3, 8), packet);
         std::set<std::pair<int, int>> cells;
         for (int lane = 0; lane < kPacket; ++lane) {
             const auto [u, v] = square_of(packet.x[lane], packet.y[lane]);
@@ -68,7 +68,7 @@ TEST(Sobol, DirectionsAreUnitAboveTheHorizonAndKnowTheirCosine)
 {
     const SobolPoints points = sobol_points_by_cell(64);
     for (const glm::vec3 normal :
-         {kUp, -kUp, glm::vec3(1, 0, 0), glm::normalize(glm::vec3(-0.3f, 0.8f, -0.9f))}) {
+         {kAxis, -kAxis, glm::vec3(1, 0, 0), glm::normalize(glm::vec3(-0.3f, 0.8f, -0.9f))}) {
         const Hemisphere hemisphere = hemisphere_over(normal, 1, 2);
         EXPECT_NEAR(glm::dot(hemisphere.x, hemisphere.y), 0.0f, 1e-6f);
         EXPECT_NEAR(glm::length(hemisphere.x), 1.0f, 1e-6f);
@@ -103,7 +103,7 @@ TEST(Sobol, ReceiversAndSeedsHaveScramblesOfTheirOwn)
     std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
     for (std::uint32_t seed = 0; seed < 10; ++seed) {
         for (std::uint32_t receiver = 0; receiver < 100; ++receiver) {
-            const Hemisphere h = hemisphere_over(kUp, seed, receiver);
+            const Hemisphere h = hemisphere_over(kAxis, seed, receiver);
             seen.insert({h.scramble_u, h.scramble_v});
         }
     }

@@ -3,6 +3,8 @@
 
 #include "tests/stability/world.h"
 
+#include <glm/vec3.hpp>
+
 #include <string>
 #include <vector>
 
@@ -28,6 +30,8 @@ void add_clutter_cases(std::vector<Case>& cases);
 
 /// Every triangle once more the other way round, over the same vertices.
 [[nodiscard]] Scene two_faced(Scene scene);
+
+inline constexpr glm::dvec3 kX{1, 0, 0}, kY{0, 1, 0}, kZ{0, 0, 1};
 
 // why the disk engine may fail, by design section 5
 inline constexpr const char* kLayers = "layers";

@@ -114,8 +114,9 @@ void add_clutter_cases(std::vector<Case>& cases)
     };
     add(
         "300 foliage cards", [] { return foliage(300, 0.3); }, kOpenMesh);
+    // five times as dense for a ray as the 300 (count times size squared)
     add(
-        "20000 foliage cards", [] { return foliage(20000, 0.08); }, kOpenMesh);
+        "5000 foliage cards", [] { return foliage(5000, 0.16); }, kOpenMesh);
     add("spiral corridor of four turns", spiral, kRoom);
     add(
         "comb of 20 plates, gaps 1 : 20", [] { return comb(20, 0.05); }, kThinParts);

@@ -37,6 +37,7 @@ void add_flat_triangles(Scene& scene, int count, bool collinear)
 
 }  // namespace
 
+// long: a table
 void add_degenerate_cases(std::vector<Case>& cases)
 {
     const auto add = [&](const std::string& name, const std::function<World()>& make,

@@ -12,8 +12,6 @@ namespace {
 
 using namespace scenes;
 
-constexpr glm::dvec3 kX{1, 0, 0}, kY{0, 1, 0};
-
 Polygon parallelogram(glm::dvec3 corner, glm::dvec3 u, glm::dvec3 v)
 {
     return {corner, corner + u, corner + u + v, corner + v};

@@ -11,8 +11,6 @@ namespace {
 
 using namespace scenes;
 
-constexpr glm::dvec3 kX{1, 0, 0}, kY{0, 1, 0}, kZ{0, 0, 1};
-
 World convex(const std::function<void(Scene&)>& add)
 {
     Scene scene;

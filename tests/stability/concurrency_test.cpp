@@ -9,21 +9,19 @@
 #include "files/scene_io.h"
 #include "reference/rays.h"
 #include "surfels/topology.h"
+#include "tests/differences.h"
 #include "tests/scenes.h"
 #include "tests/stability/engines.h"
+#include "tests/temporary_folder.h"
 #include "tree/disks/disks.h"
 #include "tree/masks/masks.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
-#include <unistd.h>
 
 #include <atomic>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <thread>
 
 namespace surfelao::stability {
@@ -51,12 +49,6 @@ void at_once(int count, int places, const std::function<void(int)>& work)
         });
     for (std::thread& thread : threads)
         thread.join();
-}
-
-bool same(const std::vector<Occlusion>& a, const std::vector<Occlusion>& b)
-{
-    return a.size() == b.size() &&
-           std::memcmp(a.data(), b.data(), a.size() * sizeof(Occlusion)) == 0;
 }
 
 std::vector<Occlusion> solved(const Engine& engine, const Scene& scene)
@@ -87,7 +79,7 @@ TEST(Concurrency, ThreadsOnScenesOfTheirOwnGetTheirOwnAnswers)
             std::vector<std::vector<Occlusion>> together(scenes.size());
             at_once(count, places, [&](int i) { together[i] = solved(engine, scenes[i]); });
             for (int i = 0; i < count; ++i)
-                EXPECT_TRUE(same(alone[i], together[i])) << engine.name << ", scene " << i;
+                EXPECT_TRUE(same_bytes(alone[i], together[i])) << engine.name << ", scene " << i;
         }
     }
 }
@@ -110,25 +102,9 @@ TEST(Concurrency, ThreadsMayReadOneTree)
             std::vector<std::vector<Occlusion>> together(4);
             at_once(4, places, [&](int i) { together[i] = solve(); });
             for (const std::vector<Occlusion>& each : together)
-                EXPECT_TRUE(same(alone, each));
+                EXPECT_TRUE(same_bytes(alone, each));
         }
     }
-}
-
-/// An empty folder of its own, gone at the end.
-struct Folder {
-    fs::path path = fs::temp_directory_path() / ("surfelao-stability-" + std::to_string(getpid()));
-    Folder() { fs::create_directories(path); }
-    ~Folder() { fs::remove_all(path); }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-};
-
-std::string bytes_of(const fs::path& path)
-{
-    std::ostringstream bytes;
-    bytes << std::ifstream(path, std::ios::binary).rdbuf();
-    return bytes.str();
 }
 
 BakeSettings settings_for(const fs::path& input, const fs::path& output, int variant)
@@ -145,8 +121,8 @@ BakeSettings settings_for(const fs::path& input, const fs::path& output, int var
 // the answers, whole.
 TEST(Concurrency, BakesIntoOneFileLeaveOneOfTheAnswersWhole)
 {
-    const Folder folder;
-    const fs::path input = folder.path / "in.ply", output = folder.path / "out.ply";
+    const TemporaryFolder folder;
+    const fs::path input = folder / "in.ply", output = folder / "out.ply";
     const Scene scene = scenes::bumpy_sphere(6);
     write_scene(input, scene, std::vector<Occlusion>(scene.positions.size()));
 
@@ -154,7 +130,7 @@ TEST(Concurrency, BakesIntoOneFileLeaveOneOfTheAnswersWhole)
     std::vector<std::string> answers;
     for (int i = 0; i < kBakes; ++i) {
         (void)bake(settings_for(input, output, i));
-        answers.push_back(bytes_of(output));
+        answers.push_back(contents_of(output));
     }
     ASSERT_NE(answers[0], answers[1]);
     const auto is_whole = [&](const std::string& bytes) {
@@ -165,7 +141,7 @@ TEST(Concurrency, BakesIntoOneFileLeaveOneOfTheAnswersWhole)
     std::atomic<int> broken{0};
     std::thread watcher([&] {
         while (!finished)
-            broken += is_whole(bytes_of(output)) ? 0 : 1;
+            broken += is_whole(contents_of(output)) ? 0 : 1;
     });
     at_once(kBakes, kAlone, [&](int i) {
         for (int round = 0; round < 5; ++round)
@@ -175,8 +151,8 @@ TEST(Concurrency, BakesIntoOneFileLeaveOneOfTheAnswersWhole)
     watcher.join();
 
     EXPECT_EQ(broken, 0);
-    EXPECT_TRUE(is_whole(bytes_of(output)));
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder.path))
+    EXPECT_TRUE(is_whole(contents_of(output)));
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder.path()))
         EXPECT_TRUE(entry.path() == input || entry.path() == output) << entry.path();
 }
 

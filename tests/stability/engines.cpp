@@ -10,6 +10,9 @@
 namespace surfelao::stability {
 namespace {
 
+/// An answer of rays depends on the receiver and its index alone.
+constexpr std::size_t kRepeatedRays = 64;
+
 /// A net is never worse than independent directions: RMS at most 0.5 n^-1/2, and the worst of a
 /// thousand receivers four times that. Without engine.h, for a seed that is not the witness's.
 Engine rays(const char* name, RayScene::Build build, std::uint32_t count)
@@ -25,7 +28,8 @@ Engine rays(const char* name, RayScene::Build build, std::uint32_t count)
             return trace_occlusion(*scene, receivers, options);
         };
     };
-    return {name, {rms, 4.0 * rms}, false, false, name, prepare, {.rays = count}};
+    return {name,    {rms, 4.0 * rms}, false, false,        name,
+            prepare, {.rays = count},  false, kRepeatedRays};
 }
 
 /// Software, so that the table is the same everywhere; one for each thread.
@@ -58,7 +62,8 @@ Engine disks(const char* name, Device device, float quality, Bound bound)
             true,
             device == Device::cpu ? "disks" : "GPU disks",
             preparing(surfelao::Engine::disks, device),
-            {.quality = quality}};
+            {.quality = quality},
+            device == Device::gpu};
 }
 
 /// One bit per direction. The bounds are the measured RMS of the worst cases plus a fifth; the
@@ -73,7 +78,8 @@ Engine masks(const char* name, Device device, float quality, Bound bound)
             device == Device::gpu,
             device == Device::cpu ? "masks" : "GPU masks",
             preparing(surfelao::Engine::masks, device),
-            {.quality = quality}};
+            {.quality = quality},
+            device == Device::gpu};
 }
 
 }  // namespace

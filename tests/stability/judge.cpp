@@ -2,13 +2,13 @@
 
 #include "reference/rays.h"
 #include "reference/well_defined.h"
+#include "tests/differences.h"
 
 #include <tbb/task_arena.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <exception>
 
 namespace surfelao::stability {
@@ -17,14 +17,15 @@ namespace {
 /// Bent normals are sums of thousands of float directions.
 constexpr float kUnitLength = 1e-4f;
 
-std::vector<Occlusion> solve(const World& world, const Engine& engine, Built& built, int threads)
+std::vector<Occlusion> solve(const World& world, std::span<const Receiver> receivers,
+                             const Engine& engine, Built& built, int threads)
 {
     std::vector<Occlusion> result;
     tbb::task_arena arena(threads);
     arena.execute([&] {
         SolveSettings settings = engine.settings;
         settings.definition = world.definition;
-        result = built.of(engine, world, threads)(world.receivers, settings);
+        result = built.of(engine, world, threads)(receivers, settings);
     });
     return result;
 }
@@ -51,12 +52,6 @@ std::string fault_in_numbers(std::span<const Receiver> receivers,
             return "bent normal below the horizon";
     }
     return {};
-}
-
-bool same_bytes(const std::vector<Occlusion>& a, const std::vector<Occlusion>& b)
-{
-    return a.size() == b.size() &&
-           std::memcmp(a.data(), b.data(), a.size() * sizeof(Occlusion)) == 0;
 }
 
 /// Over the receivers that have an answer and a hemisphere.
@@ -93,7 +88,8 @@ Finding examine(const Trial& trial, const Engine& engine, const std::string& exc
         return finding;
     std::vector<Occlusion> like;
     if (trial.world.like) {
-        like = solve(*trial.world.like, engine, built, tbb::task_arena::automatic);
+        like = solve(*trial.world.like, trial.world.like->receivers, engine, built,
+                     tbb::task_arena::automatic);
         finding.bound = {2.0 * engine.bound.rms, 2.0 * engine.bound.worst};
     }
     finding.error = error_of(trial, answers.occlusion, like);
@@ -159,17 +155,55 @@ Trial prepare(World world)
     return trial;
 }
 
+Trial thinned(const Trial& trial, std::size_t most)
+{
+    const std::size_t all = trial.world.receivers.size();
+    const std::size_t stride = std::max<std::size_t>(1, (all + most - 1) / most);
+    Trial few = trial;
+    few.world.receivers.clear();
+    few.world.like_receiver.clear();
+    few.truth.clear();
+    few.has_answer.clear();
+    std::vector<Receiver> like;
+    for (std::size_t i = 0; i < all; i += stride) {
+        few.world.receivers.push_back(trial.world.receivers[i]);
+        few.has_answer.push_back(trial.has_answer[i]);
+        if (trial.world.like) {
+            few.world.like_receiver.push_back(static_cast<std::uint32_t>(like.size()));
+            like.push_back(trial.world.like->receivers[trial.world.like_receiver[i]]);
+        } else {
+            few.truth.push_back(trial.truth[i]);
+        }
+    }
+    if (trial.world.like) {
+        auto other = std::make_shared<World>(*trial.world.like);
+        other->receivers = std::move(like);
+        few.world.like = std::move(other);
+    }
+    few.undefined =
+        static_cast<std::size_t>(std::count(few.has_answer.begin(), few.has_answer.end(), false));
+    return few;
+}
+
 Answers solve_twice(const World& world, const Engine& engine, Built& built)
 {
     Answers answers;
-    answers.occlusion = solve(world, engine, built, 1);
+    answers.occlusion = solve(world, world.receivers, engine, built, 1);
     if (answers.occlusion.size() != world.receivers.size())
         answers.fault = "not one answer per receiver";
     else
         answers.fault = fault_in_numbers(world.receivers, answers.occlusion);
-    if (answers.fault.empty() &&
-        !same_bytes(answers.occlusion, solve(world, engine, built, tbb::task_arena::automatic)))
-        answers.fault = "two runs differ";
+    if (answers.fault.empty()) {
+        const std::size_t count = engine.repeats == 0
+                                      ? world.receivers.size()
+                                      : std::min(engine.repeats, world.receivers.size());
+        const std::vector<Occlusion> again = solve(world, std::span(world.receivers).first(count),
+                                                   engine, built, tbb::task_arena::automatic);
+        if (!same_bytes({answers.occlusion.begin(),
+                         answers.occlusion.begin() + static_cast<std::ptrdiff_t>(count)},
+                        again))
+            answers.fault = "two runs differ";
+    }
     return answers;
 }
 

@@ -33,6 +33,10 @@ struct Engine {
     std::string built;  ///< engines with the same word here share what they have built of a case
     std::function<Solver(const Geometry&)> prepare;
     SolveSettings settings = {};  ///< the definition apart: that is the world's
+    bool asks_few = false;        ///< held to account at kFewReceivers: dear by the receiver
+    /// Receivers of the second run, the first ones; 0: all. For engines whose answers depend on
+    /// nothing but the receiver and its index.
+    std::size_t repeats = 0;
 };
 
 /// What engines have built of the worlds of one case, which must outlive it.
@@ -63,6 +67,13 @@ struct Trial {
     std::size_t undefined = 0;     ///< receivers that are not
 };
 
+/// Software GPUs take about a hundred times as long for a receiver; whatever a case shows, it shows
+/// at this many.
+inline constexpr std::size_t kFewReceivers = 150;
+
+/// At most so many of the receivers, evenly spread over their order; the same scenes and answers.
+[[nodiscard]] Trial thinned(const Trial& trial, std::size_t most);
+
 /// Traces what is needed: the rule for every receiver, and 4096 robust rays where there is no
 /// closed form.
 [[nodiscard]] Trial prepare(World world);
@@ -76,7 +87,7 @@ struct Answers {
 /// Builds and solves twice, on one thread and on several, and checks in this order: one answer per
 /// receiver, all numbers finite, occlusion in [0, 1], bent normals of unit length and not below the
 /// horizon (receivers without a normal: occlusion 0, bent normal zero), both runs equal in every
-/// byte. Throws what the engine throws.
+/// byte (of the first Engine::repeats receivers). Throws what the engine throws.
 [[nodiscard]] Answers solve_twice(const World& world, const Engine& engine, Built& built);
 
 /// Solves twice, and checks in this order: it did not throw, solve_twice found no fault, errors

@@ -167,6 +167,43 @@ TEST(Judge, HoldsAnEngineAgainstItselfOnAnEqualScene)
     EXPECT_EQ(judge_alone(other, rays).verdict, Verdict::fail);  // seen from inside
 }
 
+TEST(Judge, ThinnedTrialsKeepTheAnswersOfTheReceiversThatStay)
+{
+    const Scene scene = scenes::bumpy_sphere(4);
+    const std::uint32_t last = static_cast<std::uint32_t>(scene.positions.size() - 1);
+    World turned = at_vertices(scene);
+    std::reverse(turned.receivers.begin(), turned.receivers.end());
+    const Trial rays = prepare(at_vertices(scene));
+    const Trial like = prepare(with_like(std::move(turned), at_vertices(scene),
+                                         [=](std::uint32_t receiver) { return last - receiver; }));
+    const Trial few_rays = thinned(rays, 10), few_like = thinned(like, 10);
+    ASSERT_LE(few_rays.world.receivers.size(), 10u);
+    ASSERT_GE(few_rays.world.receivers.size(), 5u);
+    for (std::size_t i = 0, k = 0; k < few_rays.truth.size(); ++k) {
+        while (rays.world.receivers[i].position != few_rays.world.receivers[k].position)
+            ++i;
+        EXPECT_EQ(few_rays.truth[k], rays.truth[i]);
+    }
+    Built built;
+    EXPECT_EQ(judge(few_like, all_engines().front(), "", built).verdict, Verdict::pass);
+    for (std::size_t k = 0; k < few_like.world.receivers.size(); ++k) {
+        const World& other = *few_like.world.like;
+        EXPECT_EQ(other.receivers[few_like.world.like_receiver[k]].position,
+                  few_like.world.receivers[k].position);
+    }
+}
+
+TEST(Judge, TheSecondRunMayAskTheFirstReceiversOnly)
+{
+    const Trial trial = floor_and_ceiling();
+    std::vector<std::size_t> asked;
+    Engine engine = spoilt(trial, [&](auto& answers) { asked.push_back(answers.size()); });
+    engine.repeats = 7;
+    Built built;
+    EXPECT_EQ(judge(trial, engine, "", built).verdict, Verdict::pass);
+    EXPECT_EQ(asked, (std::vector<std::size_t>{50, 7}));
+}
+
 TEST(Cases, AreManyAndHaveNamesOfTheirOwn)
 {
     std::vector<std::string> names;

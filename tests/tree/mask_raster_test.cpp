@@ -244,7 +244,7 @@ TEST(MaskRaster, FillingKeepsHalfPlanes)
     store(filled, fill(raster, load(hole), all(~0u)));
     EXPECT_EQ(filled[7], ~0u);
     store(filled, fill(raster, load(hole), all(0u)));
-    EXPECT_EQ(filled[7], hole[7]) << "no cluster beside it";
+    EXPECT_EQ(filled[7], hole[7]) << "no sheet beside it";
 }
 
 // Two cracks of one bit that filling closes: one by itself, one that ends in an opening.
@@ -285,9 +285,9 @@ TEST(MaskRaster, APlaceIsClosedWithoutOpenBitsOrWithVeryFew)
             row[12] = ~0x00000400u;
             EXPECT_FALSE(is_closed(raster, pair, n)) << "five bits of face " << open_face;
             std::fill(pair + kMaskWords, pair + kMaskPairWords, ~0u);
-            EXPECT_TRUE(is_closed(raster, pair, n)) << "cracks between clusters";
+            EXPECT_TRUE(is_closed(raster, pair, n)) << "cracks between sheets";
             row[5] = row[6] = row[7] = row[8] = ~0x000ff000u;
-            EXPECT_FALSE(is_closed(raster, pair, n)) << "a hole between clusters";
+            EXPECT_FALSE(is_closed(raster, pair, n)) << "a hole between sheets";
         }
     }
 }

@@ -1,6 +1,8 @@
 #include "tree/masks/tree.h"
 
+#include "differences.h"
 #include "scenes.h"
+#include "surfels/errors.h"
 #include "surfels/geometry.h"
 #include "tree/masks/kernel.h"
 #include "tree/masks/masks.h"
@@ -13,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 namespace surfelao {
@@ -134,6 +135,20 @@ TEST(MaskTree, TessellatedRectangleIsOneRectangle)
     }
 }
 
+// A link has 28 bits; such a tree itself would take 16 GiB.
+TEST(MaskTree, MoreLeavesThanLinksCanCountAreRefused)
+{
+    EXPECT_NO_THROW(check_mask_tiles(kMostMaskTiles, 2 * kMostMaskTiles));
+    try {
+        check_mask_tiles(kMostMaskTiles + 1, 200'000'000);
+        ADD_FAILURE() << "nothing thrown";
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(),
+                     "too many triangles for masks: 200000000, at most 134217728, a flat pair "
+                     "counting as one");
+    }
+}
+
 TEST(MaskTree, SameBytesForAnyNumberOfThreads)
 {
     const Geometry geometry = make_geometry(scenes::bumpy_sphere(80));
@@ -145,10 +160,7 @@ TEST(MaskTree, SameBytesForAnyNumberOfThreads)
     const auto one = build(1);
     for (const std::size_t threads : {2, 5}) {
         const auto more = build(threads);
-        ASSERT_EQ(one->nodes.size(), more->nodes.size());
-        EXPECT_EQ(std::memcmp(one->nodes.data(), more->nodes.data(),
-                              one->nodes.size() * sizeof(MaskNode)),
-                  0);
+        EXPECT_TRUE(same_bytes(one->nodes, more->nodes));
     }
 }
 

@@ -1,5 +1,6 @@
 #include "tree/disks/octree.h"
 
+#include "differences.h"
 #include "scenes.h"
 #include "tree/morton.h"
 
@@ -9,13 +10,10 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <cstring>
 #include <numeric>
 
 namespace surfelao {
 namespace {
-
-constexpr glm::vec3 kUp{0, 0, 1};
 
 std::vector<Surfel> bumpy_surfels(int cells)
 {
@@ -29,12 +27,6 @@ std::vector<OccluderSide> mixed_sides(std::size_t count)
     for (std::size_t i = 0; i < count; ++i)
         sides[i] = static_cast<OccluderSide>(i % 3);
     return sides;
-}
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b)
-{
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
 TEST(Morton, OrderIsSortedByCodeThenIndexAndHoldsEveryPoint)
@@ -144,8 +136,8 @@ TEST(Octree, SkippingThroughBothTreesVisitsEverySurfel)
 // above any leaf.
 TEST(Octree, CoincidentSurfelsEndInOneLeaf)
 {
-    std::vector<Surfel> surfels(100, Surfel{{0.25f, 0.25f, 0.25f}, 0.5f, kUp, 0.0f});
-    surfels.push_back({{0.5f, 0.5f, 0.5f}, 0.5f, kUp, 0.0f});
+    std::vector<Surfel> surfels(100, Surfel{{0.25f, 0.25f, 0.25f}, 0.5f, {0, 0, 1}, 0.0f});
+    surfels.push_back({{0.5f, 0.5f, 0.5f}, 0.5f, {0, 0, 1}, 0.0f});
     const Octree octree = build_octree(surfels, {}, {.leaf_surfels = 1});
     ASSERT_EQ(octree.nodes.size(), 3u);
     EXPECT_EQ(octree.nodes[1].surfel_count, 100u);
@@ -154,8 +146,8 @@ TEST(Octree, CoincidentSurfelsEndInOneLeaf)
 
 TEST(Octree, NormalsThatCancelLeaveNoFlatArea)
 {
-    const std::vector<Surfel> surfels = {{{0, 0, 0}, 1.0f, kUp, 0.0f},
-                                         {{0, 0, 0}, 1.0f, -kUp, 0.0f}};
+    const std::vector<Surfel> surfels = {{{0, 0, 0}, 1.0f, {0, 0, 1}, 0.0f},
+                                         {{0, 0, 0}, 1.0f, {0, 0, -1}, 0.0f}};
     const Octree octree = build_octree(surfels);
     EXPECT_EQ(octree.nodes[0].flatness, 0.0f);
     EXPECT_EQ(octree.nodes[0].normal, glm::vec3(0.0f));

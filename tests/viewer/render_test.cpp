@@ -4,8 +4,8 @@
 
 #include "viewer/render.h"
 
+#include "image/color_map.h"
 #include "image/difference.h"
-#include "image/heat_map.h"
 #include "image/image_file.h"
 #include "reference/rays.h"
 #include "scenes.h"

@@ -2,7 +2,7 @@
 
 #include "surfels/errors.h"
 #include "tree/disks/gather.h"
-#include "tree/receiver_group.h"
+#include "tree/receiver_groups.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
@@ -23,12 +23,12 @@ using Range = tbb::blocked_range<std::size_t>;
 constexpr std::size_t kGroupsPerTask = 16;
 
 void gather_all(const Octree& octree, const EmitterVisibility& visibility,
-                std::span<const ReceiverGroup> groups, const GatherSettings& settings,
+                const ReceiverGroups& groups, const GatherSettings& settings,
                 std::span<DiskSum> sums, ProgressMeter& meter)
 {
-    tbb::parallel_for(Range(0, groups.size(), kGroupsPerTask), [&](const Range& range) {
-        gather_disks(octree, visibility, groups.subspan(range.begin(), range.size()), settings,
-                     sums);
+    tbb::parallel_for(Range(0, groups.leaves.size(), kGroupsPerTask), [&](const Range& range) {
+        gather_disks(octree, visibility, groups,
+                     std::span(groups.leaves).subspan(range.begin(), range.size()), settings, sums);
         meter.add(range.size());
     });
 }
@@ -78,7 +78,7 @@ void average_over_nodes(const Octree& octree, std::span<const FarVisibility> sam
 
 /// One side of all surfels: where they are asked, and what was found.
 struct FarSide {
-    std::vector<ReceiverGroup> groups;
+    ReceiverGroups groups;
     std::vector<DiskSum> sums;
     float sign;
 
@@ -123,9 +123,12 @@ Occlusion to_occlusion(const DiskSum& sum, const glm::vec3& normal, float streng
 
 void check_disk_options(const DiskOptions& options)
 {
-    SURFELAO_CHECK(options.definition.max_distance > 0.0f && options.definition.offset > 0.0f);
-    SURFELAO_CHECK(options.opening >= 0.0f && options.opening < 1.0f);
-    SURFELAO_CHECK(options.passes >= 1 && options.strength >= 0.0f);
+    check_definition(options.definition);
+    require(options.opening >= 0.0f && options.opening < 1.0f,
+            "opening of disks must be at least 0 and below 1");
+    require(options.passes >= 1, "passes must be at least 1");
+    require(options.strength >= 0.0f && std::isfinite(options.strength),
+            "strength must be 0 or more, and finite");
 }
 
 float correction_opening(float opening)
@@ -170,12 +173,12 @@ std::vector<DiskResult> solve_disk_lists(const Octree& octree,
         sides.emplace_back(octree, definition.offset, 1.0f);
     if (options.passes > 1 && two_sided)
         sides.emplace_back(octree, definition.offset, -1.0f);
-    std::vector<std::vector<ReceiverGroup>> groups;
+    std::vector<ReceiverGroups> groups;
     std::uint64_t work = 0;
     for (const std::span<const Receiver> receivers : lists)
-        work += groups.emplace_back(group_receivers(receivers)).size();
+        work += groups.emplace_back(group_receivers(receivers)).leaves.size();
     for (const FarSide& side : sides)
-        work += side.groups.size() * (options.passes - 1);
+        work += side.groups.leaves.size() * (options.passes - 1);
     ProgressMeter meter(progress, work);
 
     EmitterVisibility visibility;

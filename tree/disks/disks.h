@@ -45,9 +45,9 @@ namespace surfelao {
 /// is below opening * distance to the nearest receiver of a group. From 1/sqrt(3) = 0.577 on the
 /// error of such a sum has no bound (Salmon, Warren 1994): draft is beyond, for speed. Error and
 /// time on the bunny, relative to good: draft 1.16 and 0.8, best 0.99 and 1.4.
-inline constexpr float kDraftOpening = 0.8f;
-inline constexpr float kGoodOpening = 0.5f;
-inline constexpr float kBestOpening = 0.25f;
+inline constexpr float kDraftOpening = 0.72f;
+inline constexpr float kGoodOpening = 0.45f;
+inline constexpr float kBestOpening = 0.22f;
 
 struct DiskOptions {
     Definition definition = {};
@@ -90,7 +90,7 @@ inline constexpr float kDamping = 0.7f;
 [[nodiscard]] float correction_opening(float opening);
 inline constexpr float kCoarser = 3.2f;
 
-/// Aborts where an option is out of its range.
+/// Throws SettingsError where an option is out of its range; solve_disks does too.
 void check_disk_options(const DiskOptions& options);
 
 /// The surfels' far sides as receivers, one per surfel: what the correcting passes ask.

@@ -1,14 +1,14 @@
 /// form_factor.h: what one disk, or one cluster as a disk, adds to a receiver's occlusion.
 ///
 /// The formulas of the disk engine, in plain code: brute_force.cpp sums them, tree/disks/gather.cpp
-/// holds the same in SIMD and shaders/disks.glsl the same on the GPU.
+/// holds the same in SIMD and shaders/disks_gather.frag the same on the GPU.
 ///
 /// With R^2 = flat_area / pi, d the distance, x = R^2 / d^2, and the cosines h = m.w at the disk
 /// and cR = n.w at the receiver (w = direction from receiver to disk), a disk wholly above the
 /// horizon covers exactly (contour integral over its rim)
 ///
-///     F = a (n.m) + b (cR - h (n.m)),  a = 2 x h^2 / (S (S + 1 - x)),  b = 2 x h / (S (S + 1 +
-///     x)), S = sqrt((1 - x)^2 + 4 x h^2)
+///     F = a (n.m) + b (cR - h (n.m)),    S = sqrt((1 - x)^2 + 4 x h^2),
+///     a = 2 x h^2 / (S (S + 1 - x)),     b = 2 x h / (S (S + 1 + x))
 ///
 /// to second order in x, which is what is summed below x = 1/9 (d = 3R; there within 2 %):
 ///

@@ -194,14 +194,15 @@ HWY_INLINE Vec3 gather_field(const glm::vec3& field, int stride, const Indices& 
 }
 
 /// Where the balls at these offsets from the group's centre lie below every receiver's horizon
-/// (receiver_group.h: sag).
+/// (rise_of_cone).
 HWY_INLINE Mask below_horizons(const ReceiverGroup& group, const Vec3& offset, const Vec& distance2,
                                const Vec& radius)
 {
     const Tag tag;
-    const Vec along = dot(offset, group.axis);
+    const Vec along = dot(offset, glm::vec3(group.axis[0], group.axis[1], group.axis[2]));
     const Vec top = hn::Add(
-        hn::Add(hn::Mul(along, hn::Set(tag, group.cone_cos)), hn::Set(tag, group.sag)), radius);
+        hn::Add(hn::Mul(along, hn::Set(tag, group.cone_cos)), hn::Set(tag, rise_of_cone(group))),
+        radius);
     const Vec across2 = hn::Sub(distance2, hn::Mul(along, along));
     const Vec reach2 = hn::Mul(across2, hn::Set(tag, group.cone_sin * group.cone_sin));
     return hn::And(hn::Lt(top, hn::Zero(tag)), hn::Lt(reach2, hn::Mul(top, top)));
@@ -210,9 +211,9 @@ HWY_INLINE Mask below_horizons(const ReceiverGroup& group, const Vec3& offset, c
 HWY_INLINE Vec3 from_center(const ReceiverGroup& group, const Vec3& point)
 {
     const Tag tag;
-    return {hn::Sub(point.x, hn::Set(tag, group.center.x)),
-            hn::Sub(point.y, hn::Set(tag, group.center.y)),
-            hn::Sub(point.z, hn::Set(tag, group.center.z))};
+    return {hn::Sub(point.x, hn::Set(tag, group.center[0])),
+            hn::Sub(point.y, hn::Set(tag, group.center[1])),
+            hn::Sub(point.z, hn::Set(tag, group.center[2]))};
 }
 
 /// The children of an inner node, or the surfels of a leaf, to their queue.
@@ -339,24 +340,25 @@ HWY_INLINE void add_list(const Octree& octree, const EmitterVisibility& visibili
     }
 }
 
-void gather(const Octree& octree, const EmitterVisibility& visibility,
-            std::span<const ReceiverGroup> groups, const GatherSettings& settings,
+void gather(const Octree& octree, const EmitterVisibility& visibility, const ReceiverGroups& groups,
+            std::span<const std::uint32_t> leaves, const GatherSettings& settings,
             std::span<DiskSum> out)
 {
     const Tag tag;
     const bool bunnell = settings.definition.kernel == Kernel::bunnell;
     const bool limited = std::isfinite(settings.definition.max_distance);
     DiskList list;
-    for (const ReceiverGroup& group : groups) {
+    for (const std::uint32_t leaf : leaves) {
+        const ReceiverGroup& group = groups.groups[leaf];
         list_disks(octree, group, settings, list);
-        for (std::size_t first = 0; first < kGroupSize; first += hn::Lanes(tag)) {
-            const auto load = [&](const std::array<ReceiverGroup::Lanes, 3>& lanes) {
-                return Vec3{hn::LoadU(tag, lanes[0].data() + first),
-                            hn::LoadU(tag, lanes[1].data() + first),
-                            hn::LoadU(tag, lanes[2].data() + first)};
+        for (std::size_t first = group.begin; first < group.end; first += hn::Lanes(tag)) {
+            const auto load = [&](const std::array<RawVector<float>, 3>& columns) {
+                return Vec3{hn::LoadU(tag, columns[0].data() + first),
+                            hn::LoadU(tag, columns[1].data() + first),
+                            hn::LoadU(tag, columns[2].data() + first)};
             };
             const Vec zero = hn::Zero(tag);
-            Sums sums = {load(group.position), load(group.normal), zero, {zero, zero, zero}};
+            Sums sums = {load(groups.position), load(groups.normal), zero, {zero, zero, zero}};
             if (bunnell && limited)
                 add_list<true, true>(octree, visibility, list, settings, sums);
             else if (bunnell)
@@ -371,25 +373,26 @@ void gather(const Octree& octree, const EmitterVisibility& visibility,
             hn::Store(sums.direction.x, tag, lanes[1]);
             hn::Store(sums.direction.y, tag, lanes[2]);
             hn::Store(sums.direction.z, tag, lanes[3]);
-            for (std::size_t lane = 0; lane < hn::Lanes(tag) && first + lane < group.count; ++lane)
-                out[group.receiver[first + lane]] = {
+            for (std::size_t lane = 0; lane < hn::Lanes(tag) && first + lane < group.end; ++lane)
+                out[groups.order[first + lane]] = {
                     lanes[0][lane], {lanes[1][lane], lanes[2][lane], lanes[3][lane]}};
         }
     }
 }
 
-GatherCount count(const Octree& octree, std::span<const ReceiverGroup> groups,
+GatherCount count(const Octree& octree, const ReceiverGroups& groups,
                   const GatherSettings& settings)
 {
     GatherCount sum;
     DiskList list;
-    for (const ReceiverGroup& group : groups) {
-        list_disks(octree, group, settings, list);
+    for (const std::uint32_t leaf : groups.leaves) {
+        list_disks(octree, groups.groups[leaf], settings, list);
         sum.tested_nodes += static_cast<double>(list.open_nodes.count);
         sum.nodes += static_cast<double>(list.nodes.count);
         sum.surfels += static_cast<double>(list.surfels.count);
     }
-    const double per_group = 1.0 / static_cast<double>(std::max<std::size_t>(1, groups.size()));
+    const double per_group =
+        1.0 / static_cast<double>(std::max<std::size_t>(1, groups.leaves.size()));
     return {per_group * sum.tested_nodes, per_group * sum.nodes, per_group * sum.surfels};
 }
 
@@ -405,13 +408,13 @@ HWY_EXPORT(gather);
 HWY_EXPORT(count);
 
 void gather_disks(const Octree& octree, const EmitterVisibility& visibility,
-                  std::span<const ReceiverGroup> groups, const GatherSettings& settings,
-                  std::span<DiskSum> sums)
+                  const ReceiverGroups& groups, std::span<const std::uint32_t> leaves,
+                  const GatherSettings& settings, std::span<DiskSum> sums)
 {
-    HWY_DYNAMIC_DISPATCH(gather)(octree, visibility, groups, settings, sums);
+    HWY_DYNAMIC_DISPATCH(gather)(octree, visibility, groups, leaves, settings, sums);
 }
 
-GatherCount count_gather(const Octree& octree, std::span<const ReceiverGroup> groups,
+GatherCount count_gather(const Octree& octree, const ReceiverGroups& groups,
                          const GatherSettings& settings)
 {
     return HWY_DYNAMIC_DISPATCH(count)(octree, groups, settings);

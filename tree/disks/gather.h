@@ -7,7 +7,7 @@
 #include "surfels/occlusion.h"
 #include "tree/disks/form_factor.h"
 #include "tree/disks/octree.h"
-#include "tree/receiver_group.h"
+#include "tree/receiver_groups.h"
 
 #include <glm/vec3.hpp>
 
@@ -37,20 +37,20 @@ struct GatherSettings {
     bool all_two_sided = false;  ///< treat one-sided surfels as two-sided
 };
 
-/// sums[i] for every receiver i that stands in one of the groups.
+/// sums[i] for every receiver i that stands in one of these leaves of the groups.
 void gather_disks(const Octree& octree, const EmitterVisibility& visibility,
-                  std::span<const ReceiverGroup> groups, const GatherSettings& settings,
-                  std::span<DiskSum> sums);
+                  const ReceiverGroups& groups, std::span<const std::uint32_t> leaves,
+                  const GatherSettings& settings, std::span<DiskSum> sums);
 
-/// What one group costs on average.
+/// What one leaf costs on average.
 struct GatherCount {
-    double tested_nodes = 0.0;  ///< in the walk, once for the group
+    double tested_nodes = 0.0;  ///< in the walk, once for the leaf
     double nodes = 0.0;         ///< summed as disks, in every lane
     double surfels = 0.0;       ///< the same, single ones
 };
 
-/// The walks alone, for benchmarks. O(groups * log n).
-[[nodiscard]] GatherCount count_gather(const Octree& octree, std::span<const ReceiverGroup> groups,
+/// The walks alone, for benchmarks. O(leaves * log n).
+[[nodiscard]] GatherCount count_gather(const Octree& octree, const ReceiverGroups& groups,
                                        const GatherSettings& settings);
 
 }  // namespace surfelao

@@ -13,6 +13,8 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <stdexcept>
+#include <string>
 
 namespace surfelao {
 namespace {
@@ -155,7 +157,9 @@ Octree build_octree(std::span<const Surfel> surfels, std::span<const OccluderSid
                     const OctreeOptions& options)
 {
     SURFELAO_CHECK(sides.empty() || sides.size() == surfels.size());
-    SURFELAO_CHECK(surfels.size() <= kMaxSurfels);
+    if (surfels.size() > kMaxSurfels)
+        throw std::runtime_error("disks take at most " + std::to_string(kMaxSurfels) +
+                                 " surfels; the scene gives " + std::to_string(surfels.size()));
     SURFELAO_CHECK(options.leaf_surfels >= 1);
     const auto side = [&](std::uint32_t i) {
         return sides.empty() ? OccluderSide::back : sides[i];

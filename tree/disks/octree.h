@@ -1,23 +1,25 @@
 /// octree.h: a hierarchy over surfels in which every node is also one large disk.
 ///
-/// Plain data. Build once, then read from any thread or copy to a texture as it is.
+/// Plain data. Build once, then read from any thread.
 ///
 /// Nodes stand in preorder: a node's first child follows it directly, and `next` leads past its
 /// whole subtree. So a walk needs no stack:
 ///
 ///     for (i = 0; i < nodes.size();)
-///         if (far enough to stand for its surfels)  { use nodes[i] as a disk;       i =
-///         nodes[i].next; } else if (nodes[i].next == i + 1)          { use its surfels one by one;
-///         i = nodes[i].next; } else                                        i = i + 1;
+///         if (far enough to stand for its surfels)
+///             use nodes[i] as a disk;         i = nodes[i].next;
+///         else if (nodes[i].next == i + 1)
+///             use its surfels one by one;     i = nodes[i].next;
+///         else
+///             i = i + 1;
 ///
 /// One-sided and two-sided surfels never share a node: the array holds two trees one after the
 /// other (either may be empty), and the walk above passes through both.
 ///
 /// Based on:
 ///   Barnes, Hut. A Hierarchical O(N log N) Force-Calculation Algorithm. 1986
-///   Salmon, Warren. Skeletons from the Treecode Closet. 1994 (why balls about the centroid, and
-///   why
-///     the opening must stay below 1/sqrt(3))
+///   Salmon, Warren. Skeletons from the Treecode Closet. 1994: why balls about the centroid, and
+///     why the error has no bound from an opening of 1/sqrt(3) on
 ///   Bunnell. Dynamic Ambient Occlusion and Indirect Lighting. GPU Gems 2, ch. 14. 2005
 #pragma once
 
@@ -32,8 +34,9 @@
 
 namespace surfelao {
 
-/// Three RGBA32UI texels on the GPU, in this order: shaders/octree.glsl reads the same layout.
-/// Whether a node is one-sided or two-sided its index tells (Octree::two_sided_nodes).
+/// 48 bytes: SIMD code fetches the fields of several nodes by that stride. On the GPU nodes and
+/// surfels are one array of records (shaders/disk_record.glsl, made by gpu/gpu_disks.cpp). Whether
+/// a node is one-sided or two-sided its index tells (Octree::two_sided_nodes).
 struct OctreeNode {
     glm::vec3 center{0.0f};  ///< area-weighted mean of the surfel positions
     float radius = 0.0f;     ///< the ball about `center` holds all disks below, their rims too

@@ -4,7 +4,23 @@
 /// tree/masks/kernel_body.h with their own flags. Plain data only, and no library code, goes
 /// through this header: an inline function that is compiled with wide instructions must not be
 /// picked by the linker for all.
+///
+/// Words, one meaning each, here and in shaders/masks_*:
+///
+///     mask      a bit per direction around a receiver, or around a group for what it shares
+///     lane      one of the values of a vector: Float4 (lanes.h), Float16 (simd.h)
+///     exact     a node whose triangles tile the quadrilateral that it shows: leaves, rectangles
+///     cluster   a node that is drawn in place of its triangles though it is not exact
+///     sheet     a cluster so flat and without gaps that its neighbours likely continue it: its
+///               rim is not where the surface ends (kMaskSheet)
+///     crack     a clear bit between set ones of which a sheet set one
+///
+/// A node is shared (drawn for the group), listed (drawn for each of its receivers), handed (left
+/// to the groups below) or opened (replaced by its children).
 #pragma once
+
+#include "tree/masks/constants.h"
+#include "tree/receiver_group.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -16,46 +32,28 @@ struct MaskOptions;
 
 /// The members of the parameter family and of the definition that the kernels need.
 struct MaskSettings {
-    float cluster;  ///< s: a node is drawn where its radius is below this share of its distance
+    /// s: a node is drawn where its open radius is below this share of its distance.
+    float cluster;
     float cluster_limit;  ///< what unimportant directions may relax s to
-    float
-        share_inner;   ///< u: group radius over distance below which a mask is shared, inner groups
+    /// u: an inner group shares what is so far that group radius over distance is below this.
+    float share_inner;
     float share_leaf;  ///< r: the same for leaf groups
     float max_distance;
     float exact_radius;  ///< nodes with a smaller open_radius are never opened
-    float graze;         ///< polygons whose highest corner lies below this sine of elevation over
-                         ///< the receiver's tangent plane are not drawn
-    bool one_sided;      ///< of small closed bodies only what faces away is drawn
-    bool fill;           ///< close single-bit cracks where much is covered
-    float close;         ///< how much cracks of two bits count as closed where all else is
+    /// g: polygons whose highest corner lies below this sine of elevation over the receiver's
+    /// tangent plane are not drawn.
+    float graze;
+    bool one_sided;  ///< of small closed bodies only what faces away is drawn
+    bool fill;       ///< close single-bit cracks where much is covered
+    float close;     ///< how much cracks of two bits count as closed where all else is
 };
 
-/// Throws std::invalid_argument for options out of their range.
+/// Throws SettingsError for options out of their range. max_distance is left 0: it changes from
+/// limit to limit (limits.h).
 [[nodiscard]] MaskSettings mask_settings(const MaskOptions& options);
 
-/// Neighbouring receivers: all points within `radius` of `center`, all normals within the cone, no
-/// receiver's tangent plane passes more than `rise` below the parallel plane through the centre.
-struct MaskGroup {
-    float center[3];
-    float radius;
-    float axis[3];
-    float cone_cos, cone_sin;
-    float rise;
-    std::uint32_t begin, end;   ///< receivers, in the order of the tree
-    std::uint32_t first_child;  ///< two, side by side; 0 = leaf of at most 16 receivers
-};
-
-/// In MaskNode::links: the node is a patch without gaps, whose neighbours likely continue it.
-constexpr std::uint32_t kMaskSheet = 0x80000000u;
-/// The node is exact and part of a small closed body: what of it faces a receiver is covered by
-/// what faces away (tree/masks/solids.h).
-constexpr std::uint32_t kMaskSolid = 0x40000000u;
-/// The patch is hollow on the side where its normal points.
-constexpr std::uint32_t kMaskHollow = 0x20000000u;
-/// The node has three corners only.
-constexpr std::uint32_t kMaskTriangle = 0x10000000u;
-/// The rest: the first of two children side by side; 0 = leaf.
-constexpr std::uint32_t kMaskFirstChild = 0x0fffffffu;
+/// Leaves hold at most 16 receivers.
+using MaskGroup = ReceiverGroup;
 
 /// A growing array of plain values.
 template <typename T>
@@ -71,7 +69,7 @@ void release(MaskBuffer<std::uint32_t>& buffer);
 /// Working memory of one thread.
 struct MaskScratch {
     MaskBuffer<std::uint32_t> frontier;
-    MaskBuffer<std::uint32_t> clusters;    ///< nodes to be drawn for each receiver of a group
+    MaskBuffer<std::uint32_t> sheets;      ///< nodes to be drawn for each receiver of a group
     MaskBuffer<std::uint32_t> rectangles;  ///< the same, whose rims are where the surface ends
     MaskBuffer<std::uint32_t> triangles;   ///< and with three corners
 };

@@ -1,10 +1,12 @@
 #include "tree/masks/masks.h"
 
-#include "tree/masks/groups.h"
+#include "surfels/errors.h"
+#include "tree/masks/constants.h"
 #include "tree/masks/kernel.h"
 #include "tree/masks/limits.h"
 #include "tree/masks/raster.h"
 #include "tree/masks/tree.h"
+#include "tree/receiver_groups.h"
 
 #include <glm/geometric.hpp>
 
@@ -19,7 +21,7 @@
 #include <limits>
 #include <memory>
 #include <new>
-#include <stdexcept>
+#include <string>
 
 namespace surfelao {
 
@@ -42,7 +44,7 @@ void reserve(MaskBuffer<std::uint32_t>& buffer, std::size_t count)
 {
     if (count <= buffer.capacity)
         return;
-    const std::size_t capacity = std::max<std::size_t>(2 * buffer.capacity, count + 1024);
+    const std::size_t capacity = std::max<std::size_t>(2 * buffer.capacity, count + kMaskListSlack);
     auto* data = allocate_zeros<std::uint32_t>(capacity);
     std::copy_n(buffer.data, buffer.count, data);
     const std::size_t kept = buffer.count;
@@ -73,16 +75,9 @@ const MaskKernel* kernel_of(MaskKernelSet set)
     }
 }
 
-/// The family at whole qualities, from MaskOptions::kCoarsest on.
-struct FamilyPoint {
-    float cluster, share_leaf, share_inner, graze;
-};
-constexpr FamilyPoint kFamily[] = {{0.9f, 0.6f, 0.32f, 0.24f},     {0.9f, 0.3f, 0.2f, 0.18f},
-                                   {0.7f, 0.1f, 0.07f, 0.13f},     {0.25f, 0.045f, 0.04f, 0.09f},
-                                   {0.17f, 0.015f, 0.015f, 0.03f}, {0.1f, 0.007f, 0.007f, 0.015f}};
-constexpr float kRelaxedCluster = 0.9f;  ///< a larger rectangle could swallow its receiver
-/// Cracks shrink with the clusters: up to this s none is two bits wide, from twice that many are.
-constexpr float kNarrowCracks = 0.35f;
+static_assert(static_cast<float>(kMaskFamily[0].quality) == MaskOptions::kCoarsest);
+static_assert(static_cast<float>(kMaskFamily[std::size(kMaskFamily) - 1].quality) ==
+              MaskOptions::kFinest);
 
 float between(float a, float b, float t)
 {
@@ -93,10 +88,14 @@ float between(float a, float b, float t)
 
 MaskSettings mask_settings(const MaskOptions& options)
 {
-    if (!(options.quality >= MaskOptions::kCoarsest && options.quality <= MaskOptions::kFinest))
-        throw std::invalid_argument("MaskOptions: quality must be between -1 and 4");
-    if (options.definition.kernel != Kernel::cosine)
-        throw std::invalid_argument("MaskOptions: masks know the cosine kernel only");
+    check_definition(options.definition);
+    require(options.quality >= MaskOptions::kCoarsest && options.quality <= MaskOptions::kFinest,
+            "quality of masks must be between -1 and 4");
+    require(options.definition.kernel == Kernel::cosine, "masks know the cosine kernel only");
+    const std::vector<MaskKernelSet> kernels = available_mask_kernels();
+    require(options.kernel == MaskKernelSet::best ||
+                std::ranges::find(kernels, options.kernel) != kernels.end(),
+            "this processor has no kernel " + std::string(name_of(options.kernel)));
     MaskSettings settings{};
     settings.fill = !options.exact;
     // within a limit a body's far side may be missing
@@ -105,40 +104,16 @@ MaskSettings mask_settings(const MaskOptions& options)
         return settings;
     settings.exact_radius = std::numeric_limits<float>::min();
     const float place = options.quality - MaskOptions::kCoarsest;
-    const auto i = std::min(static_cast<std::size_t>(place), std::size(kFamily) - 2);
+    const auto i = std::min(static_cast<std::size_t>(place), std::size(kMaskFamily) - 2);
     const float t = place - static_cast<float>(i);
-    const FamilyPoint &a = kFamily[i], &b = kFamily[i + 1];
+    const MaskFamilyPoint &a = kMaskFamily[i], &b = kMaskFamily[i + 1];
     settings.cluster = between(a.cluster, b.cluster, t);
-    settings.cluster_limit = std::max(settings.cluster, kRelaxedCluster);
+    settings.cluster_limit = std::max(settings.cluster, kMaskRelaxedCluster);
     settings.share_leaf = between(a.share_leaf, b.share_leaf, t);
     settings.share_inner = between(a.share_inner, b.share_inner, t);
     settings.graze = between(a.graze, b.graze, t);
-    settings.close = std::clamp(settings.cluster / kNarrowCracks - 1.0f, 0.0f, 1.0f);
+    settings.close = std::clamp(settings.cluster / kMaskNarrowCracks - 1.0f, 0.0f, 1.0f);
     return settings;
-}
-
-/// A falloff is a mean over hits within several limits: with H(w) the weight of the distance t,
-/// H = integral over h in [0, 1] of (t < distance at which the weight is h). Midpoints of as many
-/// steps; a hit's weight is off by half a step at most.
-constexpr int kFalloffSteps = 8;
-
-std::vector<float> distance_limits(const Definition& definition)
-{
-    if (definition.falloff == Falloff::none)
-        return {definition.max_distance};
-    std::vector<float> limits;
-    for (int step = 0; step < kFalloffSteps; ++step) {
-        const float weight = (static_cast<float>(step) + 0.5f) / kFalloffSteps;
-        // hit_weight falls steadily: bisection keeps its formula in one place
-        float near = 0.0f;
-        float far = definition.max_distance;
-        for (int i = 0; i < 24; ++i) {
-            const float middle = 0.5f * (near + far);
-            (hit_weight(definition, middle) > weight ? near : far) = middle;
-        }
-        limits.push_back(far);
-    }
-    return limits;
 }
 
 namespace {
@@ -154,7 +129,7 @@ struct Workspace {
     ~Workspace()
     {
         release(scratch.frontier);
-        release(scratch.clusters);
+        release(scratch.sheets);
         release(scratch.rectangles);
         release(scratch.triangles);
         for (MaskBuffer<std::uint32_t>& list : lists)
@@ -171,7 +146,7 @@ public:
                  mask_settings(options)},
           has_triangles_(!tree.nodes.empty()),
           receivers_(receivers),
-          groups_(group_for_masks(receivers)),
+          groups_(group_receivers(receivers, kMaskFrame)),
           limits_(distance_limits(options.definition)),
           progress_(progress, groups_.order.size() * limits_.size()),
           answers_(receivers.size())
@@ -199,12 +174,10 @@ public:
     }
 
 private:
-    static constexpr std::uint32_t kParallelReceivers = 64;  ///< smaller groups stay on one thread
-
     void visit(std::uint32_t index, const std::uint32_t* in, std::size_t in_count,
                const MaskShared& from_above, std::size_t level)
     {
-        const MaskGroup& group = groups_.groups[index];
+        const ReceiverGroup& group = groups_.groups[index];
         if (group.first_child == 0) {
             solve_leaf(group, in, in_count, from_above);
             return;
@@ -215,7 +188,7 @@ private:
             visit(group.first_child + child, list, count, shared, level + 1);
         };
         Workspace& workspace = workspaces_.local();
-        if (group.end - group.begin > kParallelReceivers) {
+        if (group.end - group.begin > kMaskParallelReceivers) {
             // a thread that waits may take up other groups meanwhile: this list is nobody else's
             MaskBuffer<std::uint32_t> list;
             kernel_.descend(world_, group, in, in_count, list, shared, workspace.scratch);
@@ -234,7 +207,7 @@ private:
         }
     }
 
-    void solve_leaf(const MaskGroup& group, const std::uint32_t* in, std::size_t in_count,
+    void solve_leaf(const ReceiverGroup& group, const std::uint32_t* in, std::size_t in_count,
                     const MaskShared& from_above)
     {
         MaskReceivers columns{};
@@ -259,7 +232,7 @@ private:
     MaskWorld world_;
     bool has_triangles_;
     std::span<const Receiver> receivers_;
-    MaskGroups groups_;
+    ReceiverGroups groups_;
     std::vector<float> limits_;
     ProgressMeter progress_;
     std::vector<Occlusion> answers_;
@@ -291,6 +264,10 @@ std::string_view name_of(MaskKernelSet kernel)
 std::vector<Occlusion> solve_masks(const MaskTree& tree, std::span<const Receiver> receivers,
                                    const MaskOptions& options, const Progress& progress)
 {
+    const std::vector<MaskKernelSet> sets = available_mask_kernels();
+    if (options.kernel != MaskKernelSet::best &&
+        std::ranges::find(sets, options.kernel) == sets.end())
+        throw SettingsError("masks: this processor has no " + std::string(name_of(options.kernel)));
     return Solver(tree, receivers, options, progress).run();
 }
 

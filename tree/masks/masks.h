@@ -15,6 +15,7 @@
 #include "surfels/progress.h"
 #include "surfels/receiver.h"
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -24,9 +25,13 @@ namespace surfelao {
 
 struct MaskTree;  ///< opaque; immutable once built, read by any number of threads
 
+/// Leaves of a tree: with as many inner nodes, less one, what the 28 bits of a link can count.
+inline constexpr std::uint64_t kMostMaskTiles = std::uint64_t{1} << 27;
+
 /// The scene's triangles as a tree of oriented rectangles. O(n log n), all cores, at most 128 bytes
 /// a triangle (half where all are in flat pairs), 250 while it is built; equal input gives equal
-/// bytes for any number of threads.
+/// bytes for any number of threads. Throws InputError where there are more triangles than
+/// kMostMaskTiles, a flat pair counting as one.
 [[nodiscard]] std::shared_ptr<const MaskTree> build_mask_tree(const Geometry& geometry);
 
 /// Instruction sets of the inner loops. The same answers but for single bits at edges that pass
@@ -61,11 +66,12 @@ struct MaskOptions {
     /// per receiver. `quality` is then without effect.
     bool exact = false;
 
-    MaskKernelSet kernel = MaskKernelSet::best;  ///< must be available
+    MaskKernelSet kernel = MaskKernelSet::best;  ///< one of available_mask_kernels(), or best
 };
 
-/// One Occlusion per receiver. All cores, same bytes for any number of threads. Throws Cancelled.
-/// The definition's kernel must be Kernel::cosine.
+/// One Occlusion per receiver. All cores, same bytes for any number of threads. The definition's
+/// kernel must be Kernel::cosine. Throws SettingsError where an option is out of its range or the
+/// processor lacks the kernel, Cancelled.
 [[nodiscard]] std::vector<Occlusion> solve_masks(const MaskTree& tree,
                                                  std::span<const Receiver> receivers,
                                                  const MaskOptions& options,

@@ -1,7 +1,7 @@
 #include "tree/masks/patch.h"
 
 #include "tree/lanes.h"
-#include "tree/masks/kernel.h"
+#include "tree/masks/constants.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -15,57 +15,9 @@
 namespace surfelao {
 namespace {
 
-/// A node that is not flat is opened as if its radius were larger by this factor times 1 -
-/// flatness.
-constexpr float kFlatnessPenalty = 5.0f;
-
-/// A flat node that is no exact quadrilateral has a rim that its rectangle misses, and what it is
-/// made of is exact and cheap: it is opened as if its radius were larger by this factor. Nothing
-/// from a flatness of 1 - 1/kFlatSlope down.
-constexpr float kFlatPenalty = 1.0f;
-constexpr float kFlatSlope = 1e4f;
-
-/// Rectangles of flat nodes are drawn a little larger on the sides where the tree was cut: there
-/// the neighbours continue the same plane, and the rim closes the cracks. Elsewhere the surface
-/// ends. None from a flatness of 1 - 1/kDilationSlope down.
-constexpr float kDilation = 0.12f;
-constexpr float kDilationSlope = 40.0f;
-/// A side is cut where a cut is no farther from the middle than so many times the side is.
-constexpr float kCutReach = 1.5f;
-
-/// The rectangle of a bulging patch lies deeper than the centroid by this share of the mean of n.(x
-/// - center): so the outline of a body made of rectangles has the body's own mean width. With an
-/// arc of half-angle f on a circle of radius 1, n arcs around it and plates as long as the chords
-/// at depth d, the hull's perimeter is n (2 sin f + 2 ((1 - d) sin f - sin f cos f)) for small f;
-/// it is 2 pi (Cauchy: perimeter over pi is the mean width) at d = f^2 / 3. The centroid is at f^2
-/// / 6, the mean of n.(x - center) is f^2 / 3: one half of it for a cylinder; where the surface
-/// bends both ways alike each has its mean, and one quarter remains.
-constexpr float kBulgeDepth = 0.35f;
-
-/// A rectangle's area follows from its second moments; a disk's is 1.05 times as large as that, and
-/// no convex shape's is larger. What is above this factor overlaps itself.
-constexpr float kSpreadMargin = 1.1f;
-
-/// Triangles that tile a rectangle to within this share of its area and size are one rectangle.
-constexpr float kWhole = 1e-4f;
-
-/// A patch counts as a sheet without gaps where it is at least this flat and fills this share of
-/// the rectangle that its second moments describe. Cracks are filled, and rims drawn, at sheets
-/// only: between leaves there are none.
-constexpr float kSheetFlatness = 0.8f;
-constexpr float kSheetCover = 0.75f;
-
-/// A patch with gaps would be drawn as one rectangle in their midst: it is opened as if its radius
-/// were larger by this factor times what its cover lacks of a sheet's.
-constexpr float kGapPenalty = 5.0f;
-
-/// A patch is hollow where the integral of n.(x - center) is below minus this share of area times
-/// radius; inside of a sphere it is minus half of the patch's radius over the sphere's.
-constexpr float kHollow = 0.02f;
-
 /// The same bytes, four floats at a time.
-using PatchRows = std::array<Lanes, sizeof(MaskPatch) / sizeof(Lanes)>;
-using NodeRows = std::array<Lanes, sizeof(MaskNode) / sizeof(Lanes)>;
+using PatchRows = std::array<Float4, sizeof(MaskPatch) / sizeof(Float4)>;
+using NodeRows = std::array<Float4, sizeof(MaskNode) / sizeof(Float4)>;
 
 glm::vec3 spread_along(const MaskPatch& p, glm::vec3 v)
 {
@@ -95,7 +47,7 @@ void set_sums(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right)
     patch.zz = left.zz + right.zz + weighted.z * apart.z;
 }
 
-using Vector = std::array<Lanes, 3>;
+using Vector = std::array<Float4, 3>;
 
 Vector operator+(const Vector& u, const Vector& v)
 {
@@ -105,11 +57,11 @@ Vector operator-(const Vector& u, const Vector& v)
 {
     return {u[0] - v[0], u[1] - v[1], u[2] - v[2]};
 }
-Vector operator*(const Vector& u, Lanes f)
+Vector operator*(const Vector& u, Float4 f)
 {
     return {u[0] * f, u[1] * f, u[2] * f};
 }
-Lanes dot(const Vector& u, const Vector& v)
+Float4 dot(const Vector& u, const Vector& v)
 {
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
@@ -121,69 +73,71 @@ Vector half_cross(const Vector& u, const Vector& v)
 
 /// What set_rectangles reads and what it finds, for as many patches as there are lanes.
 struct Columns {
-    Lanes normal_x, normal_y, normal_z, xx, xy, xz, yy, yz, zz, area, seen_area, radius;
-    Lanes axis_x, axis_y, axis_z, length_u, length_v, open_radius;
-    Lanes rim;  ///< how much larger a side is drawn where it is cut
-    LaneMask sheet, may_be_whole;
+    Float4 normal_x, normal_y, normal_z, xx, xy, xz, yy, yz, zz, area, seen_area, radius;
+    Float4 axis_x, axis_y, axis_z, length_u, length_v, open_radius;
+    Float4 rim;  ///< how much larger a side is drawn where it is cut
+    Bool4 sheet, may_be_whole;
 };
 
 /// Axes of the second moments in the plane; sides in the ratio of the spreads, scaled to the area,
 /// never longer than the node.
 void set_rectangles(Columns& of)
 {
-    const Lanes zero = all_lanes(0.0f), one = all_lanes(1.0f);
-    const Lanes nx = of.normal_x, ny = of.normal_y, nz = of.normal_z;
+    const Float4 zero = all_lanes(0.0f), one = all_lanes(1.0f);
+    const Float4 nx = of.normal_x, ny = of.normal_y, nz = of.normal_z;
 
     // t and b across the normal: the branchless basis of Duff et al., Building an Orthonormal
     // Basis, Revisited, JCGT 2017
-    const Lanes sign = with_sign(one, nz);
-    const Lanes a = -1.0f / (sign + nz);
-    const Lanes tx = 1.0f + sign * nx * nx * a, ty = sign * nx * ny * a, tz = -sign * nx;
-    const Lanes bx = ny * tz - ty * nz, by = nz * tx - tz * nx, bz = nx * ty - tx * ny;
+    const Float4 sign = with_sign(one, nz);
+    const Float4 a = -1.0f / (sign + nz);
+    const Float4 tx = 1.0f + sign * nx * nx * a, ty = sign * nx * ny * a, tz = -sign * nx;
+    const Float4 bx = ny * tz - ty * nz, by = nz * tx - tz * nx, bz = nx * ty - tx * ny;
 
     // mean squares, not integrals: the products below must not underflow at small triangles
-    const Lanes per_area = of.area > 0.0f ? 1.0f / of.area : zero;
-    const Lanes tt = per_area * ((of.xx * tx + of.xy * ty + of.xz * tz) * tx +
-                                 (of.xy * tx + of.yy * ty + of.yz * tz) * ty +
-                                 (of.xz * tx + of.yz * ty + of.zz * tz) * tz);
-    const Lanes sbx = per_area * (of.xx * bx + of.xy * by + of.xz * bz);
-    const Lanes sby = per_area * (of.xy * bx + of.yy * by + of.yz * bz);
-    const Lanes sbz = per_area * (of.xz * bx + of.yz * by + of.zz * bz);
-    const Lanes tb = sbx * tx + sby * ty + sbz * tz;
-    const Lanes bb = sbx * bx + sby * by + sbz * bz;
+    const Float4 per_area = of.area > 0.0f ? 1.0f / of.area : zero;
+    const Float4 tt = per_area * ((of.xx * tx + of.xy * ty + of.xz * tz) * tx +
+                                  (of.xy * tx + of.yy * ty + of.yz * tz) * ty +
+                                  (of.xz * tx + of.yz * ty + of.zz * tz) * tz);
+    const Float4 sbx = per_area * (of.xx * bx + of.xy * by + of.xz * bz);
+    const Float4 sby = per_area * (of.xy * bx + of.yy * by + of.yz * bz);
+    const Float4 sbz = per_area * (of.xz * bx + of.yz * by + of.zz * bz);
+    const Float4 tb = sbx * tx + sby * ty + sbz * tz;
+    const Float4 bb = sbx * bx + sby * by + sbz * bz;
 
     // eigenvalues of ((tt, tb), (tb, bb)): mean +- deviation; the axis by half angles
-    const Lanes mean = 0.5f * (tt + bb);
-    const Lanes half = 0.5f * (tt - bb);
-    const Lanes deviation = root(half * half + tb * tb);
-    const Lanes c2 = deviation > 0.0f ? half / deviation : one;
-    const Lanes cosine = root(most(zero, 0.5f * (1.0f + c2)));
-    const Lanes sine = with_sign(root(most(zero, 0.5f * (1.0f - c2))), tb);
+    const Float4 mean = 0.5f * (tt + bb);
+    const Float4 half = 0.5f * (tt - bb);
+    const Float4 deviation = root(half * half + tb * tb);
+    const Float4 c2 = deviation > 0.0f ? half / deviation : one;
+    const Float4 cosine = root(most(zero, 0.5f * (1.0f + c2)));
+    const Float4 sine = with_sign(root(most(zero, 0.5f * (1.0f - c2))), tb);
     of.axis_x = cosine * tx + sine * bx;
     of.axis_y = cosine * ty + sine * by;
     of.axis_z = cosine * tz + sine * bz;
-    const Lanes wide = mean + deviation;
-    const Lanes narrow = most(mean - deviation, 1e-12f * mean);
-    const Lanes spread_area = 12.0f * root(wide * narrow);
+    const Float4 wide = mean + deviation;
+    const Float4 narrow = most(mean - deviation, kMaskNarrowest * mean);
+    const Float4 spread_area = 12.0f * root(wide * narrow);
 
-    const Lanes flatness = of.area > 0.0f ? least(one, of.seen_area / of.area) : zero;
-    const Lanes cover = spread_area > 0.0f ? of.area / spread_area : one;
-    of.open_radius = of.radius *
-                     (1.0f + kFlatnessPenalty * (1.0f - flatness) +
-                      kGapPenalty * most(zero, kSheetCover - cover)) *
-                     (1.0f + kFlatPenalty * most(zero, 1.0f - kFlatSlope * (1.0f - flatness)));
-    of.may_be_whole =
-        (flatness > 1.0f - kWhole) & (absolute(spread_area - of.area) < 10.0f * kWhole * of.area);
+    const Float4 flatness = of.area > 0.0f ? least(one, of.seen_area / of.area) : zero;
+    const Float4 cover = spread_area > 0.0f ? of.area / spread_area : one;
+    of.open_radius =
+        of.radius *
+        (1.0f + kMaskFlatnessPenalty * (1.0f - flatness) +
+         kMaskGapPenalty * most(zero, kMaskSheetCover - cover)) *
+        (1.0f + kMaskFlatPenalty * most(zero, 1.0f - kMaskFlatSlope * (1.0f - flatness)));
+    of.may_be_whole = (flatness > 1.0f - kMaskWhole) &
+                      (absolute(spread_area - of.area) < kMaskWholeMoments * kMaskWhole * of.area);
 
     // sheets that lie on each other count once: their spread tells how wide they are together
-    const Lanes quarter = 0.25f * least(of.seen_area, kSpreadMargin * spread_area);
-    const LaneMask any = (quarter > 0.0f) & (narrow > 0.0f);
-    const Lanes length_u = least(root(quarter * root(wide / narrow)), of.radius);
-    const Lanes length_v = quarter / length_u;
-    const Lanes diagonal = root(length_u * length_u + length_v * length_v);
-    const Lanes shrink = least(one, of.radius / diagonal);
-    of.sheet = (flatness > kSheetFlatness) & (of.area > kSheetCover * spread_area) & any;
-    of.rim = of.sheet ? kDilation * most(zero, 1.0f - kDilationSlope * (1.0f - flatness)) : zero;
+    const Float4 quarter = 0.25f * least(of.seen_area, kMaskSpreadMargin * spread_area);
+    const Bool4 any = (quarter > 0.0f) & (narrow > 0.0f);
+    const Float4 length_u = least(root(quarter * root(wide / narrow)), of.radius);
+    const Float4 length_v = quarter / length_u;
+    const Float4 diagonal = root(length_u * length_u + length_v * length_v);
+    const Float4 shrink = least(one, of.radius / diagonal);
+    of.sheet = (flatness > kMaskSheetFlatness) & (of.area > kMaskSheetCover * spread_area) & any;
+    of.rim =
+        of.sheet ? kMaskDilation * most(zero, 1.0f - kMaskDilationSlope * (1.0f - flatness)) : zero;
     of.length_u = any ? length_u * shrink : zero;
     of.length_v = any ? length_v * shrink : zero;
 }
@@ -194,7 +148,7 @@ struct Room {
 };
 
 /// A vector of the mask frame along axis k of the scene.
-Lanes along_scene_axis(const Vector& v, std::size_t k)
+Float4 along_scene_axis(const Vector& v, std::size_t k)
 {
     const glm::vec3 axis = kMaskFrame[static_cast<int>(k)];
     return axis.x * v[0] + axis.y * v[1] + axis.z * v[2];
@@ -204,7 +158,7 @@ Lanes along_scene_axis(const Vector& v, std::size_t k)
 Room room_of(std::span<const MaskPatchNode> nodes, const Vector& center)
 {
     Vector low, high;
-    for (std::size_t i = 0; i < kLaneCount; ++i) {
+    for (std::size_t i = 0; i < kFloat4Lanes; ++i) {
         const MaskCuts& cuts = *nodes[std::min(i, nodes.size() - 1)].cuts;
         for (std::size_t k = 0; k < 3; ++k) {
             low[k][i] = cuts.low[static_cast<int>(k)];
@@ -213,7 +167,7 @@ Room room_of(std::span<const MaskPatchNode> nodes, const Vector& center)
     }
     Room room;
     for (std::size_t k = 0; k < 3; ++k) {
-        const Lanes at = along_scene_axis(center, k);
+        const Float4 at = along_scene_axis(center, k);
         room.below[k] = at - low[k];
         room.above[k] = high[k] - at;
     }
@@ -222,18 +176,18 @@ Room room_of(std::span<const MaskPatchNode> nodes, const Vector& center)
 
 /// Lengthens a half axis of a rectangle by `rim` at the ends that are cut. Returns how far the
 /// middle moves.
-Vector grow_to_cuts(Vector& axis, const Room& room, Lanes rim)
+Vector grow_to_cuts(Vector& axis, const Room& room, Float4 rim)
 {
-    LaneMask ahead{}, behind{};
+    Bool4 ahead{}, behind{};
     for (std::size_t k = 0; k < 3; ++k) {
-        const Lanes along = along_scene_axis(axis, k);
-        const Lanes reach = kCutReach * absolute(along);
+        const Float4 along = along_scene_axis(axis, k);
+        const Float4 reach = kMaskCutReach * absolute(along);
         ahead |= (along > 0.0f ? room.above[k] : room.below[k]) < reach;
         behind |= (along > 0.0f ? room.below[k] : room.above[k]) < reach;
     }
-    const Lanes half = 0.5f * rim;
-    const Lanes zero = all_lanes(0.0f);
-    const Lanes forward = ahead ? half : zero, backward = behind ? half : zero;
+    const Float4 half = 0.5f * rim;
+    const Float4 zero = all_lanes(0.0f);
+    const Float4 forward = ahead ? half : zero, backward = behind ? half : zero;
     const Vector move = axis * (forward - backward);
     axis = axis * (1.0f + forward + backward);
     return move;
@@ -260,9 +214,10 @@ bool make_whole_along(glm::vec3 axis, const MaskPatch& patch, const MaskCorners&
     const auto differ = [](float a, float b, float limit) {
         return !(std::abs(a - b) <= limit * b);
     };
-    if (half.z > kWhole * patch.radius || differ(patch.area, 4.0f * half.x * half.y, kWhole) ||
-        differ(along2, half.x * half.x / 3.0f, 10.0f * kWhole) ||
-        differ(across2, half.y * half.y / 3.0f, 10.0f * kWhole))
+    if (half.z > kMaskWhole * patch.radius ||
+        differ(patch.area, 4.0f * half.x * half.y, kMaskWhole) ||
+        differ(along2, half.x * half.x / 3.0f, kMaskWholeMoments * kMaskWhole) ||
+        differ(across2, half.y * half.y / 3.0f, kMaskWholeMoments * kMaskWhole))
         return false;
     const glm::vec3 middle = 0.5f * (low + high);
     node.center = patch.center + middle.x * axis + middle.y * across;
@@ -275,12 +230,116 @@ bool make_whole_along(glm::vec3 axis, const MaskPatch& patch, const MaskCorners&
     return true;
 }
 
+/// A column for each number of as many patches, or nodes, as there are lanes.
+using PatchColumns = std::array<std::array<Float4, kFloat4Lanes>, 5>;
+using NodeColumns = std::array<std::array<Float4, kFloat4Lanes>, 4>;
+
+/// Tiles as patches.
+struct TileColumns {
+    PatchColumns patch;
+    Vector center, normal;
+    std::array<Vector, 4> from_center;  ///< to the corners
+};
+
+/// Of the triangles (a, b, c) and (c, d, a); the second of a single one has no area.
+TileColumns patches_of(const std::array<Vector, 4>& corners)
+{
+    const auto& [a, b, c, d] = corners;
+    const Float4 zero = all_lanes(0.0f);
+    const Vector diagonal = c - a;
+    const Vector first = half_cross(b - a, diagonal);
+    const Vector second = half_cross(diagonal, d - a);
+    const Vector vector_area = first + second;
+    const Float4 first_area = root(dot(first, first)), second_area = root(dot(second, second));
+    const Float4 area = first_area + second_area;
+    const Float4 seen_area = root(dot(vector_area, vector_area));
+    const Float4 share = area > 0.0f ? second_area / area : zero;
+    const Vector first_center = (a + b + c) * all_lanes(1.0f / 3.0f);
+    const Vector apart = (d - b) * all_lanes(1.0f / 3.0f);
+    const Vector center = first_center + apart * share;
+    const Vector from_a = a - center, from_b = b - center, from_c = c - center, from_d = d - center;
+    const Vector to_first = apart * -share;
+    const Vector to_second = apart * (1.0f - share);
+    const Vector normal = {seen_area > 0.0f ? vector_area[0] / seen_area : zero,
+                           seen_area > 0.0f ? vector_area[1] / seen_area : zero,
+                           seen_area > 0.0f ? vector_area[2] / seen_area : zero + 1.0f};
+    const Float4 bulge = dot(first, to_first) + dot(second, to_second);
+    const Float4 radius = root(most(most(dot(from_a, from_a), dot(from_b, from_b)),
+                                    most(dot(from_c, from_c), dot(from_d, from_d))));
+    const Float4 thickness =
+        most(most(absolute(dot(from_a, normal)), absolute(dot(from_b, normal))),
+             most(absolute(dot(from_c, normal)), absolute(dot(from_d, normal))));
+    // the integral of x x^T over a triangle is a twelfth of its area times the sum of those of its
+    // corners and nine times that of its centroid
+    const Float4 first_weight = first_area * (1.0f / 12.0f);
+    const Float4 second_weight = second_area * (1.0f / 12.0f);
+    const auto spread = [&](std::size_t i, std::size_t k) {
+        const Float4 both = from_a[i] * from_a[k] + from_c[i] * from_c[k];
+        return first_weight * (both + from_b[i] * from_b[k] + 9.0f * to_first[i] * to_first[k]) +
+               second_weight * (both + from_d[i] * from_d[k] + 9.0f * to_second[i] * to_second[k]);
+    };
+    return {{{{center[0], center[1], center[2], area},
+              {vector_area[0], vector_area[1], vector_area[2], seen_area},
+              {normal[0], normal[1], normal[2], radius},
+              {spread(0, 0), spread(0, 1), spread(0, 2), thickness},
+              {spread(1, 1), spread(1, 2), spread(2, 2), bulge}}},
+            center,
+            normal,
+            {from_a, from_b, from_c, from_d}};
+}
+
+/// The quadrilaterals themselves. The fourth corner of a triangle is its centroid.
+NodeColumns nodes_of(const TileColumns& tiles, Bool4 is_triangle)
+{
+    const Float4 zero = all_lanes(0.0f);
+    const auto& [from_a, from_b, from_c, from_d] = tiles.from_center;
+    Vector fourth;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        fourth[axis] = is_triangle ? zero : from_d[axis];
+    const Vector even = (from_a + from_c) * all_lanes(0.25f);
+    const Vector odd = (from_b + fourth) * all_lanes(0.25f);
+    const Vector middle = even + odd;
+    const Vector skew = even - odd;
+    const Vector axis_a = (from_a - from_c) * all_lanes(0.5f);
+    const Vector axis_b = (from_b - fourth) * all_lanes(0.5f);
+    const auto beyond = [&](const Vector& corner) {
+        const Vector from = corner - middle;
+        return dot(from, from);
+    };
+    const Float4 radius =
+        root(most(most(beyond(from_a), beyond(from_b)), most(beyond(from_c), beyond(fourth))));
+    const Vector center = tiles.center + middle;
+    const Float4 thickness = is_triangle ? zero : absolute(dot(skew, tiles.normal));
+    return {{{center[0], center[1], center[2], radius},
+             {skew[0], skew[1], skew[2], thickness},
+             {axis_a[0], axis_a[1], axis_a[2], all_lanes(-1.0f)},
+             {axis_b[0], axis_b[1], axis_b[2], zero}}};
+}
+
+/// From a column for each number to a row for each patch or node, and back.
+template <std::size_t kRows>
+void turn(std::array<std::array<Float4, kFloat4Lanes>, kRows>& columns)
+{
+    for (auto& [x, y, z, w] : columns)
+        transpose(x, y, z, w);
+}
+
+/// The i-th of transposed columns.
+MaskNode node_of(const NodeColumns& rows, std::size_t i)
+{
+    return std::bit_cast<MaskNode>(NodeRows{rows[0][i], rows[1][i], rows[2][i], rows[3][i]});
+}
+MaskPatch patch_of(const PatchColumns& rows, std::size_t i)
+{
+    return std::bit_cast<MaskPatch>(
+        PatchRows{rows[0][i], rows[1][i], rows[2][i], rows[3][i], rows[4][i]});
+}
+
 }  // namespace
 
 void set_tiles(std::span<const MaskPatchNode> nodes, const MaskCorners& corners)
 {
-    const Lanes zero = all_lanes(0.0f);
-    for (std::size_t begin = 0; begin < nodes.size(); begin += kLaneCount) {
+    for (std::size_t begin = 0; begin < nodes.size(); begin += kFloat4Lanes) {
         // as many tiles as lanes: [corner][axis]
         std::array<Vector, 4> p;
         for (std::size_t corner = 0; corner < 4; ++corner) {
@@ -288,84 +347,16 @@ void set_tiles(std::span<const MaskPatchNode> nodes, const MaskCorners& corners)
                 p[corner][axis] = load_lanes(corners.column(corner, axis) + begin);
         }
         const auto& [a, b, c, d] = p;
-        // of the triangles (a, b, c) and (c, d, a); the second of a single one has no area
-        const Vector diagonal = c - a;
-        const Vector first = half_cross(b - a, diagonal);
-        const Vector second = half_cross(diagonal, d - a);
-        const Vector vector_area = first + second;
-        const Lanes first_area = root(dot(first, first)), second_area = root(dot(second, second));
-        const Lanes area = first_area + second_area;
-        const Lanes seen_area = root(dot(vector_area, vector_area));
-        const Lanes share = area > 0.0f ? second_area / area : zero;
-        const Vector first_center = (a + b + c) * all_lanes(1.0f / 3.0f);
-        const Vector apart = (d - b) * all_lanes(1.0f / 3.0f);
-        const Vector center = first_center + apart * share;
-        const Vector from_a = a - center, from_b = b - center, from_c = c - center,
-                     from_d = d - center;
-        const Vector to_first = apart * -share;
-        const Vector to_second = apart * (1.0f - share);
-        const Vector normal = {seen_area > 0.0f ? vector_area[0] / seen_area : zero,
-                               seen_area > 0.0f ? vector_area[1] / seen_area : zero,
-                               seen_area > 0.0f ? vector_area[2] / seen_area : zero + 1.0f};
-        const Lanes bulge = dot(first, to_first) + dot(second, to_second);
-        const Lanes radius = root(most(most(dot(from_a, from_a), dot(from_b, from_b)),
-                                       most(dot(from_c, from_c), dot(from_d, from_d))));
-        const Lanes thickness =
-            most(most(absolute(dot(from_a, normal)), absolute(dot(from_b, normal))),
-                 most(absolute(dot(from_c, normal)), absolute(dot(from_d, normal))));
-        // the integral of x x^T over a triangle is a twelfth of its area times the sum of those of
-        // its corners and nine times that of its centroid
-        const Lanes first_weight = first_area * (1.0f / 12.0f);
-        const Lanes second_weight = second_area * (1.0f / 12.0f);
-        const auto spread = [&](std::size_t i, std::size_t k) {
-            const Lanes both = from_a[i] * from_a[k] + from_c[i] * from_c[k];
-            return first_weight *
-                       (both + from_b[i] * from_b[k] + 9.0f * to_first[i] * to_first[k]) +
-                   second_weight *
-                       (both + from_d[i] * from_d[k] + 9.0f * to_second[i] * to_second[k]);
-        };
-
-        // the fourth corner of a triangle is its centroid
-        const LaneMask alone = (c[0] == d[0]) & (c[1] == d[1]) & (c[2] == d[2]);
-        Vector fourth;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            fourth[axis] = alone ? zero : from_d[axis];
-        const Vector even = (from_a + from_c) * all_lanes(0.25f);
-        const Vector odd = (from_b + fourth) * all_lanes(0.25f);
-        const Vector middle = even + odd;
-        const Vector skew = even - odd;
-        const Vector axis_a = (from_a - from_c) * all_lanes(0.5f);
-        const Vector axis_b = (from_b - fourth) * all_lanes(0.5f);
-        const auto beyond = [&](const Vector& corner) {
-            const Vector from = corner - middle;
-            return dot(from, from);
-        };
-        const Lanes node_radius =
-            root(most(most(beyond(from_a), beyond(from_b)), most(beyond(from_c), beyond(fourth))));
-        const Vector node_center = center + middle;
-        // from a column for each number to a row for each tile
-        std::array<std::array<Lanes, kLaneCount>, 5> patch = {
-            {{center[0], center[1], center[2], area},
-             {vector_area[0], vector_area[1], vector_area[2], seen_area},
-             {normal[0], normal[1], normal[2], radius},
-             {spread(0, 0), spread(0, 1), spread(0, 2), thickness},
-             {spread(1, 1), spread(1, 2), spread(2, 2), bulge}}};
-        std::array<std::array<Lanes, kLaneCount>, 4> node = {
-            {{node_center[0], node_center[1], node_center[2], node_radius},
-             {skew[0], skew[1], skew[2], alone ? zero : absolute(dot(skew, normal))},
-             {axis_a[0], axis_a[1], axis_a[2], all_lanes(-1.0f)},
-             {axis_b[0], axis_b[1], axis_b[2], zero}}};
-        for (auto& [x, y, z, w] : patch)
-            transpose(x, y, z, w);
-        for (auto& [x, y, z, w] : node)
-            transpose(x, y, z, w);
-        for (std::size_t i = 0; i < std::min(kLaneCount, nodes.size() - begin); ++i) {
+        const Bool4 is_triangle = (c[0] == d[0]) & (c[1] == d[1]) & (c[2] == d[2]);
+        TileColumns tiles = patches_of(p);
+        NodeColumns node = nodes_of(tiles, is_triangle);
+        turn(tiles.patch);
+        turn(node);
+        for (std::size_t i = 0; i < std::min(kFloat4Lanes, nodes.size() - begin); ++i) {
             const MaskPatchNode& out = nodes[begin + i];
-            *out.patch = std::bit_cast<MaskPatch>(
-                PatchRows{patch[0][i], patch[1][i], patch[2][i], patch[3][i], patch[4][i]});
-            *out.node =
-                std::bit_cast<MaskNode>(NodeRows{node[0][i], node[1][i], node[2][i], node[3][i]});
-            out.node->links = alone[i] != 0 ? kMaskTriangle : 0;
+            *out.patch = patch_of(tiles.patch, i);
+            *out.node = node_of(node, i);
+            out.node->links = is_triangle[i] != 0 ? kMaskTriangle : 0;
         }
     }
 }
@@ -390,16 +381,16 @@ void join(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right,
 {
     set_sums(patch, left, right);
     const glm::vec3 c = patch.center, n = patch.normal;
-    Lanes farthest = all_lanes(0.0f), highest = all_lanes(0.0f);
-    for (std::size_t i = 0; i < corners.count; i += kLaneCount) {
+    Float4 farthest = all_lanes(0.0f), highest = all_lanes(0.0f);
+    for (std::size_t i = 0; i < corners.count; i += kFloat4Lanes) {
         const auto rest = static_cast<std::int32_t>(corners.count - i);
-        const LaneMask inside = LaneMask{0, 1, 2, 3} < rest;
+        const Bool4 inside = Bool4{0, 1, 2, 3} < rest;
         for (std::size_t corner = 0; corner < 4; ++corner) {
-            const Lanes x = load_lanes(corners.column(corner, 0) + i) - c.x;
-            const Lanes y = load_lanes(corners.column(corner, 1) + i) - c.y;
-            const Lanes z = load_lanes(corners.column(corner, 2) + i) - c.z;
-            const Lanes distance2 = x * x + y * y + z * z;
-            const Lanes height = absolute(x * n.x + y * n.y + z * n.z);
+            const Float4 x = load_lanes(corners.column(corner, 0) + i) - c.x;
+            const Float4 y = load_lanes(corners.column(corner, 1) + i) - c.y;
+            const Float4 z = load_lanes(corners.column(corner, 2) + i) - c.z;
+            const Float4 distance2 = x * x + y * y + z * z;
+            const Float4 height = absolute(x * n.x + y * n.y + z * n.z);
             farthest = most(farthest, inside ? distance2 : all_lanes(0.0f));
             highest = most(highest, inside ? height : all_lanes(0.0f));
         }
@@ -410,19 +401,18 @@ void join(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right,
 
 void show_patches(std::span<MaskPatchNode> nodes)
 {
-    const Lanes zero = all_lanes(0.0f);
-    for (std::size_t begin = 0; begin < nodes.size(); begin += kLaneCount) {
-        const std::size_t count = std::min(kLaneCount, nodes.size() - begin);
+    const Float4 zero = all_lanes(0.0f);
+    for (std::size_t begin = 0; begin < nodes.size(); begin += kFloat4Lanes) {
+        const std::size_t count = std::min(kFloat4Lanes, nodes.size() - begin);
         // from a row for each patch to a column for each number
-        std::array<std::array<Lanes, kLaneCount>, 5> patch;
-        for (std::size_t i = 0; i < kLaneCount; ++i) {
+        PatchColumns patch;
+        for (std::size_t i = 0; i < kFloat4Lanes; ++i) {
             const auto rows =
                 std::bit_cast<PatchRows>(*nodes[begin + std::min(i, count - 1)].patch);
             for (std::size_t row = 0; row < rows.size(); ++row)
                 patch[row][i] = rows[row];
         }
-        for (auto& [x, y, z, w] : patch)
-            transpose(x, y, z, w);
+        turn(patch);
         Columns columns;
         columns.area = patch[0][3];
         columns.seen_area = patch[1][3];
@@ -445,27 +435,25 @@ void show_patches(std::span<MaskPatchNode> nodes)
         Vector along = axis * of.length_u;
         Vector across = half_cross(normal, axis) * (2.0f * of.length_v);
         const Room room = room_of(nodes.subspan(begin, count), center);
-        const Lanes depth = of.area > 0.0f ? kBulgeDepth * most(zero, patch[4][3]) / of.area : zero;
+        const Float4 depth =
+            of.area > 0.0f ? kMaskBulgeDepth * most(zero, patch[4][3]) / of.area : zero;
         const Vector move =
             grow_to_cuts(along, room, of.rim) + grow_to_cuts(across, room, of.rim) - normal * depth;
         const Vector middle = center + move;
         const Vector axis_a = along + across, axis_b = across - along;
 
         // and back
-        std::array<std::array<Lanes, kLaneCount>, 4> node = {
-            {{middle[0], middle[1], middle[2], of.radius + root(dot(move, move))},
-             {zero, zero, zero, patch[3][3] + depth},
-             {axis_a[0], axis_a[1], axis_a[2], of.open_radius},
-             {axis_b[0], axis_b[1], axis_b[2], zero}}};
-        for (auto& [x, y, z, w] : node)
-            transpose(x, y, z, w);
+        NodeColumns node = {{{middle[0], middle[1], middle[2], of.radius + root(dot(move, move))},
+                             {zero, zero, zero, patch[3][3] + depth},
+                             {axis_a[0], axis_a[1], axis_a[2], of.open_radius},
+                             {axis_b[0], axis_b[1], axis_b[2], zero}}};
+        turn(node);
         for (std::size_t i = 0; i < count; ++i) {
             MaskPatchNode& out = nodes[begin + i];
-            *out.node =
-                std::bit_cast<MaskNode>(NodeRows{node[0][i], node[1][i], node[2][i], node[3][i]});
+            *out.node = node_of(node, i);
             out.node->links = columns.sheet[i] != 0 ? kMaskSheet : 0;
             const MaskPatch& of_node = *out.patch;
-            if (of_node.bulge < -kHollow * of_node.area * of_node.radius)
+            if (of_node.bulge < -kMaskHollowBulge * of_node.area * of_node.radius)
                 out.node->links |= kMaskHollow;
             out.may_be_whole = columns.may_be_whole[i] != 0;
         }
@@ -476,7 +464,7 @@ void make_whole(const MaskPatch& patch, const MaskCorners& corners, MaskNode& no
 {
     const glm::vec3 u = node.axis_a - node.axis_b, v = node.axis_a + node.axis_b;
     if (make_whole_along(glm::normalize(u), patch, corners, node) ||
-        glm::dot(u, u) > 1.2f * glm::dot(v, v))
+        glm::dot(u, u) > kMaskSquare * glm::dot(v, v))
         return;
     // a square has no axes of its own: its triangles' edges lie along them
     const glm::vec3 a = corners.at(0, 0), b = corners.at(1, 0), c = corners.at(2, 0);

@@ -1,5 +1,7 @@
 #include "tree/masks/raster.h"
 
+#include "tree/masks/constants.h"
+
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -38,7 +40,8 @@ void set_moments(const MaskRaster& raster, std::int8_t (&table)[kMoments][kParts
             for (int i = 0; i < kBits; ++i) {
                 const int y = byte / 4;
                 const int x = byte % 4 * 8 + part * kBits + i;
-                const double u = (x + static_cast<double>(raster.row_shift[y])) / 16.0 - 1.0;
+                const double u =
+                    (x + static_cast<double>(raster.row_shift[y])) / kMaskHalfColumns - 1.0;
                 const double v = raster.row_v[y];
                 const double length = std::sqrt(1.0 + u * u + v * v);
                 // rows at equal angles: their width in v grows as 1 + v^2
@@ -48,7 +51,8 @@ void set_moments(const MaskRaster& raster, std::int8_t (&table)[kMoments][kParts
                     mean[m] += solid_angle / std::pow(length, kOrder) * products[m] / kBits;
             }
             for (int m = 0; m < kMoments; ++m) {
-                table[m][part][byte] = static_cast<std::int8_t>(std::lround(127.0 * mean[m]));
+                table[m][part][byte] =
+                    static_cast<std::int8_t>(std::lround(kMaskMomentUnit * mean[m]));
                 sums[m] += table[m][part][byte];
             }
         }

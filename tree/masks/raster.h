@@ -21,7 +21,7 @@ constexpr int kMaskFaces = 6;
 constexpr int kMaskRows = 16;
 constexpr int kMaskFaceWords = kMaskRows;  ///< one 32-bit word a row
 constexpr int kMaskWords = 128;            ///< six faces, and two unused: offsets add by `or`
-/// What is drawn is a pair of masks: all that is set, and what of it clusters set, whose rims are
+/// What is drawn is a pair of masks: all that is set, and what of it sheets set, whose rims are
 /// not where the surface ends.
 constexpr int kMaskPairWords = 2 * kMaskWords;
 constexpr int kMaskFaceBytes = 4 * kMaskRows;

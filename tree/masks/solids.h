@@ -15,13 +15,10 @@
 
 namespace surfelao {
 
-/// Larger bodies are drawn with both sides: one layer of clusters would show its cracks.
-inline constexpr std::size_t kMostOfSolid = 64;
-
-/// One per triangle: whether its body has at most kMostOfSolid triangles, is closed (every edge in
-/// both directions equally often), and shows all of them from behind to the middle of its corners:
-/// the winding number falls from there outward and is nowhere negative. A body is what hangs
-/// together at welded vertices. O(n), and a sort for each small body.
+/// One per triangle: whether its body has at most kMaskMostOfSolid triangles, is closed (every edge
+/// in both directions equally often), and shows all of them from behind to the middle of its
+/// corners: the winding number falls from there outward and is nowhere negative. A body is what
+/// hangs together at welded vertices. O(n), and a sort for each small body.
 [[nodiscard]] std::vector<std::uint8_t> small_solids(const Geometry& geometry);
 
 }  // namespace surfelao

@@ -1,29 +1,17 @@
 #include "tree/masks/tiles.h"
 
+#include "surfels/edges.h"
+#include "tree/masks/constants.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 namespace surfelao {
 namespace {
-
-/// How far corners of a pair may lie beside one plane and beside a convex outline: a share of the
-/// longer diagonal, but never more than a small share of the receivers' usual distance from their
-/// surface, in the unit frame.
-constexpr float kFlat = 1e-3f;
-constexpr float kFlatLength = 2e-5f;
-
-/// The normals of two flat triangles differ by more only where they are slivers.
-constexpr float kLeastCosine = 0.9999f;
-
-/// The edges around so many vertices are looked at first: where fewer than this share of them are
-/// flat, pairs are not worth looking for.
-constexpr std::uint32_t kExaminedVertices = 64;
-constexpr float kFlatShare = 0.2f;
 
 class Tiler {
 public:
@@ -50,9 +38,6 @@ public:
     }
 
 private:
-    /// Side i of triangle t goes from its corner i to the next: 3 t + i.
-    using Side = std::uint32_t;
-
     std::uint32_t corner(std::uint32_t triangle, std::uint32_t i) const
     {
         return geometry_.triangles[triangle][static_cast<int>(i % 3)];
@@ -62,7 +47,7 @@ private:
 
     bool may_be_flat(std::uint32_t s, std::uint32_t t) const
     {
-        return glm::dot(normals_[s], normals_[t]) > kLeastCosine;
+        return glm::dot(normals_[s], normals_[t]) > kMaskPairCosine;
     }
 
     void pair_next()
@@ -82,84 +67,45 @@ private:
     /// Whether many edges between triangles that are left are flat, by a look at some.
     bool has_flat_edges() const
     {
-        struct Spoke {
-            std::uint32_t hub, to;  ///< welded
-            std::uint32_t triangle;
-            bool inward;
-        };
         const std::size_t vertices = geometry_.positions.size();
-        const std::size_t stride = vertices / kExaminedVertices + 1;
+        const std::size_t stride = vertices / kMaskPairSample + 1;
         std::vector<std::uint8_t> examined(vertices, 0);
         for (std::size_t v = 0; v < vertices; v += stride)
             examined[geometry_.welded[v]] = 1;
-        std::vector<Spoke> spokes;
+        std::vector<std::uint8_t> left_out(count_);
         for (std::uint32_t t = 0; t < count_; ++t) {
-            if (taken_[t] != 0)
-                continue;
-            const glm::uvec3 v = geometry_.triangles[t];
-            const std::array<std::uint32_t, 3> at = {geometry_.welded[v.x], geometry_.welded[v.y],
-                                                     geometry_.welded[v.z]};
-            if ((examined[at[0]] | examined[at[1]] | examined[at[2]]) == 0)
-                continue;
-            for (std::size_t i = 0; i < 3; ++i) {
-                if (examined[at[i]] != 0) {
-                    spokes.push_back({at[i], at[(i + 1) % 3], t, false});
-                    spokes.push_back({at[i], at[(i + 2) % 3], t, true});
-                }
-            }
+            left_out[t] = taken_[t] != 0 || (examined[from(3 * t)] | examined[to(3 * t)] |
+                                             examined[to(3 * t + 1)]) == 0;
         }
-        std::sort(spokes.begin(), spokes.end(), [](const Spoke& a, const Spoke& b) {
-            return std::tie(a.hub, a.to, a.inward, a.triangle) <
-                   std::tie(b.hub, b.to, b.inward, b.triangle);
-        });
         std::size_t edges = 0, flat = 0;
-        for (std::size_t i = 1; i < spokes.size(); ++i) {
-            const Spoke &a = spokes[i - 1], &b = spokes[i];
-            if (a.hub == b.hub && a.to == b.to && a.inward != b.inward) {
-                ++edges;
-                flat += may_be_flat(a.triangle, b.triangle) ? 1 : 0;
-            }
-        }
-        return static_cast<float>(flat) > kFlatShare * static_cast<float>(edges);
+        Edges(geometry_, left_out)
+            .for_each([&](std::uint32_t lower, std::span<const EdgeSide> sides) {
+                if (sides.size() != 2 || sides[0].rises() == sides[1].rises())
+                    return;
+                const std::size_t ends = std::size_t{examined[lower]} + examined[sides[0].upper];
+                edges += ends;
+                flat += may_be_flat(sides[0].triangle(), sides[1].triangle()) ? ends : 0;
+            });
+        return static_cast<float>(flat) > kMaskPairFlatShare * static_cast<float>(edges);
     }
 
     void pair_others()
     {
-        // what rises from a vertex to a later one, by the lower of them
-        std::vector<std::uint32_t> begin(geometry_.positions.size() + 2, 0);
-        const auto each_side = [&](const auto& work) {
-            for (std::uint32_t t = 0; t < count_; ++t) {
-                if (taken_[t] != 0)
-                    continue;
-                const glm::uvec3 v = geometry_.triangles[t];
-                const std::uint32_t a = geometry_.welded[v.x], b = geometry_.welded[v.y],
-                                    c = geometry_.welded[v.z];
-                work(3 * t, a, b);
-                work(3 * t + 1, b, c);
-                work(3 * t + 2, c, a);
-            }
-        };
-        each_side([&](Side, std::uint32_t a, std::uint32_t b) { begin[a + 2] += a < b ? 1 : 0; });
-        for (std::size_t v = 2; v < begin.size(); ++v)
-            begin[v] += begin[v - 1];
-        struct Rising {
-            std::uint32_t to;
-            Side side;
-        };
-        RawVector<Rising> rising;
-        rising.resize(begin.back());
-        each_side([&](Side side, std::uint32_t a, std::uint32_t b) {
-            if (a < b)
-                rising[begin[a + 1]++] = {b, side};
-        });
-        // what falls along the same edge belongs to the triangle beyond it
+        // what rises along an edge that another side falls along belongs to the triangle beyond it
+        const Edges edges(geometry_, taken_);
         std::vector<std::array<Side, 2>> flat;
-        each_side([&](Side side, std::uint32_t a, std::uint32_t b) {
-            for (std::uint32_t i = begin[b]; a > b && i < begin[b + 1]; ++i) {
-                if (rising[i].to == a && may_be_flat(rising[i].side / 3, side / 3))
-                    flat.push_back({rising[i].side, side});
+        for (Side side = 0; side < 3 * count_; ++side) {
+            if (taken_[side / 3] != 0)
+                continue;
+            const std::uint32_t upper = from(side), lower = to(side);
+            if (upper < lower)
+                continue;
+            for (const EdgeSide& other : edges.at(lower)) {
+                if (other.upper == upper && other.rises() &&
+                    may_be_flat(other.triangle(), side / 3))
+                    flat.push_back({other.side(), side});
             }
-        });
+        }
         for (const auto [side, other] : flat) {
             if (is_longest(side) && is_longest(other))
                 pair(side, other);
@@ -192,7 +138,8 @@ private:
         const glm::vec3 normal = glm::cross(c - a, d - b);
         const float area = glm::length(normal);
         const float across = glm::length(d - b);
-        const float slack = std::min(kFlat * std::max(glm::length(c - a), across), kFlatLength);
+        const float slack =
+            std::min(kMaskPairSlack * std::max(glm::length(c - a), across), kMaskPairSlackLength);
         const auto beside = [&](glm::vec3 before, glm::vec3 at, glm::vec3 after) {
             return glm::dot(glm::cross(at - before, after - at), normal) < -slack * across * area;
         };

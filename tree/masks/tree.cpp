@@ -1,7 +1,8 @@
 #include "tree/masks/tree.h"
 
+#include "surfels/errors.h"
 #include "tree/lanes.h"
-#include "tree/masks/kernel.h"
+#include "tree/masks/constants.h"
 #include "tree/masks/masks.h"
 #include "tree/masks/patch.h"
 #include "tree/masks/solids.h"
@@ -20,24 +21,11 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace surfelao {
 namespace {
-
-/// A unit of normal counts as this many diagonals of the node when it is split: neighbours that
-/// look elsewhere are parted before they become one rectangle.
-constexpr float kNormalExtent = 0.5f;
-/// Walls that meet in an edge: normals at the ends, to within this share, of an extent of at least
-/// so much. They are parted whatever the diagonal is: a rectangle for two of them fills no edge.
-constexpr float kEndShare = 0.1f;
-constexpr float kSharpExtent = 0.5f;
-
-/// Subtrees of up to this many triangles are built as one, in the cache, their radius and thickness
-/// measured at the corners; above, these follow from the children's.
-constexpr std::size_t kBundle = 32;
-
-constexpr std::size_t kParallelNode = 2048;  ///< smaller subtrees are built by one thread
 
 /// Where the splits look: centroid and unit normal of one triangle, in the scene's own axes: what
 /// is built along them is cut along them.
@@ -49,7 +37,7 @@ struct alignas(16) Key {
 
 struct Extent {
     /// Of `at`; what follows it in a key is carried along and of no meaning.
-    std::array<Lanes, 2> low, high;
+    std::array<Float4, 2> low, high;
 
     Extent()
     {
@@ -59,11 +47,11 @@ struct Extent {
     explicit Extent(std::span<const Key> keys) : Extent()
     {
         for (const Key& key : keys) {
-            const auto at = std::bit_cast<std::array<Lanes, 2>>(key);
+            const auto at = std::bit_cast<std::array<Float4, 2>>(key);
             add({at, at});
         }
     }
-    Extent(const std::array<Lanes, 2>& lowest, const std::array<Lanes, 2>& highest)
+    Extent(const std::array<Float4, 2>& lowest, const std::array<Float4, 2>& highest)
         : low(lowest), high(highest)
     {
     }
@@ -101,7 +89,7 @@ struct Plane {
 /// few keys.
 bool at_ends(std::span<const Key> keys, std::size_t axis, float low, float high)
 {
-    const float margin = kEndShare * (high - low);
+    const float margin = kMaskEdgeEnds * (high - low);
     return std::all_of(keys.begin(), keys.end(), [=](const Key& key) {
         return key.at[axis] < low + margin || key.at[axis] > high - margin;
     });
@@ -115,7 +103,7 @@ Plane plane_of(const Extent& extent, std::span<const Key> keys)
     std::array<float, 6> square;
     for (std::size_t i = 0; i < 6; ++i)
         square[i] = (high[i] - low[i]) * (high[i] - low[i]);
-    const float unit = kNormalExtent * kNormalExtent * (square[0] + square[1] + square[2]);
+    const float unit = kMaskNormalExtent * kMaskNormalExtent * (square[0] + square[1] + square[2]);
     std::size_t axis = 0;
     float longest = square[0];
     for (std::size_t i = 1; i < 6; ++i) {
@@ -127,14 +115,14 @@ Plane plane_of(const Extent& extent, std::span<const Key> keys)
         std::size_t turned = 3;
         for (std::size_t i = 4; i < 6; ++i)
             turned = square[i] > square[turned] ? i : turned;
-        if (square[turned] > kSharpExtent * kSharpExtent &&
+        if (square[turned] > kMaskEdgeExtent * kMaskEdgeExtent &&
             at_ends(keys, turned, low[turned], high[turned]))
             axis = turned;
     }
     return {axis, 0.5f * (low[axis] + high[axis])};
 }
 
-/// Nodes over up to kBundle triangles while they are built. Node 0 is the root; children stand
+/// Nodes over up to kMaskBundle triangles while they are built. Node 0 is the root; children stand
 /// side by side, after their parent.
 struct Bundle {
     struct Node {
@@ -142,17 +130,17 @@ struct Bundle {
         std::uint8_t first_child;  ///< 0 = triangle
         std::uint8_t side;         ///< of `keys`: they go to and fro from level to level
     };
-    static constexpr std::size_t kNodes = 2 * kBundle - 1;
-    static constexpr std::size_t kStride = kBundle + MaskCorners::kSlack;
+    static constexpr std::size_t kNodes = 2 * kMaskBundle - 1;
+    static constexpr std::size_t kStride = kMaskBundle + MaskCorners::kSlack;
 
-    std::array<std::array<Key, kBundle>, 2> keys;
+    std::array<std::array<Key, kMaskBundle>, 2> keys;
     std::array<Node, kNodes> nodes;
-    std::array<std::uint8_t, kBundle> leaf;   ///< the node of each triangle
-    std::array<std::uint8_t, kBundle> inner;  ///< parents first
-    std::array<float, 12 * kStride> corners;  ///< columns, as in MaskCorners
+    std::array<std::uint8_t, kMaskBundle> leaf;   ///< the node of each triangle
+    std::array<std::uint8_t, kMaskBundle> inner;  ///< parents first
+    std::array<float, 12 * kStride> corners;      ///< columns, as in MaskCorners
     std::array<MaskPatch, kNodes> patches;
     std::array<MaskCuts, kNodes> cuts;
-    std::array<MaskPatchNode, kBundle> shown;
+    std::array<MaskPatchNode, kMaskBundle> shown;
 };
 
 /// What looks elsewhere need not be beside what it was parted from.
@@ -172,7 +160,8 @@ public:
 
     RawVector<MaskNode> build()
     {
-        if (geometry_.triangles.empty())
+        const std::size_t triangles = geometry_.triangles.size();
+        if (triangles == 0)
             return {};
         RawVector<glm::vec3> normals;
         normals.resize(geometry_.triangles.size());
@@ -182,6 +171,7 @@ public:
         });
         tiles_ = tiles_of(geometry_, normals);
         const std::size_t count = tiles_.size();
+        check_mask_tiles(count, triangles);
         positions_.resize(geometry_.positions.size());
         for_blocks(std::span(positions_), [&](std::span<glm::vec3> block, std::size_t i) {
             for (std::size_t v = 0; v < block.size(); ++v)
@@ -229,7 +219,7 @@ private:
                          int side, const MaskCuts& cuts)
     {
         const std::size_t count = end - begin;
-        if (count <= kBundle)
+        if (count <= kMaskBundle)
             return build_bundle(index, first, begin, end, side, cuts);
 
         MaskCuts left_cuts = cuts, right_cuts = cuts;
@@ -243,7 +233,7 @@ private:
         const auto build_right = [&] {
             right = build_node(first + 1, right_first, middle, end, 1 - side, right_cuts);
         };
-        if (count > kParallelNode) {
+        if (count > kMaskParallelNode) {
             tbb::parallel_invoke(build_left, build_right);
         } else {
             build_left();
@@ -418,8 +408,21 @@ private:
 
 }  // namespace
 
+void check_mask_tiles(std::uint64_t tiles, std::uint64_t triangles)
+{
+    // for the GPU the last link is the number of nodes
+    static_assert(2 * kMostMaskTiles - 1 <= kMaskFirstChild);
+    if (tiles > kMostMaskTiles)
+        throw InputError("too many triangles for masks: " + std::to_string(triangles) +
+                         ", at most " + std::to_string(kMostMaskTiles) +
+                         ", a flat pair counting as one");
+}
+
 std::shared_ptr<const MaskTree> build_mask_tree(const Geometry& geometry)
 {
+    // before anything counts them in 32 bits: all may be in pairs
+    const std::size_t triangles = geometry.triangles.size();
+    check_mask_tiles((triangles + 1) / 2, triangles);
     auto tree = std::make_shared<MaskTree>();
     if (is_winding_mixed(geometry)) {
         Geometry alike = geometry;

@@ -38,9 +38,13 @@ struct alignas(64) MaskNode {
                         ///< where the node is exact: its triangles tile the quadrilateral;
                         ///< -1 where it is a leaf, which is exact too
     glm::vec3 axis_b;
-    std::uint32_t links;  ///< kMaskFirstChild and the flags of tree/masks/kernel.h
+    std::uint32_t links;  ///< kMaskFirstChild and flags (tree/masks/constants.inc)
 };
 static_assert(sizeof(MaskNode) == 64);
+
+/// Throws InputError where a tree of so many leaves would have more nodes than a link can count,
+/// one sentence with the number of triangles.
+void check_mask_tiles(std::uint64_t tiles, std::uint64_t triangles);
 
 /// In the mask frame. nodes[0] is the root; empty where the scene has no triangle.
 struct MaskTree {

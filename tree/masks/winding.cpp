@@ -1,10 +1,12 @@
 #include "tree/masks/winding.h"
 
+#include "surfels/edges.h"
+#include "tree/masks/constants.h"
+
 #include <glm/geometric.hpp>
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -12,34 +14,6 @@ namespace surfelao {
 namespace {
 
 constexpr std::uint32_t kNone = ~0u;
-
-struct Edge {
-    std::uint64_t vertices;  ///< the lower one above, the upper one below
-    std::uint32_t side;      ///< 3 * triangle + the corner that it begins at
-    bool rising;             ///< from the lower to the upper vertex
-};
-
-/// Sorted by vertices. Edges between vertices at one place are left out.
-std::vector<Edge> edges_of(const Geometry& geometry)
-{
-    std::vector<Edge> edges;
-    edges.reserve(3 * geometry.triangles.size());
-    for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t) {
-        for (std::uint32_t corner = 0; corner < 3; ++corner) {
-            const std::uint64_t from =
-                geometry.welded[geometry.triangles[t][static_cast<int>(corner)]];
-            const std::uint64_t to =
-                geometry.welded[geometry.triangles[t][static_cast<int>((corner + 1) % 3)]];
-            if (from != to)
-                edges.push_back(
-                    {std::min(from, to) << 32 | std::max(from, to), 3 * t + corner, from < to});
-        }
-    }
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-        return std::pair(a.vertices, a.side) < std::pair(b.vertices, b.side);
-    });
-    return edges;
-}
 
 /// The triangle beyond each side.
 struct Neighbour {
@@ -49,19 +23,14 @@ struct Neighbour {
 
 std::vector<Neighbour> neighbours_of(const Geometry& geometry)
 {
-    const std::vector<Edge> edges = edges_of(geometry);
     std::vector<Neighbour> neighbours(3 * geometry.triangles.size());
-    for (std::size_t begin = 0, end; begin < edges.size(); begin = end) {
-        end = begin + 1;
-        while (end < edges.size() && edges[end].vertices == edges[begin].vertices)
-            ++end;
-        if (end - begin != 2)
-            continue;
-        const Edge& a = edges[begin];
-        const Edge& b = edges[begin + 1];
-        neighbours[a.side] = {b.side / 3, a.rising == b.rising};
-        neighbours[b.side] = {a.side / 3, a.rising == b.rising};
-    }
+    Edges(geometry).for_each([&](std::uint32_t, std::span<const EdgeSide> sides) {
+        if (sides.size() != 2)
+            return;
+        const bool same_way = sides[0].rises() == sides[1].rises();
+        neighbours[sides[0].side()] = {sides[1].triangle(), same_way};
+        neighbours[sides[1].side()] = {sides[0].triangle(), same_way};
+    });
     return neighbours;
 }
 
@@ -70,7 +39,7 @@ std::vector<Neighbour> neighbours_of(const Geometry& geometry)
 bool is_winding_mixed(const Geometry& geometry)
 {
     const std::size_t count = geometry.triangles.size();
-    const std::size_t stride = count / kExamined + 1;
+    const std::size_t stride = count / kMaskTurnedSample + 1;
     std::size_t examined = 0, away = 0;
     for (std::size_t i = 0; i < count; i += stride) {
         const glm::uvec3 t = geometry.triangles[i];
@@ -82,7 +51,7 @@ bool is_winding_mixed(const Geometry& geometry)
                 glm::dot(normal, geometry.normals[t.y]) < 0.0f &&
                 glm::dot(normal, geometry.normals[t.z]) < 0.0f;
     }
-    return static_cast<double>(away) > kMixedShare * static_cast<double>(examined);
+    return static_cast<double>(away) > kMaskTurnedShare * static_cast<double>(examined);
 }
 
 void wind_alike(Geometry& geometry)

@@ -9,17 +9,14 @@
 
 namespace surfelao {
 
-/// Whether more than kMixedShare of the triangles face away from the normals of all their vertices:
-/// next to none do where the winding is one or changes from part to part. Looks at kExamined
-/// triangles.
+/// Whether more than kMaskTurnedShare of the triangles face away from the normals of all their
+/// vertices: next to none do where the winding is one or changes from part to part. Looks at
+/// kMaskTurnedSample triangles.
 [[nodiscard]] bool is_winding_mixed(const Geometry& geometry);
-
-inline constexpr double kMixedShare = 0.1;
-inline constexpr std::size_t kExamined = 4096;
 
 /// Turns triangles so that neighbours over an edge of exactly two triangles run along it in
 /// opposite directions; the first triangle of what hangs together by such edges stays (where that
-/// is impossible, as on a Moebius strip, some edge is left over). O(n log n).
+/// is impossible, as on a Moebius strip, some edge is left over). O(n), as edges.h.
 void wind_alike(Geometry& geometry);
 
 }  // namespace surfelao

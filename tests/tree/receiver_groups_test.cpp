@@ -1,4 +1,4 @@
-#include "tree/masks/groups.h"
+#include "tree/receiver_groups.h"
 
 #include "scenes.h"
 #include "surfels/geometry.h"
@@ -23,7 +23,7 @@ std::vector<Receiver> receivers_of(const Scene& scene)
 
 void expect_grouped(const std::vector<Receiver>& receivers)
 {
-    const MaskGroups found = group_for_masks(receivers);
+    const ReceiverGroups found = group_receivers(receivers, kMaskFrame);
     std::vector<std::uint32_t> expected, order(found.order.begin(), found.order.end());
     for (std::uint32_t i = 0; i < receivers.size(); ++i) {
         if (receivers[i].normal != glm::vec3(0.0f))
@@ -35,15 +35,15 @@ void expect_grouped(const std::vector<Receiver>& receivers)
     const auto column = [](const auto& columns, std::size_t i) {
         return glm::vec3(columns[0][i], columns[1][i], columns[2][i]);
     };
-    std::size_t leaves = 0;
-    for (const MaskGroup& group : found.groups) {
+    std::size_t leaf_count = 0;
+    for (const ReceiverGroup& group : found.groups) {
         ASSERT_LT(group.begin, group.end);
         if (group.first_child == 0) {
-            ++leaves;
-            EXPECT_LE(group.end - group.begin, kMaskGroupSize);
+            ++leaf_count;
+            EXPECT_LE(group.end - group.begin, kGroupSize);
         } else {
-            const MaskGroup& left = found.groups.at(group.first_child);
-            const MaskGroup& right = found.groups.at(group.first_child + 1);
+            const ReceiverGroup& left = found.groups.at(group.first_child);
+            const ReceiverGroup& right = found.groups.at(group.first_child + 1);
             EXPECT_EQ(left.begin, group.begin);
             EXPECT_EQ(left.end, right.begin);
             EXPECT_EQ(right.end, group.end);
@@ -65,16 +65,50 @@ void expect_grouped(const std::vector<Receiver>& receivers)
         EXPECT_NEAR(group.cone_cos, cone_cos, 1e-6f);
     }
     // all leaves but the last are full
-    EXPECT_EQ(leaves, (expected.size() + kMaskGroupSize - 1) / kMaskGroupSize);
+    EXPECT_EQ(leaf_count, (expected.size() + kGroupSize - 1) / kGroupSize);
+    ASSERT_EQ(found.leaves.size(), leaf_count);
+    for (std::size_t k = 0; k < leaf_count; ++k) {
+        const ReceiverGroup& leaf = found.groups.at(found.leaves[k]);
+        EXPECT_EQ(leaf.first_child, 0u);
+        EXPECT_EQ(leaf.begin, k * kGroupSize);
+    }
 }
 
-TEST(MaskGroups, HoldEveryReceiverOnceAndBoundIt)
+TEST(ReceiverGroups, HoldEveryReceiverOnceAndBoundIt)
 {
     expect_grouped(receivers_of(scenes::bumpy_sphere(12)));
     expect_grouped(receivers_of(scenes::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})));
 }
 
-TEST(MaskGroups, LeaveOutReceiversWithoutANormal)
+// What the disks leave out by rise_of_cone() is above nobody's tangent plane.
+TEST(ReceiverGroups, APointBelowTheConeIsBelowEveryHorizon)
+{
+    const std::vector<Receiver> receivers = receivers_of(scenes::bumpy_sphere(24));
+    const ReceiverGroups found = group_receivers(receivers);
+    std::size_t below = 0;
+    for (const ReceiverGroup& group : found.groups) {
+        const glm::vec3 center(group.center[0], group.center[1], group.center[2]);
+        const glm::vec3 axis(group.axis[0], group.axis[1], group.axis[2]);
+        for (std::size_t k = 0; k < receivers.size(); k += 7) {
+            const glm::vec3 v = receivers[k].position - center;
+            const float along = glm::dot(v, axis);
+            const float across = glm::length(v - along * axis);
+            if (along * group.cone_cos + across * group.cone_sin + rise_of_cone(group) >= 0.0f)
+                continue;
+            ++below;
+            for (std::uint32_t i = group.begin; i < group.end; ++i) {
+                const Receiver& receiver = receivers[found.order[i]];
+                EXPECT_LE(glm::dot(receiver.normal, receivers[k].position - receiver.position),
+                          1e-6f);
+            }
+        }
+    }
+    EXPECT_GT(below, 1000u);
+    EXPECT_EQ(rise_of_cone(found.groups[0]), std::numeric_limits<float>::infinity())
+        << "normals all around";
+}
+
+TEST(ReceiverGroups, LeaveOutReceiversWithoutANormal)
 {
     std::vector<Receiver> receivers = receivers_of(scenes::bumpy_sphere(8));
     for (std::size_t i = 0; i < receivers.size(); i += 3)
@@ -82,11 +116,11 @@ TEST(MaskGroups, LeaveOutReceiversWithoutANormal)
     expect_grouped(receivers);
     for (Receiver& receiver : receivers)
         receiver.normal = glm::vec3(0.0f);
-    EXPECT_TRUE(group_for_masks(receivers).groups.empty());
+    EXPECT_TRUE(group_receivers(receivers).groups.empty());
 }
 
 // Nothing but their number parts them; and a grid has many receivers at each place of an axis.
-TEST(MaskGroups, PartReceiversAtOnePlace)
+TEST(ReceiverGroups, PartReceiversAtOnePlace)
 {
     expect_grouped(std::vector<Receiver>(1000, Receiver{{0.1f, 0.2f, 0.3f}, {0, 0, 1}}));
     std::vector<Receiver> grid;
@@ -95,21 +129,21 @@ TEST(MaskGroups, PartReceiversAtOnePlace)
     expect_grouped(grid);
 }
 
-TEST(MaskGroups, SameBytesForAnyNumberOfThreads)
+TEST(ReceiverGroups, SameBytesForAnyNumberOfThreads)
 {
     const std::vector<Receiver> receivers = receivers_of(scenes::bumpy_sphere(110));
     ASSERT_GT(receivers.size(), 65536u);  // the largest groups are split by all threads
     const auto group = [&](std::size_t threads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        return group_for_masks(receivers);
+        return group_receivers(receivers);
     };
-    const MaskGroups one = group(1);
+    const ReceiverGroups one = group(1);
     for (const std::size_t threads : {2, 5}) {
-        const MaskGroups more = group(threads);
+        const ReceiverGroups more = group(threads);
         EXPECT_EQ(one.order, more.order);
         ASSERT_EQ(one.groups.size(), more.groups.size());
         EXPECT_EQ(std::memcmp(one.groups.data(), more.groups.data(),
-                              one.groups.size() * sizeof(MaskGroup)),
+                              one.groups.size() * sizeof(ReceiverGroup)),
                   0);
     }
 }

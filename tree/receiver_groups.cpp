@@ -1,7 +1,6 @@
-#include "tree/masks/groups.h"
+#include "tree/receiver_groups.h"
 
 #include "tree/lanes.h"
-#include "tree/masks/tree.h"
 #include "tree/part.h"
 
 #include <glm/geometric.hpp>
@@ -16,10 +15,14 @@
 namespace surfelao {
 namespace {
 
-constexpr std::size_t kParallelGroup = 2048;  ///< smaller groups are built by one thread
-constexpr std::size_t kSample = 63;           ///< keys among which a pivot is chosen at most
+/// Receivers; smaller groups are made in less time than it takes to hand them to another thread.
+constexpr std::size_t kParallelGroup = 2048;
 
-/// Where a receiver stands, in the mask frame.
+/// Keys among which a pivot is chosen at most: mostly it is then within a sixteenth of the place
+/// that is looked for.
+constexpr std::size_t kSample = 63;
+
+/// Where a receiver stands, in the frame of the groups.
 struct alignas(16) Key {
     std::array<float, 3> at;
     std::uint32_t receiver;
@@ -77,15 +80,18 @@ struct Sums {
 
 class Grouper {
 public:
-    explicit Grouper(std::span<const Receiver> receivers) : receivers_(receivers) {}
+    Grouper(std::span<const Receiver> receivers, const glm::mat3& frame)
+        : receivers_(receivers), frame_(frame)
+    {
+    }
 
-    MaskGroups build()
+    ReceiverGroups build()
     {
         keys_.resize(receivers_.size());
         for_blocks(std::span(keys_), [&](std::span<Key> block, std::size_t) {
             for (Key& key : block) {
                 const auto receiver = static_cast<std::uint32_t>(&key - keys_.data());
-                const glm::vec3 p = kMaskFrame * receivers_[receiver].position;
+                const glm::vec3 p = frame_ * receivers_[receiver].position;
                 key = {{p.x, p.y, p.z}, receiver};
             }
         });
@@ -100,11 +106,12 @@ public:
         out_.order.resize(keys_.size());
         for (auto* columns : {&out_.position, &out_.normal}) {
             for (RawVector<float>& column : *columns) {
-                column.resize(keys_.size() + kMaskGroupSize);
-                std::fill_n(column.end() - kMaskGroupSize, kMaskGroupSize, 0.0f);
+                column.resize(keys_.size() + kGroupSize);
+                std::fill_n(column.end() - kGroupSize, kGroupSize, 0.0f);
             }
         }
-        out_.groups.resize(2 * leaf_count(keys_.size()) - 1);
+        out_.leaves.resize(leaf_count(keys_.size()));
+        out_.groups.resize(2 * out_.leaves.size() - 1);
         build_group(0, 1, 0, keys_.size());
         return std::move(out_);
     }
@@ -112,26 +119,27 @@ public:
 private:
     static std::size_t leaf_count(std::size_t receivers)
     {
-        return (receivers + kMaskGroupSize - 1) / kMaskGroupSize;
+        return (receivers + kGroupSize - 1) / kGroupSize;
     }
 
     /// Group `index` over keys [begin, end); its descendants stand at [first, first + 2
     /// (leaves-1)).
     Sums build_group(std::size_t index, std::size_t first, std::size_t begin, std::size_t end)
     {
-        MaskGroup& group = out_.groups[index];
+        ReceiverGroup& group = out_.groups[index];
         group.begin = static_cast<std::uint32_t>(begin);
         group.end = static_cast<std::uint32_t>(end);
         group.first_child = 0;
         const std::size_t leaves = leaf_count(end - begin);
         Sums sums;
         if (leaves == 1) {
+            out_.leaves[begin / kGroupSize] = static_cast<std::uint32_t>(index);
             sums = finish_leaf(begin, end);
         } else {
             group.first_child = static_cast<std::uint32_t>(first);
             // in two at the median of the longest extent, so that all leaves but the last are full
             const std::size_t left_leaves = leaves / 2;
-            const std::size_t middle = begin + left_leaves * kMaskGroupSize;
+            const std::size_t middle = begin + left_leaves * kGroupSize;
             select(std::span(keys_).subspan(begin, end - begin), middle - begin,
                    longest_axis(begin, end), std::span(spare_).subspan(begin, end - begin));
             const std::size_t left_first = first + 2;
@@ -157,14 +165,14 @@ private:
     std::size_t longest_axis(std::size_t begin, std::size_t end) const
     {
         // the fourth lane is the receiver and of no meaning
-        Lanes low = std::bit_cast<Lanes>(keys_[begin]);
-        Lanes high = low;
+        Float4 low = std::bit_cast<Float4>(keys_[begin]);
+        Float4 high = low;
         for (std::size_t i = begin + 1; i < end; ++i) {
-            const Lanes at = std::bit_cast<Lanes>(keys_[i]);
+            const Float4 at = std::bit_cast<Float4>(keys_[i]);
             low = least(low, at);
             high = most(high, at);
         }
-        const Lanes length = high - low;
+        const Float4 length = high - low;
         std::size_t axis = 0;
         for (std::size_t k = 1; k < 3; ++k) {
             if (length[k] > length[axis])
@@ -179,7 +187,7 @@ private:
         Sums sums;
         for (std::size_t i = begin; i < end; ++i) {
             const Key& key = keys_[i];
-            const glm::vec3 normal = kMaskFrame * receivers_[key.receiver].normal;
+            const glm::vec3 normal = frame_ * receivers_[key.receiver].normal;
             out_.order[i] = key.receiver;
             for (std::size_t k = 0; k < 3; ++k) {
                 out_.position[k][i] = key.at[k];
@@ -192,7 +200,7 @@ private:
     }
 
     /// The centre is the centroid of the points: the box's lies inside of the body, and darkens.
-    void bound(MaskGroup& group, const Sums& sums) const
+    void bound(ReceiverGroup& group, const Sums& sums) const
     {
         const glm::vec3 center(sums.position / static_cast<double>(group.end - group.begin));
         const double length = glm::length(sums.normal);
@@ -200,17 +208,17 @@ private:
             length > 0.0 ? glm::vec3(sums.normal / length)
                          : glm::vec3(out_.normal[0][group.begin], out_.normal[1][group.begin],
                                      out_.normal[2][group.begin]);
-        Lanes radius2 = all_lanes(0.0f);
-        Lanes rise = all_lanes(-std::numeric_limits<float>::max());
-        Lanes cone_cos = all_lanes(1.0f);
-        for (std::uint32_t i = group.begin; i < group.end; i += kLaneCount) {
-            const LaneMask inside = LaneMask{0, 1, 2, 3} < static_cast<std::int32_t>(group.end - i);
-            const Lanes x = load_lanes(&out_.position[0][i]) - center.x;
-            const Lanes y = load_lanes(&out_.position[1][i]) - center.y;
-            const Lanes z = load_lanes(&out_.position[2][i]) - center.z;
-            const Lanes nx = load_lanes(&out_.normal[0][i]);
-            const Lanes ny = load_lanes(&out_.normal[1][i]);
-            const Lanes nz = load_lanes(&out_.normal[2][i]);
+        Float4 radius2 = all_lanes(0.0f);
+        Float4 rise = all_lanes(-std::numeric_limits<float>::max());
+        Float4 cone_cos = all_lanes(1.0f);
+        for (std::uint32_t i = group.begin; i < group.end; i += kFloat4Lanes) {
+            const Bool4 inside = Bool4{0, 1, 2, 3} < static_cast<std::int32_t>(group.end - i);
+            const Float4 x = load_lanes(&out_.position[0][i]) - center.x;
+            const Float4 y = load_lanes(&out_.position[1][i]) - center.y;
+            const Float4 z = load_lanes(&out_.position[2][i]) - center.z;
+            const Float4 nx = load_lanes(&out_.normal[0][i]);
+            const Float4 ny = load_lanes(&out_.normal[1][i]);
+            const Float4 nz = load_lanes(&out_.normal[2][i]);
             // lanes beyond the end change nothing
             radius2 = most(radius2, inside ? x * x + y * y + z * z : radius2);
             rise = most(rise, inside ? -(nx * x + ny * y + nz * z) : rise);
@@ -228,15 +236,16 @@ private:
     }
 
     std::span<const Receiver> receivers_;
+    glm::mat3 frame_;
     RawVector<Key> keys_, spare_;
-    MaskGroups out_;
+    ReceiverGroups out_;
 };
 
 }  // namespace
 
-MaskGroups group_for_masks(std::span<const Receiver> receivers)
+ReceiverGroups group_receivers(std::span<const Receiver> receivers, const glm::mat3& frame)
 {
-    return Grouper(receivers).build();
+    return Grouper(receivers, frame).build();
 }
 
 }  // namespace surfelao

@@ -1,4 +1,4 @@
-#include "image/heat_map.h"
+#include "image/color_map.h"
 
 #include "image/lettering.h"
 #include "surfels/errors.h"
@@ -92,6 +92,17 @@ glm::vec3 heat_color(float x)
     const std::size_t left = std::min(static_cast<std::size_t>(position), std::size_t{254});
     return glm::mix(heat_colors()[left], heat_colors()[left + 1],
                     position - static_cast<float>(left));
+}
+
+Rgb error_color(float error, float full)
+{
+    if (std::isnan(error))
+        return {128, 128, 128};
+    const float strength = std::min(1.0f, std::fabs(error) / full);
+    const auto faded = static_cast<std::uint8_t>(std::lround(255.0f * (1.0f - strength)));
+    if (error > 0.0f)
+        return {255, faded, faded};
+    return {faded, faded, 255};
 }
 
 void draw_heat_legend(Image& image, std::string_view title, float low, float high)

@@ -1,4 +1,4 @@
-#include "image/heat_map.h"
+#include "image/color_map.h"
 
 #include <glm/geometric.hpp>
 
@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace surfelao {
 namespace {
@@ -65,6 +66,15 @@ TEST(HeatLegend, LeavesAnImageAloneThatIsTooSmall)
     Image image(40, 30, paper);
     draw_heat_legend(image, "occlusion error", 0.0f, 0.1f);
     EXPECT_EQ(std::count(image.pixels.begin(), image.pixels.end(), paper), 40 * 30);
+}
+
+TEST(ErrorColor, IsWhiteAtZeroRedAboveBlueBelowGreyUnknown)
+{
+    EXPECT_EQ(error_color(0.0f, 0.1f), (Rgb{255, 255, 255}));
+    EXPECT_EQ(error_color(0.1f, 0.1f), (Rgb{255, 0, 0}));
+    EXPECT_EQ(error_color(-5.0f, 0.1f), (Rgb{0, 0, 255}));
+    EXPECT_EQ(error_color(0.05f, 0.1f), (Rgb{255, 128, 128}));
+    EXPECT_EQ(error_color(std::numeric_limits<float>::quiet_NaN(), 0.1f), (Rgb{128, 128, 128}));
 }
 
 }  // namespace

@@ -1,0 +1,28 @@
+#include "files/file_type.h"
+
+#include "surfels/extension.h"
+
+#include <string>
+#include <utility>
+
+namespace surfelao {
+
+FileType type_of(const std::filesystem::path& path)
+{
+    const std::string extension = lower_extension(path);
+    constexpr std::pair<const char*, FileType> kTypes[] = {
+        {".obj", FileType::obj}, {".ply", FileType::ply},   {".off", FileType::off},
+        {".stl", FileType::stl}, {".gltf", FileType::gltf}, {".glb", FileType::glb}};
+    for (const auto& [name, type] : kTypes) {
+        if (extension == name)
+            return type;
+    }
+    return FileType::unknown;
+}
+
+bool is_gltf(FileType type)
+{
+    return type == FileType::gltf || type == FileType::glb;
+}
+
+}  // namespace surfelao

@@ -1,0 +1,61 @@
+#include "surfels/scene.h"
+
+#include "surfels/errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace surfelao {
+namespace {
+
+void refuse(const Scene& scene, const std::string& fault)
+{
+    throw InputError(scene.name.empty() ? fault : scene.name + ": " + fault);
+}
+
+/// False for what is no number too.
+bool in_reach(glm::dvec3 p)
+{
+    return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
+}
+
+}  // namespace
+
+Scene make_scene(std::span<const glm::dvec3> positions, std::span<const glm::uvec3> triangles)
+{
+    Scene scene;
+    scene.positions.assign(positions.begin(), positions.end());
+    scene.triangles.assign(triangles.begin(), triangles.end());
+    if (triangles.empty())
+        refuse(scene, "there is no triangle");
+    check_scene(scene);
+    Part part;
+    part.vertex_count = static_cast<std::uint32_t>(positions.size());
+    part.triangle_count = static_cast<std::uint32_t>(triangles.size());
+    scene.parts = {part};
+    return scene;
+}
+
+void check_scene(const Scene& scene)
+{
+    const std::size_t count = scene.positions.size();
+    if (std::max(count, scene.triangles.size()) > kMostElements)
+        refuse(scene, "there are " + std::to_string(count) + " vertices and " +
+                          std::to_string(scene.triangles.size()) + " triangles; at most " +
+                          std::to_string(kMostElements) + " of each can be used");
+    const auto lost = std::ranges::find_if_not(scene.positions, in_reach);
+    if (lost != scene.positions.end())
+        refuse(scene, "vertex " + std::to_string(lost - scene.positions.begin()) +
+                          " has a coordinate that is no number or beyond 1e300");
+    const auto wrong = std::ranges::find_if(scene.triangles, [&](glm::uvec3 triangle) {
+        return std::max({triangle.x, triangle.y, triangle.z}) >= count;
+    });
+    if (wrong != scene.triangles.end())
+        refuse(scene, "triangle " + std::to_string(wrong - scene.triangles.begin()) +
+                          " uses vertex " +
+                          std::to_string(std::max({wrong->x, wrong->y, wrong->z})) +
+                          ", but there are " + std::to_string(count) + " vertices");
+}
+
+}  // namespace surfelao

@@ -1,0 +1,299 @@
+#!/usr/bin/env python3
+"""measure.py: what README.md and docs/ tell in figures, measured anew into docs/figures/*.json.
+
+    measure.py BUILD [PART...]      parts: frontier avx2 scaling stability gpu drawing readers demo;
+                                    default: all, about 25 minutes on two quiet cores
+
+Every part is one file that says what command made it, of which version and commit, on what
+processor and how many threads; never a host name or a path. A part whose models are absent keeps
+its file and says so. The pages are filled from the files by docs/fill_figures.py.
+
+Models: data/*, the Debian packages' (data/fetch.sh), and the folder SURFELAO_MODELS, by default
+../shared/models beside the project (docs/measurements.md names them). Variables for a short trial:
+SURFELAO_TRIAL=1 takes the smallest scenes and settings, and writes to out/trial/ instead.
+Python 3, standard library only.
+"""
+
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+TRIAL = bool(os.environ.get("SURFELAO_TRIAL"))
+FIGURES = ROOT / ("out/trial" if TRIAL else "docs/figures")
+SHARED = pathlib.Path(os.environ.get("SURFELAO_MODELS") or ROOT / "../shared/models")
+
+SHARED_MODELS = (  # from small to large
+    "cornell_box.obj", "gazebo.obj", "spot.obj", "wingnut.obj", "pine/scene.gltf", "retroufo.gltf",
+    "boat.obj", "mountain.obj", "stanford_bunny.obj", "skull.obj", "FlightHelmet/FlightHelmet.gltf",
+    "pandora.obj", "stanford_dragon_res2.ply")
+PACKAGE_MODELS = ("bunny.obj", "engine.glb")
+DATA_MODELS = ("blob.off", "blocks.ply", "bracket.obj", "leaves.glb", "room.obj", "shells.stl")
+
+LARGEST_ON_GPU = 60_000  # vertices of a model: software takes up to 0.7 ms for each by masks
+SAMPLE = 300 if TRIAL else 4000
+ROUNDS = 3
+
+
+class Absent(Exception):
+    """What a part needs is not on this machine."""
+
+
+# ---- models
+
+
+def models():
+    """[(path, name, group)], packaged, shared, committed ones."""
+    if TRIAL:
+        return [(ROOT / "data/bracket.obj", "data/bracket.obj", "data")]
+    found = [(ROOT / "data/models" / file, file.split(".")[0], "package") for file in PACKAGE_MODELS]
+    for file in SHARED_MODELS:
+        name = pathlib.Path(file).stem if not file.endswith("/scene.gltf") else file.split("/")[0]
+        found.append((SHARED / file, name, "shared"))
+    found += [(ROOT / "data" / file, f"data/{file}", "data") for file in DATA_MODELS]
+    absent = [name for path, name, _ in found if not path.exists()]
+    if absent:
+        raise Absent(f"no {', '.join(absent)} (SURFELAO_MODELS, data/fetch.sh)")
+    return found
+
+
+# ---- running and writing
+
+
+def run(*command, shown=None):
+    """Standard output; what the command says on standard error goes to the terminal."""
+    command = [str(word) for word in command]
+    print("  " + (shown or " ".join(command)).replace(f"{ROOT}/", ""), file=sys.stderr, flush=True)
+    return subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True, cwd=ROOT).stdout
+
+
+def processor():
+    """The model's name and the widest vectors, as far as the system tells."""
+    try:
+        text = pathlib.Path("/proc/cpuinfo").read_text()
+    except OSError:
+        return "unknown"
+    name = re.search(r"^model name\s*:\s*(.*)$", text, re.M)
+    name = re.sub(r"\((R|TM)\)| Processor| CPU|@.*", "", name.group(1) if name else "unknown").strip()
+    vectors = "AVX-512" if " avx512bw" in text else "AVX2" if " avx2" in text else "SSE"
+    return f"{name}, {vectors}"
+
+
+def provenance(build, command, **others):
+    git = ["git", "-C", str(ROOT)]
+    commit = subprocess.run([*git, "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
+    changes = subprocess.run([*git, "status", "--porcelain", "--", ":!docs", ":!*.md"],
+                             capture_output=True, text=True)
+    return {"command": command,
+            "commit": (commit.stdout.strip() or "no commit") + ("+" if changes.stdout else ""),
+            "version": subprocess.run([build / "bin/surfelao", "--version"], capture_output=True,
+                                      text=True, check=True).stdout.strip(),
+            "processor": processor(), "threads": len(os.sched_getaffinity(0)), **others}
+
+
+def rounded(value):
+    """Five digits: a text shows four at most, and a file that is read by people stays short."""
+    if isinstance(value, float):
+        return float(f"{value:.5g}")
+    if isinstance(value, dict):
+        return {key: rounded(item) for key, item in value.items()}
+    return [rounded(item) for item in value] if isinstance(value, list) else value
+
+
+def holds_objects(value):
+    if isinstance(value, dict):
+        return True
+    return isinstance(value, list) and any(map(holds_objects, value))
+
+
+def dump(value, indent=0):
+    """JSON with a line for each object without objects in it: one row of a table is one line."""
+    items = list(value.values() if isinstance(value, dict) else value) \
+        if isinstance(value, (dict, list)) else []
+    text = isinstance(value, list) and len(items) > 3 and all(isinstance(x, str) for x in items)
+    if not items or not (indent == 0 or text or any(map(holds_objects, items))):
+        return json.dumps(value, ensure_ascii=False)
+    space = " " * (indent + 1)
+    if isinstance(value, dict):
+        parts = [f"{json.dumps(key)}: {dump(item, indent + 1)}" for key, item in value.items()]
+    else:
+        parts = [dump(item, indent + 1) for item in items]
+    left, right = "{}" if isinstance(value, dict) else "[]"
+    return left + "\n" + ",\n".join(space + part for part in parts) + "\n" + " " * indent + right
+
+
+def write(path, figures):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(dump(rounded(figures)) + "\n")
+
+
+def number(cell):
+    """A cell of a table: a number where it is one, None where it is empty or a dash."""
+    cell = cell.strip()
+    if cell in ("", "-"):
+        return None
+    try:
+        return int(cell) if re.fullmatch(r"\d+", cell) else float(cell)
+    except ValueError:
+        return cell
+
+
+def tables_of(text):
+    """Every Markdown table of a text: [[{column: value}]]."""
+    tables, head = [], None
+    for line in text.splitlines():
+        if not line.startswith("|"):
+            head = None
+            continue
+        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
+        if head is None:
+            head = cells
+            tables.append([])
+        elif not set(line) <= set("|- "):
+            tables[-1].append({name: number(cell) for name, cell in zip(head, cells)})
+    return tables
+
+
+# ---- parts: each returns what its file holds
+
+
+def compare(build, path, *options):
+    """The JSON of `surfelao compare`, and its command without the path."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "compare.json"
+        words = [str(word) for word in options]
+        shown = f"surfelao compare MODEL {' '.join(words)}"
+        run(build / "bin/surfelao", "compare", path, *words, "-o", folder, "--json", file, shown=shown)
+        return json.loads(file.read_text()), shown
+
+
+def condensed(scene, name, group):
+    """A scene of the frontier without what a page never shows."""
+    rows = [{key: value for key, value in row.items() if key not in ("settings", "worst", "rounds")}
+            for row in scene["rows"]]
+    build_s = {row["engine"]: row["build_s"] for row in rows if row["setting"] in ("good", "64 rays")}
+    return {"name": name, "group": group, "vertices": scene["vertices"],
+            "triangles": scene["triangles"], "reference": scene["reference"],
+            "build_over_embree": build_s["masks"] / build_s["rays"] if build_s.get("rays") else None,
+            "ratios": scene["ratios"], "rows": rows}
+
+
+def frontier(build, *options):
+    """Scene by scene: all engines of one take turns in one process."""
+    scenes = []
+    for path, name, group in models():
+        start = time.monotonic()
+        result, command = compare(build, path, "--frontier", *options, "--sample", SAMPLE,
+                                  "--rounds", ROUNDS)
+        scenes.append(condensed(result["scenes"][0], name, group))
+        print(f"    {name}: {time.monotonic() - start:.0f} s", file=sys.stderr, flush=True)
+    return {**provenance(build, command), "scenes": scenes}
+
+
+def part_frontier(build):
+    return frontier(build, "--engines", "masks,disks")
+
+
+def part_frontier_avx2(build):
+    return {**frontier(build, "--engines", "masks", "--avx2"),
+            "processor": processor().replace("AVX-512", "AVX2")}
+
+
+def part_scaling(build):
+    sizes = ["10000", "30000"] if TRIAL else ["10000", "100000", "1000000"]
+    result = provenance(build, f"scaling masks|disks {' '.join(sizes)}", threads=1)
+    for engine in ("masks", "disks"):
+        text = run(build / "bin/scaling", engine, *sizes)
+        result[engine] = {"exponent": float(re.search(r"vertices\^([\d.]+)", text).group(1)),
+                          "rows": tables_of(text)[0]}
+    return result
+
+
+def part_stability(build):
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "stability.json"
+        words = ["--quick", "sheets", "creases"] if TRIAL else []
+        run(build / "bin/stability", *words, "--json", file, shown=" ".join(["stability", *words]))
+        return {**provenance(build, "stability"), **json.loads(file.read_text())}
+
+
+def part_gpu(build):
+    chosen = [(path, name) for path, name, _ in models()]
+    limits = ["--largest", 11_000, "--largest-masks", 1] if TRIAL else \
+        ["--largest", 400_000, "--largest-masks", 11_000]
+    text = run(build / "bin/gpu_tables", "--backend", "egl", *limits)
+    device = re.search(r"^GPU: (.*?)(?:, | \().*$", text, re.M).group(1)
+    grids, bodies = tables_of(text)
+    rows = []
+    for path, name in chosen:
+        info = json.loads(run(build / "bin/surfelao", "info", path, "--json", "-"))
+        if info["vertices"] > LARGEST_ON_GPU:
+            continue
+        scene, command = compare(build, path, "--engines", "masks", "--devices", "cpu,gpu",
+                                 "--qualities", "good", "--rounds", "1", "--sample", SAMPLE)
+        row = {"scene": name, "vertices": scene["vertices"]}
+        for line in scene["rows"]:
+            if line["engine"] == "masks":
+                row[line["settings"]["device"]] = {key: line[key] for key in ("rmse", "max")}
+        text = run(build / "bin/gpu_tables", "--backend", "egl", "--largest-masks", LARGEST_ON_GPU, path)
+        for line in tables_of(text)[0]:
+            row[line["engine"]] = {key: line[key] for key in
+                                   ("speed GPU / CPU", "RMS difference", "largest")}
+        rows.append(row)
+    return {**provenance(build, f"gpu_tables; {command}"), "device": device,
+            "grids": grids, "bodies": bodies, "models": rows}
+
+
+def part_drawing(build):
+    text = run(build / "bin/drawing_tables", "egl")
+    return {**provenance(build, "drawing_tables"),
+            "device": re.search(r"^Device: (.*?)(?:, | \().*$", text, re.M).group(1),
+            "rows": tables_of(text)[0]}
+
+
+def part_readers(build):
+    if not pathlib.Path("/usr/share/assimp/models/glTF2").exists():
+        raise Absent("no package assimp-testmodels")
+    baked, refused = tables_of(run(ROOT / "tests/odd_files.sh", build / "bin/surfelao"))
+    return {**provenance(build, "tests/odd_files.sh"), "baked": baked, "refused": refused}
+
+
+def part_demo(build):
+    if not (ROOT / "data/models/bunny.obj").exists():
+        raise Absent("no data/models/bunny.obj (data/fetch.sh)")
+    text = run(ROOT / "data/demo.sh", build / "bin/surfelao", ROOT / "data/models", ROOT / "out/demo")
+    return {**provenance(build, "run demo"), "lines": text.replace(f"{ROOT}/", "").splitlines()}
+
+
+PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scaling": part_scaling,
+         "stability": part_stability, "gpu": part_gpu, "drawing": part_drawing,
+         "readers": part_readers, "demo": part_demo}
+
+
+def main(arguments):
+    if not arguments or any(part not in PARTS for part in arguments[1:]):
+        print(__doc__, file=sys.stderr)
+        return 2
+    build = pathlib.Path(arguments[0]).resolve()
+    code = 0
+    for name in arguments[1:] or PARTS:
+        start = time.monotonic()
+        print(f"{name} ...", file=sys.stderr, flush=True)
+        try:
+            write(FIGURES / f"{name}.json", PARTS[name](build))
+            print(f"{name}: {time.monotonic() - start:.0f} s", file=sys.stderr)
+        except Absent as reason:
+            print(f"{name}: keeps its old figures: {reason}", file=sys.stderr)
+        except (subprocess.CalledProcessError, RuntimeError) as fault:
+            print(f"{name}: keeps its old figures: {fault}", file=sys.stderr)
+            code = 1
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,99 @@
+/// kernel_cracks.h: clear bits between sheets that are no openings (part of kernel_body.h).
+///
+/// Sixteen rows of one face at a time; nothing is set outside of the face.
+#pragma once
+
+#include "tree/masks/constants.h"
+#include "tree/masks/raster.h"
+#include "tree/masks/simd.h"
+
+namespace surfelao::SURFELAO_MASK_ISA {
+namespace {
+
+/// A clear bit is a crack between two patches where its neighbours left and right are set, or those
+/// above and below, both of the two nearest in direction, and a sheet set one of them. No
+/// half-plane, nor any convex shape, is changed by that. m: set bits; sheets: what of it sheets
+/// set.
+SURFELAO_MASK_INLINE Int16 fill(const MaskRaster& raster, Int16 m, Int16 sheets)
+{
+    const Bool16 low_right = nonzero(load(raster.below_is_right));
+    const Bool16 high_right = nonzero(load(raster.above_is_right));
+    const auto pair = [](Int16 row, Bool16 right, auto join) {
+        return join(row, select(right, shift_left<1>(row), shift_right<1>(row)));
+    };
+    const auto both = [](Int16 a, Int16 b) { return a & b; };
+    const auto either = [](Int16 a, Int16 b) { return a | b; };
+    const Int16 sides = shift_left<1>(m) & shift_right<1>(m);
+    const Int16 sheet_sides = shift_left<1>(sheets) | shift_right<1>(sheets);
+    const Int16 stacked =
+        pair(from_below(m), low_right, both) & pair(from_above(m), high_right, both);
+    const Int16 sheet_stacked =
+        pair(from_below(sheets), low_right, either) | pair(from_above(sheets), high_right, either);
+    return m | (sides & sheet_sides) | (stacked & sheet_stacked);
+}
+
+/// Of the open bits those that are no cracks: what filling has left open and what touches it. A
+/// notch in the rim of an opening is most likely part of it.
+SURFELAO_MASK_INLINE Int16 openings(Int16 open, Int16 filled)
+{
+    const Int16 left = ~filled;
+    return open & (left | shift_left<1>(left) | shift_right<1>(left) | from_below(left) |
+                   from_above(left));
+}
+
+/// Closes cracks of two bits too, for places where nearly all is covered: what is set is grown by
+/// one bit along the rows, then across them, and shrunk again. Only beside bits that sheets set.
+SURFELAO_MASK_INLINE Int16 close(const MaskRaster& raster, Int16 m, Int16 sheets)
+{
+    const Bool16 low_right = nonzero(load(raster.below_is_right));
+    const Bool16 high_right = nonzero(load(raster.above_is_right));
+    const auto beside = [](Int16 row, Bool16 right) {
+        return select(right, shift_left<1>(row), shift_right<1>(row));
+    };
+    const auto grown_across = [&](Int16 x) {
+        const Int16 low = from_below(x);
+        const Int16 high = from_above(x);
+        return x | low | beside(low, low_right) | high | beside(high, high_right);
+    };
+    const auto shrunk_across = [&](Int16 x) {
+        const Int16 low = from_below(x);
+        const Int16 high = from_above(x);
+        return x & low & beside(low, low_right) & high & beside(high, high_right);
+    };
+    const Int16 wide = m | shift_left<1>(m) | shift_right<1>(m);
+    const Int16 rows = wide & shift_left<1>(wide) & shift_right<1>(wide);
+    const Int16 columns = shrunk_across(grown_across(m));
+    const Int16 near = grown_across(sheets | shift_left<1>(sheets) | shift_right<1>(sheets));
+    return m | ((rows | columns) & near);
+}
+
+/// Whether next to nothing is open, once cracks are filled and closed. closed: what lies below the
+/// horizon is set.
+inline bool is_closed(const MaskRaster& raster, const std::uint32_t* closed, const float* n)
+{
+    // the face right ahead tells most others apart
+    const float x = n[0] < 0.0f ? -n[0] : n[0];
+    const float y = n[1] < 0.0f ? -n[1] : n[1];
+    const float z = n[2] < 0.0f ? -n[2] : n[2];
+    const int axis = x > y && x > z ? 0 : y > z ? 1 : 2;
+    const int ahead = 2 * axis + (n[axis] < 0.0f ? 1 : 0);
+    const Int16 holes = ~load(closed + kMaskFaceWords * ahead);
+    if (__builtin_popcount(bits(nonzero(holes))) > kMaskOpenBits)
+        return false;
+    int open = 0;
+    for (int face = 0; face < kMaskFaces; ++face) {
+        const int w = kMaskFaceWords * face;
+        const Int16 sheets = load(closed + kMaskWords + w);
+        const Int16 filled = fill(raster, load(closed + w), sheets);
+        alignas(64) std::uint32_t rows[kLanes];
+        store(rows, ~close(raster, filled, sheets));
+        for (const std::uint32_t row : rows)
+            open += __builtin_popcount(row);
+        if (open > kMaskOpenBits)
+            return false;
+    }
+    return true;
+}
+
+}  // namespace
+}  // namespace surfelao::SURFELAO_MASK_ISA

@@ -1,0 +1,230 @@
+/// kernel_raster.h: the bits of polygons, sixteen at a time (part of kernel_body.h).
+///
+/// A face's bits on one side of an edge's plane n.d >= 0 are, row by row, those from a column up or
+/// those below it; a polygon is what all of its edges have in common. No clipping is needed: where
+/// a plane misses a face the column lies outside of it.
+#pragma once
+
+#include "tree/masks/constants.h"
+#include "tree/masks/raster.h"
+#include "tree/masks/simd.h"
+
+namespace surfelao::SURFELAO_MASK_ISA {
+namespace {
+
+/// The bits of one face whose rays meet a plane within the limit: those inside of the circular cone
+/// n.d >= k |d| about the plane's normal n, where k = plane's distance / limit, 0 <= k < 1.
+/// With n.d = p + nu u and |d|^2 = q + u^2 in a row, u lies between or beyond the roots of
+/// (nu^2 - k^2) u^2 + 2 p nu u + p^2 - k^2 q = 0.
+SURFELAO_MASK_INLINE Int16 cone_bits(const MaskRaster& raster, float na, float nu, float nv,
+                                     float k)
+{
+    const Float16 v = load(raster.row_v);
+    const Float16 shift = load(raster.row_shift);
+    const Float16 zero = all(0.0f);
+    float a = nu * nu - k * k;
+    if (a > -kMaskConeFlat && a < kMaskConeFlat)
+        a = a < 0.0f ? -kMaskConeFlat : kMaskConeFlat;
+    const Float16 p = fma(all(nv), v, all(na));
+    const Float16 root2 = fma(p, p, fma(v, v, all(1.0f)) * all(a));
+    const Float16 root = sqrt(max(root2, zero)) * all(k);
+    const Float16 b = p * all(nu);
+    const Float16 scale = all(kMaskHalfColumns / a);
+    const Float16 first = fms(root - b, scale, shift) + all(kMaskHalfColumns);
+    const Float16 second = fms(zero - root - b, scale, shift) + all(kMaskHalfColumns);
+    if (a < 0.0f) {
+        const Int16 between = bits_from(first) & ~bits_from(second);
+        return select((root2 > zero) & (p > zero), between, all(0u));
+    }
+    return nu > 0.0f ? bits_from(first) : ~bits_from(second);
+}
+
+/// Of 16 polygons: corner i stands in rows 3 i to 3 i + 2 of `kStride` floats.
+template <int kCorners, int kStride>
+SURFELAO_MASK_INLINE void load_corners(const float* rows, Vector16* corner)
+{
+    for (int i = 0; i < kCorners; ++i) {
+        corner[i] = {load(rows + (3 * i) * kStride), load(rows + (3 * i + 1) * kStride),
+                     load(rows + (3 * i + 2) * kStride)};
+    }
+}
+
+/// The planes through the receiver and each edge, turned inward. Made of a corner and the edge, not
+/// of pairs of corners, whose product is mere rounding where they are next to each other.
+template <int kCorners>
+struct EdgePlanes {
+    Vector16 normal[kCorners];
+    Float16 volume;  ///< 0: seen edge-on, or without area
+};
+
+template <int kCorners>
+SURFELAO_MASK_INLINE EdgePlanes<kCorners> planes_of(const Vector16* c)
+{
+    EdgePlanes<kCorners> planes;
+    Vector16* const n = planes.normal;
+    for (int i = 0; i < kCorners; ++i)
+        n[i] = cross(c[i], c[(i + 1) % kCorners] - c[i]);
+    planes.volume = dot(n[0], c[2] - c[1]);
+    const Int16 turn = sign_of(planes.volume);
+    for (int i = 0; i < kCorners; ++i)
+        n[i] = {flip(n[i].x, turn), flip(n[i].y, turn), flip(n[i].z, turn)};
+    return planes;
+}
+
+/// Which of `drawn` touch each face. One is missed where all corners lie beyond one of the four
+/// diagonal planes that bound it.
+template <int kCorners>
+SURFELAO_MASK_INLINE void find_faces(const Vector16* c, Bool16 drawn, Bool16* in)
+{
+    const auto beyond = [&](auto difference, Int16& all_negative, Int16& any_negative) {
+        all_negative = any_negative = as_int(difference(c[0]));
+        for (int i = 1; i < kCorners; ++i) {
+            const Int16 d = as_int(difference(c[i]));
+            all_negative = all_negative & d;
+            any_negative = any_negative | d;
+        }
+    };
+    Int16 all_dxy, any_dxy, all_sxy, any_sxy, all_dyz, any_dyz, all_syz, any_syz, all_dzx, any_dzx,
+        all_szx, any_szx;
+    beyond([](Vector16 p) { return p.x - p.y; }, all_dxy, any_dxy);
+    beyond([](Vector16 p) { return p.x + p.y; }, all_sxy, any_sxy);
+    beyond([](Vector16 p) { return p.y - p.z; }, all_dyz, any_dyz);
+    beyond([](Vector16 p) { return p.y + p.z; }, all_syz, any_syz);
+    beyond([](Vector16 p) { return p.z - p.x; }, all_dzx, any_dzx);
+    beyond([](Vector16 p) { return p.z + p.x; }, all_szx, any_szx);
+    in[0] = without(drawn, negative(all_dxy | all_sxy | ~any_dzx | all_szx));
+    in[1] = without(drawn, negative(~any_sxy | ~any_dxy | all_dzx | ~any_szx));
+    in[2] = without(drawn, negative(~any_dxy | all_sxy | all_dyz | all_syz));
+    in[3] = without(drawn, negative(all_dxy | ~any_sxy | ~any_dyz | ~any_syz));
+    in[4] = without(drawn, negative(all_dzx | all_szx | ~any_dyz | all_syz));
+    in[5] = without(drawn, negative(~any_dzx | ~any_szx | all_dyz | ~any_syz));
+}
+
+/// Polygons that cross the distance limit, to be cut to a cone about their plane's normal.
+struct Cuts {
+    unsigned lanes = 0;
+    alignas(64) float plane[4][kLanes];  ///< normal; distance over limit
+};
+
+/// Takes those whose plane lies beyond the limit out of `drawn`.
+template <int kCorners>
+SURFELAO_MASK_INLINE void find_cuts(const Vector16* c, float max_distance, Bool16& drawn,
+                                    Cuts& cuts)
+{
+    const Float16 limit = all(max_distance);
+    Vector16 normal = cross(c[1] - c[0], c[2] - c[0]);
+    const Float16 length2 = max(dot(normal, normal), all(kMaskTiny));
+    const Float16 inverse = inverse_sqrt(length2);
+    Float16 height = dot(normal, c[0]) * inverse;
+    const Int16 behind = sign_of(height);
+    height = flip(height, behind);
+    Float16 farthest2 = dot(c[0], c[0]);
+    for (int i = 1; i < kCorners; ++i)
+        farthest2 = max(farthest2, dot(c[i], c[i]));
+    drawn = drawn & (height < limit);
+    cuts.lanes = bits(farthest2 > limit * limit);
+    store(cuts.plane[0], flip(normal.x * inverse, behind));
+    store(cuts.plane[1], flip(normal.y * inverse, behind));
+    store(cuts.plane[2], flip(normal.z * inverse, behind));
+    store(cuts.plane[3], height * all(1.0f / max_distance));
+}
+
+/// The edges of 16 polygons as each face sees them: from bit ceil(slope v + start - shift) up, or
+/// the bits below. The two faces of an axis see the same slopes.
+template <int kCorners>
+struct EdgeLines {
+    alignas(64) float slope[3][kCorners][kLanes];
+    alignas(64) float start[kMaskFaces][kCorners][kLanes];
+    alignas(64) std::uint32_t below[3][kCorners][kLanes];  ///< ~0 where the bits below are meant
+    std::uint64_t faces[2] = {};  ///< a bit for each face and lane that are touched
+};
+
+template <int kAxis, int kCorners>
+SURFELAO_MASK_INLINE void set_axis(const Vector16* n, const Bool16* in, EdgeLines<kCorners>& lines)
+{
+    constexpr int kU = (kAxis + 1) % 3, kV = (kAxis + 2) % 3;
+    const std::uint64_t both = bits(in[2 * kAxis]) | bits(in[2 * kAxis + 1]) << kLanes;
+    if (both == 0)
+        return;
+    lines.faces[kAxis / 2] |= both << (kAxis % 2 * 2 * kLanes);
+    for (int i = 0; i < kCorners; ++i) {
+        const Float16 normal[3] = {n[i].x, n[i].y, n[i].z};
+        const Int16 sign = sign_of(normal[kU]);
+        const Float16 size = max(flip(normal[kU], sign), all(kMaskTiny));
+        const Float16 scale = flip(reciprocal(size) * all(-kMaskHalfColumns), sign);
+        store(lines.slope[kAxis][i], normal[kV] * scale);
+        store(lines.start[2 * kAxis][i], fma(normal[kAxis], scale, all(kMaskHalfColumns)));
+        store(lines.start[2 * kAxis + 1][i], all(kMaskHalfColumns) - normal[kAxis] * scale);
+        store(lines.below[kAxis][i], select(nonzero(sign), all(~0u), all(0u)));
+    }
+}
+
+/// Sixteen polygons at once up to the edges, then each by itself, 16 rows at a time.
+/// corner: 3 kCorners rows of `kStride` floats, relative to the receiver; target: word offset of
+/// the receiver's mask in `masks`; kSheet: what is set is set among the sheets' bits too.
+template <int kCorners, int kStride, bool kSheet>
+void draw(const MaskRaster& raster, float max_distance, const float* corner,
+          const std::uint32_t* target, unsigned count, std::uint32_t* masks)
+{
+    Vector16 c[kCorners];
+    load_corners<kCorners, kStride>(corner, c);
+    const auto planes = planes_of<kCorners>(c);
+    Bool16 drawn = first_lanes(count) & (nonzero(as_int(planes.volume) & all(0x7fffffffu)));
+    Cuts cuts;
+    if (max_distance < __builtin_inff())
+        find_cuts<kCorners>(c, max_distance, drawn, cuts);
+    Bool16 in[kMaskFaces];
+    find_faces<kCorners>(c, drawn, in);
+    EdgeLines<kCorners> lines;
+    set_axis<0, kCorners>(planes.normal, in, lines);
+    set_axis<1, kCorners>(planes.normal, in, lines);
+    set_axis<2, kCorners>(planes.normal, in, lines);
+
+    const Float16 row_v = load(raster.row_v);
+    const Float16 row_shift = load(raster.row_shift);
+    for (unsigned half = 0; half < 2; ++half) {
+        for (std::uint64_t left = lines.faces[half]; left != 0; left &= left - 1) {
+            const auto place = static_cast<unsigned>(__builtin_ctzll(left));
+            const unsigned lane = place % kLanes;
+            const unsigned face = 4 * half + place / kLanes;
+            const unsigned axis = face / 2;
+            Int16 inside = all(~0u);
+            for (int i = 0; i < kCorners; ++i) {
+                const Float16 at =
+                    fma(all(lines.slope[axis][i][lane]), row_v, all(lines.start[face][i][lane]));
+                inside =
+                    and_xor(inside, bits_from(at - row_shift), all(lines.below[axis][i][lane]));
+            }
+            if (cuts.lanes >> lane & 1u) {
+                const float na = cuts.plane[axis][lane];
+                inside = inside & cone_bits(raster, face % 2 == 0 ? na : -na,
+                                            cuts.plane[(axis + 1) % 3][lane],
+                                            cuts.plane[(axis + 2) % 3][lane], cuts.plane[3][lane]);
+            }
+            std::uint32_t* mask = masks + target[lane] + kMaskFaceWords * face;
+            store(mask, load(mask) | inside);
+            if constexpr (kSheet)
+                store(mask + kMaskWords, load(mask + kMaskWords) | inside);
+        }
+    }
+}
+
+/// The bits above the plane through the receiver with normal n.
+inline void horizon(const MaskRaster& raster, const float* n, std::uint32_t* above)
+{
+    for (int face = 0; face < kMaskFaces; ++face) {
+        const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
+        const float na = face % 2 == 0 ? n[a] : -n[a];
+        const bool turned = n[u] < 0.0f;
+        float size = turned ? -n[u] : n[u];
+        size = size > kMaskTiny ? size : kMaskTiny;
+        const float scale = (turned ? kMaskHalfColumns : -kMaskHalfColumns) / size;
+        const float slope = n[v] * scale, start = kMaskHalfColumns + na * scale;
+        const Int16 from =
+            bits_from(fma(all(slope), load(raster.row_v), all(start) - load(raster.row_shift)));
+        store(above + kMaskFaceWords * face, turned ? ~from : from);
+    }
+}
+
+}  // namespace
+}  // namespace surfelao::SURFELAO_MASK_ISA

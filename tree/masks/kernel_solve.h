@@ -1,0 +1,256 @@
+/// kernel_solve.h: the answers of one group (part of kernel_body.h).
+#pragma once
+
+#include "tree/masks/constants.h"
+#include "tree/masks/kernel.h"
+#include "tree/masks/kernel_cracks.h"
+#include "tree/masks/kernel_sums.h"
+#include "tree/masks/kernel_walk.h"
+
+#include <cstring>
+
+namespace surfelao::SURFELAO_MASK_ISA {
+namespace {
+
+/// The receivers of a group, and where their masks begin.
+struct Receivers16 {
+    Vector16 position, normal;
+    Int16 target;
+};
+
+/// Of what a group shares.
+struct Visible {
+    float openness;  ///< of the sky above the group's axis
+    float share;     ///< covered sky over the sum of what covers it: nodes hide behind each other
+};
+
+/// n.(change + slope (p - center))
+SURFELAO_MASK_INLINE Float16 changes_at(const MaskShared& shared, const Receivers16& receivers)
+{
+    const Vector16 p = receivers.position - broadcast(shared.center);
+    const Vector16 change = broadcast(shared.change) + Vector16{dot(broadcast(shared.slope[0]), p),
+                                                                dot(broadcast(shared.slope[1]), p),
+                                                                dot(broadcast(shared.slope[2]), p)};
+    return dot(change, receivers.normal);
+}
+
+Visible visible_of(const MaskRaster& raster, const MaskShared& shared, const float* axis)
+{
+    const float sum = shared.irradiance[0] * axis[0] + shared.irradiance[1] * axis[1] +
+                      shared.irradiance[2] * axis[2];
+    if (!(sum > 0.0f))
+        return {1.0f, 0.0f};
+    alignas(64) std::uint32_t above[kMaskWords];
+    alignas(64) std::uint32_t open[kMaskWords];
+    horizon(raster, axis, above);
+    open_bits(above, shared.mask, open);
+    First of_open, of_above;
+    first_moments(raster, open, above, of_open, of_above);
+    const float openness = of_open.along(axis) / of_above.along(axis);
+    const float share = (1.0f - openness) / sum;
+    return {openness, share < 1.0f ? share : 1.0f};
+}
+
+/// Draws the listed polygons from `begin` to `end`, no more than kMaskDrawnBetweenChecks, for those
+/// receivers in `active` above whose horizon they reach: where the highest corner, seen as far away
+/// as the centre is, or a little nearer, stands higher than the grazing strip.
+template <int kCorners, bool kSheet>
+SURFELAO_MASK_INLINE void draw_near(const MaskWorld& world, const MaskBuffer<std::uint32_t>& list,
+                                    std::size_t begin, std::size_t end,
+                                    const Receivers16& receivers, Bool16 active,
+                                    Stream<kCorners, kSheet>& stream)
+{
+    if (bits(active) == 0)
+        return;
+    const Float16 zero = all(0.0f);
+    const float graze2 = world.settings.graze * world.settings.graze;
+    const Vector16 position = receivers.position, normal = receivers.normal;
+    const auto fields_of = [&](std::uint32_t listed) {
+        return world.nodes + kLanes * static_cast<std::size_t>(listed & ~kGrown);
+    };
+    // first which, then the drawing: what the one finds cannot be foreseen
+    std::uint32_t found[kMaskDrawnBetweenChecks];
+    std::uint32_t seen[kMaskDrawnBetweenChecks];
+    std::size_t count = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+        const float* const fields = fields_of(list.data[i]);
+        const Node16 node = broadcast_node(fields);
+        // how high the highest corner is
+        const Vector16 center = node.center() - position;
+        const Float16 skew = kSheet ? zero : dot(node.skew(), normal);
+        const Float16 a = dot(node.axis_a(), normal), b = dot(node.axis_b(), normal);
+        const Float16 even = skew + max(a, zero - a);
+        const Float16 odd = (kCorners == 3 ? b : max(b, zero - b)) - skew;
+        const Float16 top = dot(center, normal) + max(even, odd);
+        const Float16 least =
+            fms(all(graze2), dot(center, center), all(graze2 * fields[3] * fields[3]));
+        const Bool16 above = active & (top > zero) & (top * top > least);
+        found[count] = list.data[i];
+        seen[count] = bits(above);
+        count += bits(above) != 0 ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const float* const fields = fields_of(found[i]);
+        const Node16 node = broadcast_node(fields);
+        Bool16 above = lanes_of(seen[i]);
+        std::uint32_t links;
+        std::memcpy(&links, fields + 15, sizeof links);
+        if (!kSheet && world.settings.one_sided && (links & kMaskSolid) != 0)
+            above = without(
+                above, dot(cross(node.axis_a(), node.axis_b()), node.center() - position) < zero);
+        Vector16 corner[kCorners];
+        const float grow = kSheet && (found[i] & kGrown) != 0 ? kMaskHollowGrowth : 1.0f;
+        corners_of<kCorners>(node, pack(position, above), all(grow), corner);
+        stream.add(corner, pack(receivers.target, above), count_of(above));
+    }
+}
+
+/// Draws the lists into the masks of `count` receivers. Those in nearly closed places are finished
+/// before all is drawn.
+void draw_lists(const MaskWorld& world, const MaskScratch& scratch, const Receivers16& receivers,
+                const float (*normals)[3], unsigned count, std::uint32_t* masks)
+{
+    Streams streams(world, masks);
+    alignas(64) std::uint32_t active[kLanes] = {};
+    for (unsigned i = 0; i < count; ++i)
+        active[i] = 1;
+    const auto leave_out_closed = [&] {
+        for (unsigned i = 0; i < count; ++i) {
+            if (active[i] != 0 && is_closed(*world.raster, masks + i * kMaskPairWords, normals[i]))
+                active[i] = 0;
+        }
+    };
+    std::size_t before_check = kMaskDrawnBetweenChecks;
+    const auto draw_list = [&](const MaskBuffer<std::uint32_t>& list, auto& stream) {
+        for (std::size_t begin = 0; begin < list.count;) {
+            const std::size_t left = list.count - begin;
+            const std::size_t end = begin + (left < before_check ? left : before_check);
+            draw_near(world, list, begin, end, receivers, nonzero(load(active)), stream);
+            before_check -= end - begin;
+            begin = end;
+            if (before_check == 0) {
+                if (world.settings.fill)
+                    leave_out_closed();
+                before_check = kMaskDrawnBetweenChecks;
+            }
+        }
+    };
+    draw_list(scratch.rectangles, streams.rectangles);
+    draw_list(scratch.sheets, streams.sheets);
+    draw_list(scratch.triangles, streams.triangles);
+    streams.finish();
+}
+
+/// The masks of up to sixteen receivers.
+struct Masks16 {
+    alignas(64) std::uint32_t drawn[kLanes * kMaskPairWords];
+    alignas(64) std::uint32_t horizons[kLanes * kMaskWords];  ///< the bits above each
+    alignas(64) std::uint32_t target[kLanes];                 ///< where each mask begins in `drawn`
+    float normals[kLanes][3];
+
+    /// All that is shared, and what lies below the horizon as if it were covered.
+    SURFELAO_MASK_INLINE Masks16(const MaskRaster& raster, const MaskShared& shared,
+                                 const MaskReceivers& receivers)
+    {
+        for (unsigned i = 0; i < kLanes; ++i) {
+            target[i] = i * kMaskPairWords;
+            for (int k = 0; k < 3; ++k)
+                normals[i][k] = receivers.normal[k][i];
+        }
+        for (unsigned i = 0; i < receivers.count; ++i) {
+            std::uint32_t* above = horizons + i * kMaskWords;
+            horizon(raster, normals[i], above);
+            std::uint32_t* closed = drawn + target[i];
+            for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
+                store(closed + w, load(shared.mask + w) | ~load(above + w));
+                store(closed + kMaskWords + w, load(shared.mask + kMaskWords + w));
+            }
+        }
+    }
+};
+
+/// Openness of one receiver with normal n, between 0 and 1 to rounding, cracks counted as closed
+/// where much is covered. `open` becomes the bits that count as open.
+SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32_t* mask,
+                                       const std::uint32_t* above, const float* n,
+                                       std::uint32_t* open)
+{
+    const MaskRaster& raster = *world.raster;
+    open_bits(above, mask, open);
+    First of_open, of_above;
+    first_moments(raster, open, above, of_open, of_above);
+    const float weight = of_above.along(n);
+    float openness = of_open.along(n) / weight;
+    const float fill_weight = (1.0f - openness - kMaskFillFrom) / kMaskFillRange;
+    if (!(world.settings.fill && fill_weight > 0.0f && openness > 0.0f))
+        return openness;
+
+    alignas(64) std::uint32_t filled[kMaskWords];
+    for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
+        // what lies below the horizon is no opening
+        const Int16 closed = load(mask + w) | ~load(above + w);
+        store(filled + w, fill(raster, closed, load(mask + kMaskWords + w)));
+        store(open + w, openings(~closed, load(filled + w)));
+    }
+    const float cracks = openness - first_moments(raster, open).along(n) / weight;
+    openness -= (fill_weight < 1.0f ? fill_weight : 1.0f) * kMaskFillShare * cracks;
+
+    const float close_weight = (1.0f - openness - kMaskCloseFrom) / kMaskCloseRange;
+    if (!(world.settings.close > 0.0f && close_weight > 0.0f && openness > 0.0f))
+        return openness;
+    for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
+        store(open + w, ~close(raster, load(filled + w), load(mask + kMaskWords + w)));
+    const float sealed = first_moments(raster, open).along(n) / weight;
+    if (sealed < openness)
+        openness += (close_weight < 1.0f ? close_weight : 1.0f) * world.settings.close *
+                    (sealed - openness);
+    return openness;
+}
+
+void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* in,
+           std::size_t in_count, const MaskShared& from_above, const MaskReceivers& receivers,
+           MaskAnswers& answers, MaskScratch& scratch)
+{
+    const MaskRaster& raster = *world.raster;
+    MaskShared shared = from_above;
+    scratch.sheets.count = 0;
+    scratch.rectangles.count = 0;
+    scratch.triangles.count = 0;
+    start_frontier(scratch, in, in_count);
+    walk<true>(world, group, nullptr, shared, scratch);
+
+    Masks16 masks(raster, shared, receivers);
+    const Receivers16 all_receivers = {
+        {load(receivers.position[0]), load(receivers.position[1]), load(receivers.position[2])},
+        {load(receivers.normal[0]), load(receivers.normal[1]), load(receivers.normal[2])},
+        load(masks.target)};
+    draw_lists(world, scratch, all_receivers, masks.normals, receivers.count, masks.drawn);
+
+    const Visible visible = visible_of(raster, shared, group.axis);
+    alignas(64) float changes[kLanes];
+    store(changes, changes_at(shared, all_receivers));
+    for (unsigned i = 0; i < receivers.count; ++i) {
+        const float* n = masks.normals[i];
+        alignas(64) std::uint32_t open[kMaskWords];
+        float openness = openness_of(world, masks.drawn + masks.target[i],
+                                     masks.horizons + i * kMaskWords, n, open);
+        // near polygons cover what is far as they cover the open sky
+        const float bare = openness < visible.openness ? openness / visible.openness : 1.0f;
+        const float change = bare * visible.share * changes[i];
+        const float size = change < 0.0f ? -change : change;
+        if (size < __builtin_inff())
+            openness -= change / (1.0f + size / kMaskLargestMove);
+        openness = openness < 0.0f ? 0.0f : openness > 1.0f ? 1.0f : openness;
+        answers.occlusion[i] = 1.0f - openness;
+        const Second second = second_moments(raster, open);
+        float m[6];
+        for (int k = 0; k < 6; ++k)
+            m[k] = static_cast<float>(second.at[k]);
+        answers.bent[0][i] = m[0] * n[0] + m[3] * n[1] + m[5] * n[2];
+        answers.bent[1][i] = m[3] * n[0] + m[1] * n[1] + m[4] * n[2];
+        answers.bent[2][i] = m[5] * n[0] + m[4] * n[1] + m[2] * n[2];
+    }
+}
+
+}  // namespace
+}  // namespace surfelao::SURFELAO_MASK_ISA

@@ -1,0 +1,156 @@
+/// kernel_sums.h: what the bits of a mask are worth (part of kernel_body.h).
+///
+/// Set bits are counted by twos (first moments) and fours (second) in a row and multiplied by the
+/// integers of MaskRaster: every kernel gets the same sums.
+#pragma once
+
+#include "tree/masks/raster.h"
+#include "tree/masks/simd.h"
+
+namespace surfelao::SURFELAO_MASK_ISA {
+namespace {
+
+/// Sum of w over bits, cosine weights, in the unit of MaskRaster::first.
+struct First {
+    std::int32_t at[3] = {};
+
+    /// Integral of (n.w) over the bits.
+    SURFELAO_MASK_INLINE float along(const float* n) const
+    {
+        return static_cast<float>(at[0]) * n[0] + static_cast<float>(at[1]) * n[1] +
+               static_cast<float>(at[2]) * n[2];
+    }
+};
+
+/// Sum of w w^T over bits, cosine weights: xx yy zz xy yz zx.
+struct Second {
+    std::int32_t at[6] = {};
+};
+
+/// Set bits among the kPart-th kBits of each byte of a face.
+template <int kBits, int kPart>
+SURFELAO_MASK_INLINE Bytes counts(Int16 face)
+{
+    constexpr std::uint32_t chosen = kBits == 2 ? 0x03030303u : 0x0f0f0f0fu;
+    return nibble_counts(shift_right<kBits * kPart>(face) & all(chosen));
+}
+
+/// Set bits of the two faces of an axis.
+struct FacePair {
+    Bytes both;  ///< the sum
+    Bytes more;  ///< what the front has more than the back, plus all that a face can have
+
+    template <int kBits, int kPart>
+    SURFELAO_MASK_INLINE static FacePair of(Int16 front, Int16 back)
+    {
+        constexpr std::uint32_t full = 0x01010101u * kBits;
+        const Bytes ahead = counts<kBits, kPart>(front), behind = counts<kBits, kPart>(back);
+        return {ahead + behind, ahead + (bytes_of(all(full)) - behind)};
+    }
+};
+
+template <int kAxis, int kPart>
+SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, Int16 front, Int16 back, ByteSum* sum)
+{
+    const auto faces = FacePair::of<2, kPart>(front, back);
+    sum[kAxis].add(faces.more, raster.first[0][kPart]);
+    sum[(kAxis + 1) % 3].add(faces.both, raster.first[1][kPart]);
+    sum[(kAxis + 2) % 3].add(faces.both, raster.first[2][kPart]);
+}
+
+template <int kAxis>
+SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, const std::uint32_t* mask,
+                                    ByteSum* sum)
+{
+    const Int16 front = load(mask + 2 * kAxis * kMaskFaceWords);
+    const Int16 back = load(mask + (2 * kAxis + 1) * kMaskFaceWords);
+    add_first<kAxis, 0>(raster, front, back, sum);
+    add_first<kAxis, 1>(raster, front, back, sum);
+    add_first<kAxis, 2>(raster, front, back, sum);
+    add_first<kAxis, 3>(raster, front, back, sum);
+}
+
+SURFELAO_MASK_INLINE First first_of(const MaskRaster& raster, const std::int32_t* totals)
+{
+    First first;
+    for (int k = 0; k < 3; ++k)
+        first.at[k] = totals[k] - 2 * raster.first_sum[0];
+    return first;
+}
+
+SURFELAO_MASK_INLINE First first_moments(const MaskRaster& raster, const std::uint32_t* mask)
+{
+    ByteSum sum[6] = {};
+    add_first<0>(raster, mask, sum);
+    add_first<1>(raster, mask, sum);
+    add_first<2>(raster, mask, sum);
+    std::int32_t totals[6];
+    total(sum, totals);
+    return first_of(raster, totals);
+}
+
+/// Of two masks.
+SURFELAO_MASK_INLINE void first_moments(const MaskRaster& raster, const std::uint32_t* a,
+                                        const std::uint32_t* b, First& of_a, First& of_b)
+{
+    ByteSum sum[6] = {};
+    add_first<0>(raster, a, sum);
+    add_first<0>(raster, b, sum + 3);
+    add_first<1>(raster, a, sum);
+    add_first<1>(raster, b, sum + 3);
+    add_first<2>(raster, a, sum);
+    add_first<2>(raster, b, sum + 3);
+    std::int32_t totals[6];
+    total(sum, totals);
+    of_a = first_of(raster, totals);
+    of_b = first_of(raster, totals + 3);
+}
+
+/// Products of axes i and i + 1 stand at 3 + i.
+template <int kAxis, int kPart>
+SURFELAO_MASK_INLINE void add_second(const MaskRaster& raster, Int16 front, Int16 back,
+                                     ByteSum* sum)
+{
+    constexpr int u = (kAxis + 1) % 3, v = (kAxis + 2) % 3;
+    const auto faces = FacePair::of<4, kPart>(front, back);
+    sum[kAxis].add(faces.both, raster.second[0][kPart]);
+    sum[3 + kAxis].add(faces.more, raster.second[1][kPart]);
+    sum[3 + v].add(faces.more, raster.second[2][kPart]);
+    sum[u].add(faces.both, raster.second[3][kPart]);
+    sum[3 + u].add(faces.both, raster.second[4][kPart]);
+    sum[v].add(faces.both, raster.second[5][kPart]);
+}
+
+template <int kAxis>
+SURFELAO_MASK_INLINE void add_second(const MaskRaster& raster, const std::uint32_t* mask,
+                                     ByteSum* sum)
+{
+    const Int16 front = load(mask + 2 * kAxis * kMaskFaceWords);
+    const Int16 back = load(mask + (2 * kAxis + 1) * kMaskFaceWords);
+    add_second<kAxis, 0>(raster, front, back, sum);
+    add_second<kAxis, 1>(raster, front, back, sum);
+}
+
+SURFELAO_MASK_INLINE Second second_moments(const MaskRaster& raster, const std::uint32_t* mask)
+{
+    ByteSum sum[6] = {};
+    add_second<0>(raster, mask, sum);
+    add_second<1>(raster, mask, sum);
+    add_second<2>(raster, mask, sum);
+    Second second;
+    total(sum, second.at);
+    for (int k = 0; k < 3; ++k)
+        second.at[3 + k] -= 4 * (raster.second_sum[1] + raster.second_sum[2]);
+    return second;
+}
+
+/// Above the horizon and not covered.
+SURFELAO_MASK_INLINE void open_bits(const std::uint32_t* above, const std::uint32_t* mask,
+                                    std::uint32_t* open)
+{
+    for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
+        store(open + w, load(above + w) & ~load(mask + w));
+}
+
+}  // namespace
+}  // namespace surfelao::SURFELAO_MASK_ISA
