@@ -293,6 +293,8 @@ std::vector<Solution> solve_lists(const Prepared& prepared,
 {
     const Prepared::Impl& impl = prepared.impl();
     check_settings(impl.choice, settings);
+    for (const std::span<const Receiver> receivers : lists)
+        check_receivers(receivers);
     Stopwatch watch;
     std::vector<Solution> solutions;
     if (impl.disks && impl.choice.device == Device::cpu && !lists.empty()) {

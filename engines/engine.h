@@ -120,20 +120,20 @@ struct Solution {
 [[nodiscard]] Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
                              const SolveSettings& settings = {}, const Progress& progress = {});
 
-/// The same for several lists of receivers, each answered as if it were asked alone; what no list
-/// changes is found once (disks on the CPU: what lies beyond the emitters). One solution per list;
-/// the first one's seconds are of all.
-[[nodiscard]] std::vector<Solution> solve_lists(const Prepared& prepared,
-                                                std::span<const std::span<const Receiver>> lists,
-                                                const SolveSettings& settings = {},
-                                                const Progress& progress = {});
-
 /// In diagonals from the centre, along each axis: farther out a float no longer tells the corners
 /// of the scene apart, and squares of distances leave their range.
 inline constexpr float kFarthestReceiver = 1e6f;
 /// A normal's length may be off by so much (what eight bits an axis make of it): an answer is then
 /// off by the same share.
 inline constexpr float kUnitLength = 5e-3f;
+
+/// solve() for several lists of receivers, each answered as if it were asked alone; what no list
+/// changes is found once (disks on the CPU: what lies beyond the emitters). One solution per list;
+/// the first one's seconds are of all.
+[[nodiscard]] std::vector<Solution> solve_lists(const Prepared& prepared,
+                                                std::span<const std::span<const Receiver>> lists,
+                                                const SolveSettings& settings = {},
+                                                const Progress& progress = {});
 
 /// Throws SettingsError where solve() would.
 void check_settings(const EngineChoice& choice, const SolveSettings& settings);

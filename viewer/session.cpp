@@ -1,5 +1,6 @@
 #include "viewer/session.h"
 
+#include "bake/bake.h"
 #include "files/scene_io.h"
 #include "gpu/answers.h"
 #include "reference/reference_cache.h"
@@ -44,6 +45,7 @@ struct Session::Answer {
     std::vector<Occlusion> occlusion;                 ///< of the others
     double seconds = 0.0;
     std::optional<double> build_s;
+    SessionSettings settings;
     bool is_draft = false;
 };
 
@@ -159,7 +161,8 @@ void Session::start_solve()
     std::vector<EngineSettings> steps = {draft_of(whole), whole};
     if (steps[0] == steps[1])
         steps.pop_back();
-    solver_.start([this, number, steps, model = state_.model](const Progress& progress) {
+    solver_.start([this, number, steps, limit = settings_.max_distance,
+                   model = state_.model](const Progress& progress) {
         try {
             EngineChoice choice = steps[0];
             choice.context = choice.device == Device::gpu ? engines_->context() : nullptr;
@@ -169,6 +172,7 @@ void Session::start_solve()
                 answer->number = number;
                 answer->is_draft = i + 1 < steps.size();
                 answer->build_s = engines_->untold_s;
+                answer->settings = {steps[i], limit};
                 engines_->solve(*model, steps[i], progress, *answer);
                 const std::lock_guard lock(mailbox_);
                 answer_ = std::move(answer);
@@ -292,6 +296,7 @@ Session::Changes Session::update()
         if (!state_.on_device)
             occlusion_ = std::move(answer->occlusion);
         state_.is_solved = true;
+        solved_with_ = answer->settings;
         ++state_.answer_count;
         state_.is_draft = answer->is_draft;
         was_cancelled_ = was_cancelled_ && answer->is_draft;
@@ -332,7 +337,11 @@ void Session::save(const std::filesystem::path& path) const
 {
     SURFELAO_CHECK(state_.is_solved);
     check_output(state_.path, path);
-    write_scene(path, *state_.scene, std::span(occlusion()).first(state_.scene->positions.size()));
+    write_scene(path, *state_.scene, std::span(occlusion()).first(state_.scene->positions.size()),
+                {.mark = mark_of({.input = state_.path,
+                                  .output = path,
+                                  .engine = solved_with_.engine,
+                                  .max_distance = solved_with_.max_distance})});
 }
 
 }  // namespace surfelao

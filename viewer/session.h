@@ -127,6 +127,7 @@ private:
     bool was_cancelled_ = false;
     SessionState state_;
     std::vector<bool> has_answer_;              ///< per vertex, by the reference
+    SessionSettings solved_with_;               ///< the answer, a draft's where it is one
     std::vector<Occlusion> ground_;             ///< the last part of the answer
     mutable std::vector<Occlusion> occlusion_;  ///< empty while the device alone has it
 
