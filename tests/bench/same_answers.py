@@ -12,6 +12,7 @@ import argparse
 import json
 import os
 import re
+import resource
 import statistics
 import struct
 import subprocess
@@ -30,12 +31,11 @@ TIMES = ("build_s", "solve_s", "read_s", "us_per_vertex", "seconds", "embree_rat
 
 def run(program, arguments):
     """Processor seconds of a run; its output is thrown away, failures end everything."""
-    before = os.times()
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     done = subprocess.run([program] + arguments, capture_output=True, text=True)
-    after = os.times()
     if done.returncode != 0:
         sys.exit(f"{program} {' '.join(arguments)}: {done.stderr.strip()}")
-    return after.children_user - before.children_user
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
 
 def without_settings(data):
@@ -67,6 +67,10 @@ def without_times(value):
     if isinstance(value, list):
         return [without_times(v) for v in value]
     return value
+
+
+def new_folder(folder):
+    return tempfile.mkdtemp(dir=folder)
 
 
 def contents(path):
@@ -106,7 +110,7 @@ def main():
                      lambda target: without_settings(contents(target)))
             both((".json", "compare"),
                  lambda target: ["compare", model, "--sample", "500", "--reference-rays", "256",
-                                 "--rounds", "1", "-o", folder, "--json", target, "--no-cache"],
+                                 "--rounds", "1", "-o", new_folder(folder), "--json", target, "--no-cache"],
                  lambda target: without_times(json.loads(contents(target))))
             both((".png", "render"),
                  lambda target: ["render", model, "-o", target, "--width", "320", "--height", "200",

@@ -44,10 +44,10 @@ namespace surfelao {
 /// A node stands for its surfels where its opening_size (octree.h: radius, more where it is folded)
 /// is below opening * distance to the nearest receiver of a group. From 1/sqrt(3) = 0.577 on the
 /// error of such a sum has no bound (Salmon, Warren 1994): draft is beyond, for speed. Error and
-/// time on the bunny, relative to good: draft 1.19 and 0.8, best 0.98 and 1.6.
+/// time on the Stanford bunny, relative to good: draft 1.18 and 0.8, best 0.97 and 1.6.
 inline constexpr float kDraftOpening = 0.72f;
-inline constexpr float kGoodOpening = 0.45f;
-inline constexpr float kBestOpening = 0.22f;
+inline constexpr float kGoodOpening = 0.47f;
+inline constexpr float kBestOpening = 0.24f;
 
 struct DiskOptions {
     Definition definition = {};
