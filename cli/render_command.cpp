@@ -119,6 +119,8 @@ int run(const RenderCommandOptions& options)
               << setting_of(engine) << "\n  read " << time(read_s) << ", solve " << time(solve_s)
               << ", reference " << (reference.from_cache ? "from the cache" : time(reference_s))
               << ", draw " << time(draw_s) << ", write " << time(watch.lap()) << '\n';
+    const std::filesystem::path written[] = {options.output};
+    print_written(written, false);
     return kDone;
 }
 

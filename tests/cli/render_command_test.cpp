@@ -40,6 +40,8 @@ TEST_F(RenderCommand, WritesAPictureOfTheSizeAskedFor)
         const Outcome outcome = render(name);
         EXPECT_EQ(outcome.code, 0) << outcome.err;
         EXPECT_EQ(outcome.err, "");
+        EXPECT_TRUE(outcome.out.ends_with("\nwrote " + (folder_ / name).string() + "\n"))
+            << outcome.out;
         const Image image = read_image(folder_ / name);
         EXPECT_EQ(image.width, 64);
         EXPECT_EQ(image.height, 48);
