@@ -14,7 +14,7 @@ namespace {
 
 const std::string kMark = make_mark("bake", "engine=masks quality=1");
 const std::string kOther = make_mark("bake", "engine=disks");
-constexpr const char* kTriangle = "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n";
+constexpr const char* kTriangleObj = "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n";
 
 /// Reads the file and writes it with the mark under the name.
 std::filesystem::path marked(const std::filesystem::path& from, const std::filesystem::path& to,
@@ -41,7 +41,7 @@ TEST(MakerMark, IsReadBackFromEveryFormatAndTakesTheOldOnesPlace)
 {
     const TemporaryFolder folder;
     const test::GltfMaker maker = test::one_triangle();
-    folder.file("in.obj", kTriangle);
+    folder.file("in.obj", kTriangleObj);
     folder.file("in.glb", maker.glb());
     for (const char* name : {"x.ply", "x.obj", "x.off", "x.glb", "x.gltf"}) {
         const bool gltf = std::string(name).find(".gl") != std::string::npos;
@@ -60,7 +60,7 @@ TEST(MakerMark, IsReadBackFromEveryFormatAndTakesTheOldOnesPlace)
 TEST(MakerMark, ChangesNothingElse)
 {
     const TemporaryFolder folder;
-    folder.file("in.obj", "\xEF\xBB\xBF" + std::string(kTriangle));
+    folder.file("in.obj", "\xEF\xBB\xBF" + std::string(kTriangleObj));
     folder.file("in.ply",
                 "ply\r\ncomment a\r\nformat ascii 1.0\r\ncomment surfelao rocks\r\n"
                 "element vertex 3\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\n"
@@ -90,7 +90,7 @@ TEST(MakerMark, BakingTwiceGivesTheFileOfBakingOnce)
     maker.document["scenes"][0]["nodes"] = {0, 1};
     folder.file("in.glb", maker.glb());
     folder.file("in.gltf", test::one_triangle().gltf(test::kTriangleUri));
-    folder.file("in.obj", kTriangle);
+    folder.file("in.obj", kTriangleObj);
     for (const auto& [in, out] : {std::pair("in.glb", "x.glb"),
                                   {"in.glb", "x.gltf"},
                                   {"in.gltf", "x.gltf"},
