@@ -109,7 +109,7 @@ def main():
                      lambda target: ["bake", model, "-o", target] + arguments,
                      lambda target: without_settings(contents(target)))
             both((".json", "compare"),
-                 lambda target: ["compare", model, "--sample", "500", "--reference-rays", "256",
+                 lambda target: ["compare", model, "--engines", "masks", "--sample", "500", "--reference-rays", "256",
                                  "--rounds", "1", "-o", new_folder(folder), "--json", target, "--no-cache"],
                  lambda target: without_times(json.loads(contents(target))))
             both((".png", "render"),
