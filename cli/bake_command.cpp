@@ -39,7 +39,8 @@ struct Job {
 bool is_folder(const BakeOptions& options)
 {
     std::error_code error;
-    return options.inputs.size() > 1 || fs::is_directory(options.output, error);
+    return options.inputs.size() > 1 || options.output.ends_with('/') ||
+           fs::is_directory(options.output, error);
 }
 
 /// Where every result goes. Two results under one name, or one in the place of an input, are
@@ -120,6 +121,9 @@ bool run_job(const BakeSettings& settings, bool ask_before_replacing, const std:
 int run(const BakeOptions& options, const std::vector<Job>& jobs)
 {
     check_report(options.json);
+    std::optional<OutputFolder> folder;
+    if (is_folder(options))
+        folder.emplace(options.output);
     std::optional<ThreadLimit> limit;
     if (options.threads)
         limit.emplace(*options.threads);
@@ -173,7 +177,8 @@ void add_bake_command(CLI::App& app, Work& work)
     command
         ->add_option(
             "-o,--output", options->output,
-            "Mesh file (.ply .obj .off, .gltf/.glb from glTF), or a folder: there every "
+            "Mesh file (.ply .obj .off, .gltf/.glb from glTF), or a folder (made where it is "
+            "missing, for several files and behind a /): there every "
             "result has its input's name, .ply for .stl, and only files that bake made are "
             "replaced")
         ->required()

@@ -169,6 +169,9 @@ int run(const CompareOptions& options)
 {
     check_report(options.json);
     check_report(options.csv);
+    std::optional<OutputFolder> folder;
+    if (options.output)
+        folder.emplace(*options.output);
     for (const fs::path& file : own_names(options)) {
         if (!options.overwrite)
             refuse_foreign(file, "compare");

@@ -68,6 +68,28 @@ void FilePlan::writes_report(const std::optional<std::string>& file, const std::
         writes(*file, what);
 }
 
+OutputFolder::OutputFolder(const fs::path& folder)
+{
+    std::error_code error;
+    std::vector<fs::path> missing;
+    for (fs::path at = folder; !at.empty() && !fs::exists(at, error); at = at.parent_path()) {
+        if (at.has_filename())
+            missing.push_back(at);
+    }
+    for (auto at = missing.rbegin(); at != missing.rend(); ++at) {
+        if (!fs::create_directory(*at, error))
+            throw InputError(at->string() + ": the folder cannot be made");
+        made_.push_back(*at);
+    }
+}
+
+OutputFolder::~OutputFolder()
+{
+    std::error_code error;
+    for (auto at = made_.rbegin(); at != made_.rend(); ++at)
+        fs::remove(*at, error);  // leaves alone what is not empty
+}
+
 void add_overwrite_option(CLI::App& command, bool& overwrite)
 {
     command.add_flag("--overwrite", overwrite,

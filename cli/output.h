@@ -44,6 +44,20 @@ private:
     std::map<std::filesystem::path, std::string> written_;  ///< what, by canonical path
 };
 
+/// The folder that -o names. Made where it is missing, the folders above it too, and taken back at
+/// the end of the run where nothing was written into it.
+class OutputFolder {
+public:
+    /// Throws InputError when it cannot be made.
+    explicit OutputFolder(const std::filesystem::path& folder);
+    ~OutputFolder();
+    OutputFolder(const OutputFolder&) = delete;
+    OutputFolder& operator=(const OutputFolder&) = delete;
+
+private:
+    std::vector<std::filesystem::path> made_;  ///< from the outermost
+};
+
 /// Adds `--overwrite`.
 void add_overwrite_option(CLI::App& command, bool& overwrite);
 

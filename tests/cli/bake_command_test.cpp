@@ -174,6 +174,18 @@ TEST_F(BakeCommand, ResumeSkipsWhatIsFinishedAndRedoesWhatIsOlderOrHasOtherSetti
     EXPECT_NE(contents_of(result), finished);
 }
 
+TEST_F(BakeCommand, MakesTheFolderOfItsResultsAndLeavesNoEmptyOne)
+{
+    const std::string made = folder_ / "new/inner";
+    EXPECT_EQ(run({"bake", folder_ / "a.obj", folder_ / "b.obj", "-o", made}).code, 0);
+    EXPECT_TRUE(fs::exists(folder_ / "new/inner/b.obj"));
+    EXPECT_EQ(run({"bake", folder_ / "a.obj", "-o", folder_ / "one/"}).code, 0);
+    EXPECT_TRUE(fs::exists(folder_ / "one/a.obj"));
+    std::ofstream(folder_ / "bad.obj") << "v 1 2\n";
+    EXPECT_EQ(run({"bake", folder_ / "bad.obj", "-o", folder_ / "none/inner/"}).code, 1);
+    EXPECT_FALSE(fs::exists(folder_ / "none"));
+}
+
 TEST_F(BakeCommand, ReadOnlyTargetIsRefusedAndUntouched)
 {
     if (geteuid() == 0)
