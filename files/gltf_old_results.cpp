@@ -2,6 +2,8 @@
 
 #include "files/maker_mark.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <optional>
 #include <set>

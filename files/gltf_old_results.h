@@ -4,7 +4,7 @@
 
 #include "files/gltf_asset.h"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <vector>
 

@@ -1,9 +1,9 @@
 #include "gpu/receiver_grid.h"
+#include "surfels/stopwatch.h"
 
 #include <glm/vec4.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -114,7 +114,6 @@ void ReceiverGrid::compute_piece(Program& program, std::uint32_t end, const Rect
 void ReceiverGrid::compute(Program& program, std::uint32_t end, ProgressMeter& meter,
                            const std::function<void(const Rect& piece)>& then)
 {
-    using Clock = std::chrono::steady_clock;
     program.set("u_receivers", receivers_);
     program.set("u_slot_count", slot_count());
     program.set("u_blocks_per_row", blocks_per_row_);
@@ -132,17 +131,17 @@ void ReceiverGrid::compute(Program& program, std::uint32_t end, ProgressMeter& m
         const Rect piece = {
             static_cast<int>(column) * kBlockSide, static_cast<int>(first / row) * kBlockSide,
             static_cast<int>(columns) * kBlockSide, static_cast<int>(rows) * kBlockSide};
-        const Clock::time_point start = Clock::now();
+        Stopwatch watch;
         compute_piece(program, end, piece);
         if (then)
             then(piece);
         context_->finish("computing occlusion");
-        const std::chrono::duration<double> seconds = Clock::now() - start;
+        const double seconds = watch.lap();
 
         const std::uint64_t next = std::min(first + rows * columns, block_count);
         meter.add(std::min(next * kBlockGroups, group_count_) - first * kBlockGroups);
         first = next;
-        const double growth = kPieceSeconds / std::max(seconds.count(), 1e-6);
+        const double growth = kPieceSeconds / std::max(seconds, 1e-6);
         wanted_ = std::clamp(wanted_ * std::min(growth, kMaxGrowth), 1.0, 1e9);
     }
 }

@@ -20,6 +20,8 @@ struct Difference {
     /// RMS length of the bent normals' difference times what is open in a: where only little is,
     /// it may be another little.
     double bent_normal = 0.0;
+    /// Length of the bent normals' difference, where more than 5 % is open in a.
+    double largest_bent_normal = 0.0;
 };
 
 /// Both of one length, not empty.
@@ -28,12 +30,14 @@ inline Difference difference(const std::vector<Occlusion>& a, const std::vector<
     Difference result;
     for (std::size_t i = 0; i < a.size(); ++i) {
         const double d = double{b[i].occlusion} - double{a[i].occlusion};
-        const double bent = double{glm::distance(b[i].bent_normal, a[i].bent_normal)} *
-                            (1.0 - double{a[i].occlusion});
+        const double turned = glm::distance(b[i].bent_normal, a[i].bent_normal);
+        const double bent = turned * (1.0 - double{a[i].occlusion});
         result.mean += d;
         result.rms += d * d;
         result.bent_normal += bent * bent;
         result.largest = std::max(result.largest, std::abs(d));
+        if (a[i].occlusion < 0.95f)
+            result.largest_bent_normal = std::max(result.largest_bent_normal, turned);
     }
     const double n = static_cast<double>(a.size());
     result.mean /= n;

@@ -9,13 +9,13 @@
 
 #include "gpu/context.h"
 #include "scenes.h"
+#include "surfels/stopwatch.h"
 #include "viewer/renderer.h"
 
 #include <glm/trigonometric.hpp>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -51,12 +51,12 @@ std::array<double, kSurfaces.size()> frame_rates(const GlContext& context, Rende
     std::array<std::vector<double>, kSurfaces.size()> seconds;
     for (int frame = -1; frame < kFrames; ++frame) {  // the first one makes the shaders
         for (std::size_t i = 0; i < kSurfaces.size(); ++i) {
-            const auto start = std::chrono::steady_clock::now();
+            Stopwatch watch;
             renderer.draw_frame(target, camera, {.surface = kSurfaces[i], .ground = false});
             context.finish("drawing");
-            const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+            const double passed = watch.lap();
             if (frame >= 0)
-                seconds[i].push_back(passed.count());
+                seconds[i].push_back(passed);
         }
     }
     std::array<double, kSurfaces.size()> rates{};

@@ -14,12 +14,12 @@
 #include "gpu/gpu_disks.h"
 #include "gpu/gpu_masks.h"
 #include "scenes.h"
+#include "surfels/stopwatch.h"
 #include "surfels/topology.h"
 #include "tree/disks/disks.h"
 #include "tree/masks/masks.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -57,9 +57,9 @@ struct Timing {
 template <typename Work>
 double seconds_of(const Work& work)
 {
-    const auto start = std::chrono::steady_clock::now();
+    Stopwatch watch;
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return watch.lap();
 }
 
 /// Alternating; the better of two each. Both take receivers and give occlusion. The first run of

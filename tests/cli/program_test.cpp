@@ -125,7 +125,7 @@ TEST_F(ProgramTest, FailuresAreOneSentenceAndExitOneAndLeaveTheOldFile)
         {"bake", in(), "-o", out(), "--json", folder_ / "missing/report.json"},
         {"bake", in(), "-o", out(), "--max-distance", "1e-60"},
         {"compare", folder_ / "none.obj", "-o", folder_.path()},
-        {"compare", in(), "-o", folder_ / "missing"},
+        {"compare", in(), "-o", folder_ / "nan.obj/folder"},
         {"info", folder_ / "none.obj"},
     };
     for (const std::vector<std::string>& arguments : tables) {
