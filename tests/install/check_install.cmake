@@ -36,7 +36,7 @@ must(${CMAKE_COMMAND} -S ${SOURCE}/tests/install -B ${scratch}/build -G Ninja
     -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${scratch}/prefix)
 must(${CMAKE_COMMAND} --build ${scratch}/build)
 must(${scratch}/build/example ${SOURCE}/data/blob.off ${scratch}/blob.ply)
-string(REGEX MATCHALL "mean occlusion 0\\.[0-9]+ in [0-9.]+ s\n" lines "${output}")
+string(REGEX MATCHALL "the first is 0\\.[0-9]+, all in [0-9.]+ s\n" lines "${output}")
 list(LENGTH lines count)
 if(NOT count EQUAL 4)
     message(FATAL_ERROR "the example must print four lines, but printed\n${output}")
