@@ -52,9 +52,6 @@ struct MaskSettings {
 /// limit to limit (limits.h).
 [[nodiscard]] MaskSettings mask_settings(const MaskOptions& options);
 
-/// Leaves hold at most 16 receivers.
-using MaskGroup = ReceiverGroup;
-
 /// A growing array of plain values.
 template <typename T>
 struct MaskBuffer {
@@ -108,11 +105,11 @@ struct MaskKernel {
     /// Draws the nodes of `in` that are far from the whole group into `shared`, drops those below
     /// all horizons or beyond the limit, and hands the others, opened to about the group's size, to
     /// `out`.
-    void (*descend)(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* in,
+    void (*descend)(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
                     std::size_t in_count, MaskBuffer<std::uint32_t>& out, MaskShared& shared,
                     MaskScratch& scratch);
     /// Finishes a leaf group: the rest of `in` is opened for the group and drawn for each receiver.
-    void (*solve)(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* in,
+    void (*solve)(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
                   std::size_t in_count, const MaskShared& from_above,
                   const MaskReceivers& receivers, MaskAnswers& answers, MaskScratch& scratch);
 };

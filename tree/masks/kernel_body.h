@@ -14,7 +14,7 @@
 namespace surfelao::SURFELAO_MASK_ISA {
 namespace {
 
-void descend(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* in,
+void descend(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
              std::size_t in_count, MaskBuffer<std::uint32_t>& out, MaskShared& shared,
              MaskScratch& scratch)
 {

@@ -207,7 +207,7 @@ SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32
     return openness;
 }
 
-void solve(const MaskWorld& world, const MaskGroup& group, const std::uint32_t* in,
+void solve(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
            std::size_t in_count, const MaskShared& from_above, const MaskReceivers& receivers,
            MaskAnswers& answers, MaskScratch& scratch)
 {

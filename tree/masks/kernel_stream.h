@@ -25,7 +25,7 @@ SURFELAO_MASK_INLINE float sum_of(Float16 a)
 /// r moves by -p: df/dp = (4 r r^T (A.r) / r^2 - (A.r) I - r A^T) / (pi r^4).
 class Slope {
 public:
-    Slope(const MaskGroup& group, float max_distance)
+    Slope(const ReceiverGroup& group, float max_distance)
         : axis_(broadcast(group.axis)), max_distance_(max_distance)
     {
     }

@@ -91,7 +91,7 @@ struct Group16 {
     Vector16 center, axis;
     Float16 radius, cone_cos, cone_sin, rise;
 
-    SURFELAO_MASK_INLINE explicit Group16(const MaskGroup& group)
+    SURFELAO_MASK_INLINE explicit Group16(const ReceiverGroup& group)
         : center(broadcast(group.center)),
           axis(broadcast(group.axis)),
           radius(all(group.radius)),
@@ -185,7 +185,7 @@ SURFELAO_MASK_INLINE void open(const MaskWorld& world, const Node16& node, Bool1
 /// Through scratch.frontier, which grows meanwhile, to its end: far nodes are drawn into the
 /// group's mask; a leaf group lists the rest as polygons, an inner group hands it down.
 template <bool kLeaf>
-void walk(const MaskWorld& world, const MaskGroup& of, MaskBuffer<std::uint32_t>* out,
+void walk(const MaskWorld& world, const ReceiverGroup& of, MaskBuffer<std::uint32_t>* out,
           MaskShared& shared_part, MaskScratch& scratch)
 {
     const MaskSettings& settings = world.settings;
