@@ -20,6 +20,32 @@ bool in_reach(glm::dvec3 p)
     return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
 }
 
+void check_normals(const Scene& scene)
+{
+    const CornerNormals& normals = scene.normals;
+    if (normals.empty() && normals.corners.empty())
+        return;
+    if (normals.corners.empty()) {
+        if (normals.values.size() != scene.positions.size())
+            refuse(scene, "there are " + std::to_string(normals.values.size()) + " normals for " +
+                              std::to_string(scene.positions.size()) + " vertices");
+        return;
+    }
+    if (normals.corners.size() != scene.triangles.size())
+        refuse(scene, "there are normals of " + std::to_string(normals.corners.size()) +
+                          " triangles for " + std::to_string(scene.triangles.size()));
+    const auto within = [&](std::uint32_t index) {
+        return index < normals.values.size() || index == CornerNormals::kNone;
+    };
+    const auto wrong = std::ranges::find_if_not(normals.corners, [&](glm::uvec3 corners) {
+        return within(corners.x) && within(corners.y) && within(corners.z);
+    });
+    if (wrong != normals.corners.end())
+        refuse(scene, "triangle " + std::to_string(wrong - normals.corners.begin()) +
+                          " uses a normal that there is not: there are " +
+                          std::to_string(normals.values.size()));
+}
+
 }  // namespace
 
 Scene make_scene(std::span<const glm::dvec3> positions, std::span<const glm::uvec3> triangles)
@@ -56,6 +82,7 @@ void check_scene(const Scene& scene)
                           " uses vertex " +
                           std::to_string(std::max({wrong->x, wrong->y, wrong->z})) +
                           ", but there are " + std::to_string(count) + " vertices");
+    check_normals(scene);
 }
 
 }  // namespace surfelao

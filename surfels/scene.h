@@ -5,7 +5,7 @@
 ///
 /// Invariants (read_scene and make_scene guarantee them): every coordinate is finite, every index
 /// is in range, the parts cover all vertices and triangles in order and without overlap, and there
-/// is at least one triangle.
+/// is at least one triangle. Of the normals only the indices are in range: values may be anything.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -30,6 +30,18 @@ struct Part {
     std::int32_t primitive = -1;
 };
 
+/// The normals that a file gives, one per corner of a triangle: many corners may share one.
+struct CornerNormals {
+    std::vector<glm::vec3> values;  ///< world space, of any length; zero = the file gives none
+    /// Per triangle, into values; kNone where a corner has none. Empty: the triangles themselves
+    /// are indices into values (one normal per vertex).
+    std::vector<glm::uvec3> corners;
+
+    static constexpr std::uint32_t kNone = 0xffffffff;
+
+    [[nodiscard]] bool empty() const { return values.empty(); }
+};
+
 /// The file as its writer needs it to hand it back untouched; opaque to everyone else.
 class SourceAsset {
 public:
@@ -41,6 +53,8 @@ struct Scene {
     std::vector<glm::dvec3> positions;  ///< world space, in the file's own order and number
     std::vector<glm::uvec3> triangles;  ///< into positions; polygons are already cut up
     std::vector<Part> parts;
+    CornerNormals normals;           ///< empty where the file has none
+    std::vector<std::string> notes;  ///< what the file holds and nobody honours: a sentence each
     std::shared_ptr<const SourceAsset> asset;  ///< null for scenes made in code
 };
 
