@@ -36,6 +36,19 @@ void check_positions(std::string_view file_name, const std::vector<glm::dvec3>& 
     }
 }
 
+/// Appends the triangles of a polygon with these corners; `cut`: the places of those of more than
+/// one triangle.
+void append_triangles(std::span<const std::uint32_t> corners, const std::vector<glm::uvec3>& cut,
+                      std::vector<glm::uvec3>& triangles)
+{
+    if (corners.size() == 3) {
+        triangles.emplace_back(corners[0], corners[1], corners[2]);
+        return;
+    }
+    for (const glm::uvec3& place : cut)
+        triangles.emplace_back(corners[place.x], corners[place.y], corners[place.z]);
+}
+
 }  // namespace
 
 void close_polygon(Polygons& polygons, std::uint32_t size)
@@ -48,18 +61,24 @@ void close_polygon(Polygons& polygons, std::uint32_t size)
 }
 
 Scene make_mesh_scene(std::string_view file_name, std::vector<glm::dvec3> positions,
-                      Polygons polygons, std::shared_ptr<MeshSource> source)
+                      Polygons polygons, std::shared_ptr<MeshSource> source, PolygonNormals normals)
 {
     const std::size_t polygon_count = polygons.count();
     if (polygon_count == 0)
         refuse(file_name, "has no faces");
     const std::size_t triangle_count = polygons.corners.size() - 2 * polygon_count;
-    if (positions.size() > kMost || triangle_count > kMost)
-        refuse(file_name, "has more than " + std::to_string(kMost) + " vertices or triangles");
+    if (std::max({positions.size(), normals.values.size(), triangle_count}) > kMost)
+        refuse(file_name,
+               "has more than " + std::to_string(kMost) + " vertices, normals or triangles");
     check_positions(file_name, positions);
+    if (normals.values.size() == positions.size() && normals.corners == polygons.corners)
+        normals.corners = {};
 
     Scene scene;
     scene.triangles.reserve(triangle_count);
+    if (!normals.corners.empty())
+        scene.normals.corners.reserve(triangle_count);
+    std::vector<glm::uvec3> cut;
     std::size_t first = 0;
     for (std::size_t face = 0; face < polygon_count; ++face) {
         const std::size_t size = polygons.sizes.empty() ? 3 : polygons.sizes[face];
@@ -70,9 +89,16 @@ Scene make_mesh_scene(std::string_view file_name, std::vector<glm::dvec3> positi
                                       std::to_string(corner) + ", but there are " +
                                       std::to_string(positions.size()) + " vertices");
         }
-        triangulate(positions, corners, scene.triangles);
+        if (size > 3) {
+            cut.clear();
+            triangulate(positions, corners, cut);
+        }
+        append_triangles(corners, cut, scene.triangles);
+        if (!normals.corners.empty())
+            append_triangles({&normals.corners[first], size}, cut, scene.normals.corners);
         first += size;
     }
+    scene.normals.values = std::move(normals.values);
     scene.positions = std::move(positions);
     Part part;
     part.vertex_count = static_cast<std::uint32_t>(scene.positions.size());

@@ -25,6 +25,14 @@ struct Polygons {
     }
 };
 
+/// The normals of polygons as the file gives them; no values: none.
+struct PolygonNormals {
+    std::vector<glm::vec3> values;
+    /// One for each of Polygons::corners, into values or CornerNormals::kNone. Empty: the values
+    /// are those of the vertices.
+    std::vector<std::uint32_t> corners;
+};
+
 /// A polygon of `size` corners has just been appended to polygons.corners.
 void close_polygon(Polygons& polygons, std::uint32_t size);
 
@@ -39,11 +47,13 @@ public:
 inline constexpr double kLargestCoordinate = 1e100;
 
 /// Makes the scene of a file whose vertices and polygons are known; leaves polygons with more than
-/// three corners in `source`. Throws InputError when a corner is out of range, a coordinate beyond
-/// kLargestCoordinate, there is no polygon, or there are more vertices or triangles than 32 bits
-/// count.
+/// three corners in `source`. Normals that are numbered as the vertices are become those of the
+/// vertices. Throws InputError when a vertex is out of range, a coordinate beyond
+/// kLargestCoordinate, there is no polygon, or there are more vertices, normals or triangles than
+/// 32 bits count; the numbers of normals must be in range.
 [[nodiscard]] Scene make_mesh_scene(std::string_view file_name, std::vector<glm::dvec3> positions,
-                                    Polygons polygons, std::shared_ptr<MeshSource> source);
+                                    Polygons polygons, std::shared_ptr<MeshSource> source,
+                                    PolygonNormals normals = {});
 
 /// Calls visit(corners) with a span of the vertex indices of each face, in the file's order: the
 /// source's polygons where it has them, else the scene's triangles.

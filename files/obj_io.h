@@ -1,11 +1,12 @@
 /// obj_io.h: Wavefront OBJ.
 ///
 /// Read: `v x y z`, also with w (a weight of rational curves: no part of a position) and with a
-/// colour; `f` and its old name `fo` in the forms v, v/vt, v//vn, v/vt/vn, counted from 1 or
-/// backwards from the last vertex so far; comments, continued lines, any line ends. A face may use
-/// vertices that come later. Texture and normal indices must be numbers and are not looked up;
-/// points, lines, curves, groups, materials and unknown statements are no surface and are passed
-/// over (a material file need not be there).
+/// colour; `vn x y z` (any numbers, also nan; what else stands on its line is passed over); `f` and
+/// its old name `fo` in the forms v, v/vt, v//vn, v/vt/vn, counted from 1 or backwards from the
+/// last vertex or normal so far; comments, continued lines, any line ends. A face may use vertices
+/// and normals that come later, and have normals at some corners only. Texture indices must be
+/// numbers and are not looked up; points, lines, curves, groups, materials and unknown statements
+/// are no surface and are passed over (a material file need not be there).
 #pragma once
 
 #include "surfels/occlusion.h"
@@ -18,7 +19,7 @@
 namespace surfelao {
 
 /// file_name is what faults are reported of; contents is the file. Vertices are those of the `v`
-/// lines, in order. Faults name the line.
+/// lines, in order; normals those of the `vn` lines, if a face uses any. Faults name the line.
 [[nodiscard]] Scene read_obj(const std::string& file_name, std::string contents);
 
 /// The scene as OBJ with the visibility as the grey colour of each vertex (`v x y z grey grey

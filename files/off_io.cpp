@@ -11,9 +11,10 @@ namespace {
 /// x y z, normal, colour, texture coordinates.
 constexpr int kMostVertexNumbers = 3 + 3 + 4 + 2;
 
-struct Counts {
-    std::uint64_t vertices = 0;
+struct Header {
+    std::uint64_t vertices = 0;  ///< how many
     std::uint64_t faces = 0;
+    bool has_normals = false;  ///< behind the coordinates, where a vertex has so many numbers
 };
 
 /// The cursor stands on a line with a word left, or moves to the next.
@@ -33,20 +34,21 @@ std::uint64_t read_count(TextCursor& cursor, const std::string& what)
 }
 
 /// Refuses counts for which the file is too short before anything of that size is reserved.
-void check_room(const TextCursor& cursor, const Counts& counts)
+void check_room(const TextCursor& cursor, const Header& header)
 {
     const std::size_t most_vertices =
         cursor.remaining() / 6 + 1;                             // "0 0 0" and the end of the line
     const std::size_t most_faces = cursor.remaining() / 4 + 1;  // "1 0"
-    if (counts.vertices > most_vertices || counts.faces > most_faces) {
-        cursor.fail(std::to_string(counts.vertices) + " vertices and " +
-                    std::to_string(counts.faces) +
+    if (header.vertices > most_vertices || header.faces > most_faces) {
+        cursor.fail(std::to_string(header.vertices) + " vertices and " +
+                    std::to_string(header.faces) +
                     " faces are more than the rest of the file can hold");
     }
 }
 
-Counts read_header(const std::string& file_name, TextCursor& cursor)
+Header read_header(const std::string& file_name, TextCursor& cursor)
 {
+    Header header;
     if (!cursor.next_line())
         throw InputError(file_name + ": is empty");
     TextCursor ahead = cursor;
@@ -57,8 +59,10 @@ Counts read_header(const std::string& file_name, TextCursor& cursor)
             cursor.fail("begins with " + quoted(keyword) + ", but must begin with OFF");
         prefix.remove_suffix(3);
         for (const std::string_view known : {"ST", "C", "N"}) {
-            if (prefix.starts_with(known))
-                prefix.remove_prefix(known.size());
+            if (!prefix.starts_with(known))
+                continue;
+            prefix.remove_prefix(known.size());
+            header.has_normals = known == "N";
         }
         if (!prefix.empty())
             cursor.fail("the variant " + quoted(keyword) + " is not known");
@@ -67,9 +71,8 @@ Counts read_header(const std::string& file_name, TextCursor& cursor)
         if (!ahead.at_line_end() && ahead.word() == "BINARY")
             cursor.fail("binary OFF files are not read");
     }
-    Counts counts;
-    counts.vertices = read_count(cursor, "vertices");
-    counts.faces = read_count(cursor, "faces");
+    header.vertices = read_count(cursor, "vertices");
+    header.faces = read_count(cursor, "faces");
     // the edges, which may be missing: a line with a single number is no vertex
     ahead = cursor;
     const bool same_line = !cursor.at_line_end();
@@ -79,17 +82,17 @@ Counts read_header(const std::string& file_name, TextCursor& cursor)
     }
     if (!cursor.at_line_end())
         cursor.fail(quoted(cursor.word()) + " stands behind the counts");
-    check_room(cursor, counts);
-    return counts;
+    check_room(cursor, header);
+    return header;
 }
 
-glm::dvec3 read_vertex(TextCursor& cursor, std::uint64_t vertex, std::uint64_t count)
+/// Its normal goes into `normals`, which are as many as the vertices as soon as one has any.
+glm::dvec3 read_vertex(TextCursor& cursor, std::uint64_t vertex, const Header& header,
+                       std::vector<glm::vec3>& normals)
 {
-    const auto missing = [&] {
-        return "vertex " + std::to_string(vertex) + " of " + std::to_string(count) + " is missing";
-    };
     if (!cursor.next_line())
-        cursor.fail("the file ends, but " + missing());
+        cursor.fail("the file ends, but vertex " + std::to_string(vertex) + " of " +
+                    std::to_string(header.vertices) + " is missing");
     glm::dvec3 position;
     for (int axis = 0; axis < 3; ++axis) {
         if (cursor.at_line_end())
@@ -98,6 +101,15 @@ glm::dvec3 read_vertex(TextCursor& cursor, std::uint64_t vertex, std::uint64_t c
         position[axis] = cursor.number({});
     }
     int numbers = 3;
+    glm::vec3 normal(0.0f);
+    if (header.has_normals) {
+        for (; numbers < 6 && !cursor.at_line_end(); ++numbers)
+            normal[numbers - 3] = static_cast<float>(cursor.any_number({}));
+        if (numbers == 6) {
+            normals.resize(header.vertices, glm::vec3(0.0f));
+            normals[vertex] = normal;
+        }
+    }
     for (; !cursor.at_line_end(); ++numbers)
         cursor.number({});
     if (numbers > kMostVertexNumbers)
@@ -107,11 +119,11 @@ glm::dvec3 read_vertex(TextCursor& cursor, std::uint64_t vertex, std::uint64_t c
     return position;
 }
 
-void read_face(TextCursor& cursor, std::uint64_t face, const Counts& counts, Polygons& polygons)
+void read_face(TextCursor& cursor, std::uint64_t face, const Header& header, Polygons& polygons)
 {
     const auto name = [&] { return "face " + std::to_string(face); };
     if (!cursor.next_line())
-        cursor.fail("the file ends, but " + name() + " of " + std::to_string(counts.faces) +
+        cursor.fail("the file ends, but " + name() + " of " + std::to_string(header.faces) +
                     " is missing");
     const std::int64_t size = cursor.integer({});
     if (size < 1)
@@ -121,9 +133,9 @@ void read_face(TextCursor& cursor, std::uint64_t face, const Counts& counts, Pol
             cursor.fail(name() + " has " + std::to_string(i) + " corners, but says " +
                         std::to_string(size));
         const std::int64_t index = cursor.integer({});
-        if (index < 0 || static_cast<std::uint64_t>(index) >= counts.vertices)
+        if (index < 0 || static_cast<std::uint64_t>(index) >= header.vertices)
             cursor.fail(name() + " uses vertex " + std::to_string(index) + ", but there are " +
-                        std::to_string(counts.vertices) + " vertices");
+                        std::to_string(header.vertices) + " vertices");
         if (size > 2)
             polygons.corners.push_back(static_cast<std::uint32_t>(index));
     }
@@ -136,16 +148,17 @@ void read_face(TextCursor& cursor, std::uint64_t face, const Counts& counts, Pol
 Scene read_off(const std::string& file_name, std::string contents)
 {
     TextCursor cursor(file_name, contents, {.comment = '#'});
-    const Counts counts = read_header(file_name, cursor);
+    const Header header = read_header(file_name, cursor);
     std::vector<glm::dvec3> positions;
-    positions.reserve(counts.vertices);
-    for (std::uint64_t v = 0; v < counts.vertices; ++v)
-        positions.push_back(read_vertex(cursor, v, counts.vertices));
+    positions.reserve(header.vertices);
+    PolygonNormals normals;
+    for (std::uint64_t v = 0; v < header.vertices; ++v)
+        positions.push_back(read_vertex(cursor, v, header, normals.values));
     Polygons polygons;
-    for (std::uint64_t face = 0; face < counts.faces; ++face)
-        read_face(cursor, face, counts, polygons);
+    for (std::uint64_t face = 0; face < header.faces; ++face)
+        read_face(cursor, face, header, polygons);
     return make_mesh_scene(file_name, std::move(positions), std::move(polygons),
-                           std::make_shared<MeshSource>());
+                           std::make_shared<MeshSource>(), std::move(normals));
 }
 
 std::string off_contents(const Scene& scene, std::span<const Occlusion> occlusion,

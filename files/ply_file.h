@@ -110,6 +110,12 @@ public:
         demand_word();
         return cursor_.number({});
     }
+    /// May be infinite or nan.
+    double any_number(Type)
+    {
+        demand_word();
+        return cursor_.any_number({});
+    }
     std::int64_t integer(Type)
     {
         demand_word();
@@ -166,19 +172,21 @@ public:
         row_ = row;
     }
     void end_row() {}
-    double number(Type type)
+    /// May be infinite or nan.
+    double any_number(Type type)
     {
-        double value = 0.0;
         switch (type) {
             case Type::float32:
-                value = std::bit_cast<float>(take<std::uint32_t>());
-                break;
+                return std::bit_cast<float>(take<std::uint32_t>());
             case Type::float64:
-                value = std::bit_cast<double>(take<std::uint64_t>());
-                break;
+                return std::bit_cast<double>(take<std::uint64_t>());
             default:
-                value = static_cast<double>(integer(type));
+                return static_cast<double>(integer(type));
         }
+    }
+    double number(Type type)
+    {
+        const double value = any_number(type);
         if (!std::isfinite(value))
             fail("has the coordinate " + std::string(std::isnan(value) ? "nan" : "inf") +
                  ", which is not finite");

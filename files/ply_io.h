@@ -1,6 +1,7 @@
 /// ply_io.h: the Stanford polygon format, ascii and binary of both byte orders.
 ///
-/// Read: element `vertex` with scalar properties x, y, z of any type; element `face` with the list
+/// Read: element `vertex` with scalar properties x, y, z of any type, and nx, ny, nz if all three
+/// are there (the normals of the vertices, any numbers); element `face` with the list
 /// `vertex_indices` or `vertex_index`; element `tristrips` (a strip ends at -1, triangles that use
 /// a vertex twice only turn the strip and are left out). Other elements and properties are passed
 /// over. In ascii files every row stands on a line of its own. Bytes after the last element are

@@ -28,6 +28,15 @@ std::size_t index_list(const std::string& file_name, const Element& element)
                      " has no list \"vertex_indices\"");
 }
 
+/// Which property of the element is the scalar of this name; none: past the last.
+std::size_t scalar(const Element& element, std::string_view name)
+{
+    const auto found = std::ranges::find(element.properties, name, &Property::name);
+    if (found == element.properties.end() || found->count_type)
+        return element.properties.size();
+    return static_cast<std::size_t>(found - element.properties.begin());
+}
+
 template <class Data>
 class Reader {
 public:
@@ -56,9 +65,16 @@ public:
     }
 
     std::vector<glm::dvec3> positions;
+    PolygonNormals normals;  ///< the vertices' own
     Polygons polygons;
 
 private:
+    /// What a property of a vertex is, three of each kind that is used.
+    struct Role {
+        enum { none, position, normal } kind = none;
+        int axis = 0;
+    };
+
     /// Refuses a count for which the file is too short before anything of that size is reserved.
     void check_size(const Element& element) const
     {
@@ -71,28 +87,47 @@ private:
         }
     }
 
-    void read_vertices(const Element& element)
+    /// The roles of the vertex' properties.
+    std::vector<Role> roles_of(const Element& element) const
     {
-        // what each property is: a coordinate, or 3 = passed over
-        std::vector<int> axis_of(element.properties.size(), 3);
+        const std::size_t count = element.properties.size();
+        std::vector<Role> roles(count);
         constexpr std::string_view kAxes[] = {"x", "y", "z"};
         for (int axis = 0; axis < 3; ++axis) {
-            const auto found = std::ranges::find(element.properties, kAxes[axis], &Property::name);
-            if (found == element.properties.end() || found->count_type) {
+            const std::size_t property = scalar(element, kAxes[axis]);
+            if (property == count) {
                 throw InputError(file_name_ + ": element \"vertex\" has no scalar property " +
                                  quoted(kAxes[axis]));
             }
-            axis_of[static_cast<std::size_t>(found - element.properties.begin())] = axis;
+            roles[property] = {Role::position, axis};
         }
+        const std::size_t normal[] = {scalar(element, "nx"), scalar(element, "ny"),
+                                      scalar(element, "nz")};
+        if (std::ranges::find(normal, count) == std::end(normal)) {
+            for (int axis = 0; axis < 3; ++axis)
+                roles[normal[axis]] = {Role::normal, axis};
+        }
+        return roles;
+    }
+
+    void read_vertices(const Element& element)
+    {
+        const std::vector<Role> roles = roles_of(element);
         source_.vertices_begin = data_.offset();
         positions.resize(element.count);
+        if (std::ranges::find(roles, Role::normal, &Role::kind) != roles.end())
+            normals.values.resize(element.count);
         for (std::uint64_t row = 0; row < element.count; ++row) {
             data_.begin_row(element, row);
-            for (std::size_t p = 0; p < axis_of.size(); ++p) {
-                if (axis_of[p] < 3)
-                    positions[row][axis_of[p]] = data_.number(element.properties[p].type);
+            for (std::size_t p = 0; p < roles.size(); ++p) {
+                const Property& property = element.properties[p];
+                const auto [kind, axis] = roles[p];
+                if (kind == Role::position)
+                    positions[row][axis] = data_.number(property.type);
+                else if (kind == Role::normal)
+                    normals.values[row][axis] = static_cast<float>(data_.any_number(property.type));
                 else
-                    skip_property(data_, element.properties[p]);
+                    skip_property(data_, property);
             }
             data_.end_row();
         }
@@ -180,7 +215,7 @@ Scene read_with(const std::string& file_name, std::shared_ptr<PlySource> source)
     Reader<Data> reader(file_name, *source);
     reader.run();
     return make_mesh_scene(file_name, std::move(reader.positions), std::move(reader.polygons),
-                           std::move(source));
+                           std::move(source), std::move(reader.normals));
 }
 
 }  // namespace

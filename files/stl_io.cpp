@@ -61,6 +61,14 @@ private:
     std::vector<std::uint32_t> slots_;  ///< a power of two of them
 };
 
+Scene make_stl_scene(const std::string& file_name, Corners corners, Polygons polygons)
+{
+    Scene scene = make_mesh_scene(file_name, std::move(corners.positions), std::move(polygons),
+                                  std::make_shared<MeshSource>());
+    scene.free_vertices = true;
+    return scene;
+}
+
 std::uint32_t read_u32(const std::string& contents, std::size_t offset)
 {
     const auto byte = [&](std::size_t i) {
@@ -122,8 +130,7 @@ Scene read_binary(const std::string& file_name, const std::string& contents)
             polygons.corners.push_back(corners.index_of(position));
         }
     }
-    return make_mesh_scene(file_name, std::move(corners.positions), std::move(polygons),
-                           std::make_shared<MeshSource>());
+    return make_stl_scene(file_name, std::move(corners), std::move(polygons));
 }
 
 std::string lower(std::string_view word)
@@ -182,8 +189,7 @@ Scene read_ascii(const std::string& file_name, const std::string& contents)
     }
     if (in_solid)
         cursor.fail("the file ends, but \"endsolid\" is missing");
-    return make_mesh_scene(file_name, std::move(corners.positions), std::move(polygons),
-                           std::make_shared<MeshSource>());
+    return make_stl_scene(file_name, std::move(corners), std::move(polygons));
 }
 
 }  // namespace

@@ -13,8 +13,8 @@
 namespace surfelao {
 
 /// file_name is what faults are reported of. Corners at exactly the same position become one
-/// vertex, numbered in the order of first use. Faults name the line (ascii) or the facet, counted
-/// from 0.
+/// vertex, numbered in the order of first use; the scene tells that they are free_vertices. Faults
+/// name the line (ascii) or the facet, counted from 0.
 [[nodiscard]] Scene read_stl(const std::string& file_name, const std::string& contents);
 
 }  // namespace surfelao

@@ -5,11 +5,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace surfelao {
 namespace {
 
 constexpr std::size_t kLongestQuote = 40;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool is_blank(char c)
 {
@@ -119,7 +121,8 @@ std::string_view TextCursor::word()
     return {first, static_cast<std::size_t>(at_ - first)};
 }
 
-double TextCursor::number(std::string_view what)
+template <bool kFinite>
+double TextCursor::parse(std::string_view what)
 {
     if (at_line_end())
         fail(std::string(what) + " is missing");
@@ -130,14 +133,26 @@ double TextCursor::number(std::string_view what)
         fail(quoted(word()) + " is not a number");
     if (result.ec == std::errc::result_out_of_range) {
         const std::string_view all = word();
-        if (!is_underflow(all))
+        if (is_underflow(all))
+            return 0.0;
+        if (kFinite)
             fail(quoted(all) + " is too large for a number");
-        return 0.0;
+        return *first == '-' ? -kInfinity : kInfinity;
     }
-    if (!std::isfinite(value))
+    if (kFinite && !std::isfinite(value))
         fail(quoted(word()) + " is not a finite number");
     at_ = result.ptr;
     return value;
+}
+
+double TextCursor::number(std::string_view what)
+{
+    return parse<true>(what);
+}
+
+double TextCursor::any_number(std::string_view what)
+{
+    return parse<false>(what);
 }
 
 std::int64_t TextCursor::integer_of(std::string_view word) const

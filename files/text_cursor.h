@@ -43,6 +43,9 @@ public:
     /// The next word as a finite number. `what` names it in the sentence when it is missing.
     double number(std::string_view what);
 
+    /// The same for a number that may be too large, infinite or nan.
+    double any_number(std::string_view what);
+
     /// The next word as a whole number.
     std::int64_t integer(std::string_view what);
 
@@ -61,6 +64,8 @@ public:
     [[noreturn]] void fail(const std::string& fault) const;
 
 private:
+    template <bool kFinite>
+    double parse(std::string_view what);
     /// Steps over the line's end; a no-op at the end of the text.
     void skip_newline();
     [[nodiscard]] bool ends_word(const char* at) const;

@@ -474,7 +474,7 @@ void triangulate(std::span<const glm::dvec3> positions, std::span<const std::uin
 {
     SURFELAO_DCHECK(corners.size() >= 3);
     const auto emit = [&](std::size_t a, std::size_t b, std::size_t c) {
-        triangles.emplace_back(corners[a], corners[b], corners[c]);
+        triangles.emplace_back(a, b, c);
     };
     if (corners.size() == 3)
         return emit(0, 1, 2);

@@ -15,7 +15,8 @@
 namespace surfelao {
 
 /// Appends exactly n - 2 triangles over the n >= 3 corners (indices into positions, which must be
-/// in range), wound like the polygon.
+/// in range), wound like the polygon. Their numbers are places in `corners`: a corner may bring
+/// more than its vertex.
 ///
 /// Convex polygons become the fan of their first corner. Others are cut by their ears in the plane
 /// of the Newell normal (projected along its largest axis, so that coordinates are not rounded

@@ -54,6 +54,7 @@ struct Scene {
     std::vector<glm::uvec3> triangles;  ///< into positions; polygons are already cut up
     std::vector<Part> parts;
     CornerNormals normals;           ///< empty where the file has none
+    bool free_vertices = false;      ///< the file has none of its own (STL): they may be split
     std::vector<std::string> notes;  ///< what the file holds and nobody honours: a sentence each
     std::shared_ptr<const SourceAsset> asset;  ///< null for scenes made in code
 };

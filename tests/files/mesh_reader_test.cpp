@@ -44,9 +44,9 @@ TEST(ReadObj, KeepsVerticesThatNobodyUsesAndThoseThatAreEqual)
 TEST(ReadObj, TakesAllFormsOfCorners)
 {
     for (const char* face : {"f 1 2 3", "f 1/1 2/2 3/3", "f 1//1 2//2 3//3", "f 1/1/1 2/2/2 3/3/3",
-                             "f 1/ 2/ 3/", "f -3 -2 -1", "f -3/-1/-1 2 3//7", "fo 1 2 3",
+                             "f 1/ 2/ 3/", "f -3 -2 -1", "f -3/-1/-1 2 3//2", "fo 1 2 3",
                              "f +1 +2 +3", "\tf\t1\t2\t3\t", "f 1 2 3 # done"}) {
-        const Scene scene = obj(std::string(kCornerObj) + face);
+        const Scene scene = obj(std::string(kCornerObj) + "vn 0 0 1\nvn 0 0 1\nvn 0 0 1\n" + face);
         EXPECT_EQ(scene.positions, kCorner) << face;
         EXPECT_EQ(scene.triangles, kOne) << face;
     }
@@ -112,7 +112,7 @@ TEST(ReadObj, PassesOverEverythingThatIsNoSurface)
 {
     const Scene scene =
         obj(std::string("mtllib missing.mtl\no thing\ng a b c\ns off\n") + kCornerObj +
-            "vt 0 nan\nvn x y z\nvp 0 0\nusemtl none\np 1 2\nl 1 2 3\nf 1 2 3\n"
+            "vt 0 nan\nvp 0 0\nusemtl none\np 1 2\nl 1 2 3\nf 1 2 3\n"
             "curv 0 1 1 2 3\nunknown words here\n");
     EXPECT_EQ(scene.positions, kCorner);
     EXPECT_EQ(scene.triangles, kOne);
