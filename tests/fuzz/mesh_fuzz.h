@@ -8,6 +8,7 @@
 #include "files/off_io.h"
 #include "files/ply_io.h"
 
+#include <cstring>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,24 +25,39 @@ inline void check_same(const Scene& again, const Scene& scene, bool rounded)
     SURFELAO_CHECK(rounded || again.triangles == scene.triangles);
 }
 
-inline void check_round_trips(const Scene& scene, bool from_ply)
+/// Value by value, nan included.
+inline void check_same_normals(const CornerNormals& again, const CornerNormals& normals)
+{
+    SURFELAO_CHECK(again.corners == normals.corners);
+    SURFELAO_CHECK(again.values.size() == normals.values.size());
+    SURFELAO_CHECK(normals.empty() || std::memcmp(again.values.data(), normals.values.data(),
+                                                  sizeof(glm::vec3) * normals.values.size()) == 0);
+}
+
+enum class From { obj, ply, other };
+
+/// What came from OBJ or PLY keeps its normals there.
+inline void check_round_trips(const Scene& scene, From from)
 {
     std::vector<Occlusion> occlusion(scene.positions.size());
     for (std::size_t v = 0; v < occlusion.size(); ++v)
         occlusion[v] = {static_cast<float>(v % 8) / 7.0f, {0.0f, 0.0f, 1.0f}};
-    check_same(read_obj("obj", obj_contents(scene, occlusion)), scene, false);
+    const Scene from_obj = read_obj("obj", obj_contents(scene, occlusion));
+    check_same(from_obj, scene, false);
+    if (from == From::obj)
+        check_same_normals(from_obj.normals, scene.normals);
     check_same(read_off("off", off_contents(scene, occlusion)), scene, false);
     const std::string ply = ply_contents(scene, occlusion);
     const Scene again = read_ply("ply", ply);
-    check_same(again, scene, !from_ply);
+    check_same(again, scene, from != From::ply);
+    if (from == From::ply)
+        check_same_normals(again.normals, scene.normals);
     // what we wrote is replaced, not added to
     SURFELAO_CHECK(ply_contents(again, occlusion).size() == ply.size());
 }
 
-enum class From { ply, other };
-
 template <class Read>
-int fuzz_mesh(From format, const Read& read, const std::uint8_t* data, std::size_t size)
+int fuzz_mesh(From from, const Read& read, const std::uint8_t* data, std::size_t size)
 {
     const std::string contents(reinterpret_cast<const char*>(data), size);
     try {
@@ -50,7 +66,7 @@ int fuzz_mesh(From format, const Read& read, const std::uint8_t* data, std::size
         if (scene.positions.size() > 10'000)
             return 0;
         check_geometry(scene);
-        check_round_trips(scene, format == From::ply);
+        check_round_trips(scene, from);
     } catch (const InputError& error) {
         SURFELAO_CHECK(std::string_view(error.what()).starts_with("fuzzed: "));
         SURFELAO_CHECK(std::string_view(error.what()).size() < 300);

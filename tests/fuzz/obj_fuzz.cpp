@@ -2,5 +2,5 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
-    return surfelao::fuzz_mesh(surfelao::From::other, surfelao::read_obj, data, size);
+    return surfelao::fuzz_mesh(surfelao::From::obj, surfelao::read_obj, data, size);
 }

@@ -30,6 +30,7 @@ inline void check_invariants(const Scene& scene)
         }
     }
     SURFELAO_CHECK(vertices == scene.positions.size() && triangles == scene.triangles.size());
+    check_scene(scene);  // the normals too
 }
 
 /// What stands right behind the readers takes any scene.

@@ -67,6 +67,9 @@ void save_text_seeds(const fs::path& folder)
     save(folder / "obj/concave.obj",
          "v -0 0 0\r\nv 4e0 0 0\r\nv 4 4. 0\r\nv 2 \\\r\n+1 0\r\nv .0 4 0 1 2 3 4\r\n"
          "f -5 -4 -3 \\\r\n -2 -1\r\n");
+    save(folder / "obj/normals.obj",
+         "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nvn 0 0 1\nvn nan 0 1e39\n"
+         "f 1//-1 2//1 3//2 4 5/1/-2\nvn 1 0 0\nf 1//1 2//2 3//3\n");
     save(folder / "off/square.off",
          "OFF # square\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3 255 0 0\n");
     save(folder / "off/colours.off",
@@ -99,6 +102,16 @@ void save_ply_seeds(const fs::path& folder)
     save(folder / "little.ply", "ply\nformat binary_little_endian 1.0\n" + header + "end_header\n" +
                                     vertex(0, 0) + vertex(1, 0) + vertex(1, 1) + vertex(0, 1) +
                                     "\x09\x04" + bytes_of<std::int32_t>({0, 1, 2, 3}));
+    const std::string with_normals =
+        "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float nx\nproperty float ny\nproperty int8 nz\nelement face 1\n"
+        "property list uchar uchar vertex_indices\nend_header\n";
+    save(folder / "normals.ply", "ply\nformat ascii 1.0\n" + with_normals +
+                                     "0 0 0 0 0 1\n1 0 0 nan 0 1\n0 1 0 0 1e39 -1\n3 0 1 2\n");
+    save(folder / "little_normals.ply",
+         "ply\nformat binary_little_endian 1.0\n" + with_normals +
+             bytes_of<float>({0, 0, 0, 0, 0}) + "\x7F" + bytes_of<float>({1, 0, 0, 0, 1}) + "\x81" +
+             bytes_of<float>({0, 1, 0, 1, 0}) + "\x01" + std::string("\3\0\1\2", 4));
     const std::string big_header =
         "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty list uchar ushort tags\n"
         "property int8 x\nproperty uint8 y\nproperty int16 z\nproperty float occlusion\n"
