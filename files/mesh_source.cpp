@@ -36,16 +36,14 @@ void check_positions(std::string_view file_name, const std::vector<glm::dvec3>& 
     }
 }
 
-/// Appends the triangles of a polygon with these corners; `cut`: the places of those of more than
-/// one triangle.
-void append_triangles(std::span<const std::uint32_t> corners, const std::vector<glm::uvec3>& cut,
+/// Where the only triangle of a polygon of three corners lies.
+constexpr glm::uvec3 kWhole(0, 1, 2);
+
+/// Appends the triangles that lie at these places of the corners.
+void append_triangles(std::span<const std::uint32_t> corners, std::span<const glm::uvec3> places,
                       std::vector<glm::uvec3>& triangles)
 {
-    if (corners.size() == 3) {
-        triangles.emplace_back(corners[0], corners[1], corners[2]);
-        return;
-    }
-    for (const glm::uvec3& place : cut)
+    for (const glm::uvec3& place : places)
         triangles.emplace_back(corners[place.x], corners[place.y], corners[place.z]);
 }
 
@@ -89,13 +87,17 @@ Scene make_mesh_scene(std::string_view file_name, std::vector<glm::dvec3> positi
                                       std::to_string(corner) + ", but there are " +
                                       std::to_string(positions.size()) + " vertices");
         }
-        if (size > 3) {
+        std::span<const glm::uvec3> places(&kWhole, 1);
+        if (size == 3) {
+            scene.triangles.emplace_back(corners[0], corners[1], corners[2]);
+        } else {
             cut.clear();
             triangulate(positions, corners, cut);
+            places = cut;
+            append_triangles(corners, places, scene.triangles);
         }
-        append_triangles(corners, cut, scene.triangles);
         if (!normals.corners.empty())
-            append_triangles({&normals.corners[first], size}, cut, scene.normals.corners);
+            append_triangles({&normals.corners[first], size}, places, scene.normals.corners);
         first += size;
     }
     scene.normals.values = std::move(normals.values);

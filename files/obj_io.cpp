@@ -49,21 +49,25 @@ glm::vec3 read_normal(TextCursor& cursor)
     return normal;
 }
 
+[[noreturn]] void refuse_index(const TextCursor& cursor, std::int64_t number, std::size_t count,
+                               const Numbered& numbered)
+{
+    const std::string many(numbered.many);
+    const std::string use =
+        "the face uses " + std::string(numbered.one) + " " + std::to_string(number) + ", but ";
+    if (number == 0)
+        cursor.fail(use + many + " are counted from 1");
+    cursor.fail(use + "there are " + std::to_string(count) + " " + many + " so far");
+}
+
 /// The index, counted from 0, of the one that this word names when there are `count` so far.
 std::uint32_t read_index(const TextCursor& cursor, std::string_view word, std::size_t count,
                          Numbered& numbered)
 {
     const std::int64_t number = cursor.integer_of(word);
-    if (number == 0) {
-        cursor.fail("the face uses " + std::string(numbered.one) + " 0, but " +
-                    std::string(numbered.many) + " are counted from 1");
-    }
     const std::int64_t index = number > 0 ? number - 1 : static_cast<std::int64_t>(count) + number;
-    if (index < 0) {
-        cursor.fail("the face uses " + std::string(numbered.one) + " " + std::to_string(number) +
-                    ", but there are " + std::to_string(count) + " " + std::string(numbered.many) +
-                    " so far");
-    }
+    if (number == 0 || index < 0)
+        refuse_index(cursor, number, count, numbered);
     if (index > numbered.farthest) {
         numbered.farthest = index;
         numbered.farthest_line = cursor.line();
