@@ -98,6 +98,7 @@ TEST(CornerNormalsOfObj, GoWithTheCornersOfACutConcavePolygon)
         text += "vn " + std::to_string(7 - n) + " 0 0\n";
     const Scene scene = obj(text + "f 1//6 2//5 3//4 4//3 5//2 6//1\n");
     ASSERT_EQ(scene.triangles.size(), 4u);
+    ASSERT_EQ(scene.normals.corners.size(), 4u);
     for (std::size_t t = 0; t < 4; ++t) {
         for (int corner = 0; corner < 3; ++corner)
             EXPECT_EQ(corner_normal(scene, t, corner).x,
