@@ -27,13 +27,13 @@ void enter(const StageProgress& progress, std::string_view stage)
         throw Cancelled();
 }
 
-double mean_occlusion_of(std::span<const Receiver> receivers, std::span<const Occlusion> occlusion)
+double mean_occlusion_of(const Surface& surface, std::span<const Occlusion> values)
 {
     double sum = 0.0;
     std::size_t count = 0;
-    for (std::size_t i = 0; i < receivers.size(); ++i) {
-        if (receivers[i].normal != glm::vec3(0.0f)) {
-            sum += occlusion[i].occlusion;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (surface.normals[i] != glm::vec3(0.0f)) {
+            sum += values[i].occlusion;
             ++count;
         }
     }
@@ -51,22 +51,27 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     check_output(settings.input, settings.output);
 
     enter(progress, "read");
-    const Scene scene = read_scene(settings.input);
-    const Geometry geometry = make_geometry(scene);
+    const auto mesh = std::make_shared<const Mesh>(
+        make_mesh(read_scene(settings.input), settings.target.normals));
+    const Scene& scene = mesh->scene;
+    const Geometry& geometry = mesh->geometry;
     EngineSettings& engine = report.settings.engine;
     engine.definition = definition_of(settings.max_distance, settings.kernel, geometry.frame);
-    const std::vector<Receiver> receivers =
-        receivers_at_vertices(geometry, engine.definition.offset);
+    const VertexTarget target(mesh, settings.target);
     report.seconds.read = stage.lap();
 
     enter(progress, "build");
     const Progress solving = [&](double done) { return !progress || progress("solve", done); };
     const Prepared prepared = prepare(geometry, engine);
-    const Solution solution = solve(prepared, receivers, engine, solving);
+    const Solution solution = solve(prepared, target.receivers(), engine, solving);
+
+    enter(progress, "fit");
+    stage.lap();
+    const std::vector<Occlusion> values = target.values(solution.occlusion);
+    report.seconds.fit = stage.lap();
 
     enter(progress, "write");
-    stage.lap();
-    write_scene(settings.output, scene, solution.occlusion,
+    write_scene(settings.output, scene, values,
                 {.colors = settings.colors, .mark = mark_of(settings)});
     report.seconds.write = stage.lap();
 
@@ -74,10 +79,13 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     report.triangles = scene.triangles.size();
     report.dropped_triangles = geometry.dropped_triangles;
     report.vertices_without_normal = static_cast<std::uint64_t>(
-        std::count(geometry.normals.begin(), geometry.normals.end(), glm::vec3(0.0f)));
+        std::count(mesh->surface.normals.begin(), mesh->surface.normals.end(), glm::vec3(0.0f)));
     report.surfels = prepared.surfel_count();
+    report.receivers = target.receivers().size();
+    report.corners_from_file = mesh->surface.corners_from_file;
+    report.replaced_corners = mesh->surface.replaced_corners;
     report.residual = solution.residual;
-    report.mean_occlusion = mean_occlusion_of(receivers, solution.occlusion);
+    report.mean_occlusion = mean_occlusion_of(mesh->surface, values);
     report.seconds.surfels = prepared.seconds().surfels;
     report.seconds.tree = prepared.seconds().tree;
     report.seconds.solve = solution.seconds;
@@ -118,6 +126,7 @@ std::string mark_of(const BakeSettings& settings)
         text += " max_distance=none";
     text += std::isfinite(limit.value) && limit.percent ? "%" : "";
     text += limit.falloff == Falloff::smooth ? " falloff=smooth" : " falloff=none";
+    text += " " + text_of(settings.target);
     text += settings.colors ? " colors=yes" : " colors=no";
     return make_mark("bake", text);
 }

@@ -1,6 +1,7 @@
 /// bake.h: the job: a mesh file in, the same mesh with occlusion at every vertex out.
 #pragma once
 
+#include "bake/vertex_target.h"
 #include "engines/engine.h"
 
 #include <cstdint>
@@ -19,6 +20,7 @@ struct BakeSettings {
     EngineSettings engine;  ///< its definition is made from the members below
     DistanceLimit max_distance;
     Kernel kernel = Kernel::cosine;
+    TargetSettings target;
     bool colors = false;  ///< glTF: COLOR_0 too (files/scene_io.h)
 };
 
@@ -28,6 +30,7 @@ struct BakeSeconds {
     double surfels = 0.0;  ///< what the engine makes of it first
     double tree = 0.0;
     double solve = 0.0;
+    double fit = 0.0;  ///< from the answers to the values at vertices
     double write = 0.0;
     double total = 0.0;
 };
@@ -42,8 +45,11 @@ struct BakeReport {
     int threads = 0;
     BakeSeconds seconds;
     std::uint64_t peak_rss_bytes = 0;
-    std::optional<double> residual;  ///< of the disk engine's correction
-    double mean_occlusion = 0.0;     ///< over vertices with a normal
+    std::optional<double> residual;       ///< of the disk engine's correction
+    double mean_occlusion = 0.0;          ///< over vertices with a normal
+    std::uint64_t receivers = 0;          ///< where occlusion was asked
+    std::uint64_t corners_from_file = 0;  ///< corners shaded with the file's normals
+    std::uint64_t replaced_corners = 0;   ///< the file's were not usable there
 };
 
 /// Told the stage at hand ("read", "solve", ...) and how much of it is done; false stops the job.
@@ -63,7 +69,8 @@ struct BatchEntry {
 };
 
 /// Keys input, output, vertices, triangles, dropped_triangles, vertices_without_normal, surfels,
-/// engine, settings, seconds{read, surfels, tree, solve, write, total}, peak_rss_bytes, residual,
+/// engine, settings, seconds{read, surfels, tree, solve,
+/// fit, write, total}, receivers, corners_from_file, replaced_corners, peak_rss_bytes, residual,
 /// mean_occlusion. What an engine does not have is null. Failed: input, output, error. Skipped:
 /// input, output, skipped. A list of such objects for several files.
 [[nodiscard]] std::string json_of(std::span<const BatchEntry> batch);
@@ -77,7 +84,7 @@ struct BatchEntry {
 /// were asked for; neither the input nor threads. Of what only another engine has, nothing.
 ///
 ///     surfelao 0.1.0 bake: engine=masks device=cpu quality=1 kernel=cosine max_distance=none
-///     falloff=none colors=no
+///     falloff=none normals=auto crease=40 values=fit colors=no
 [[nodiscard]] std::string mark_of(const BakeSettings& settings);
 
 /// Whether the output exists with the mark that a bake would give it now and is not older than its

@@ -27,6 +27,7 @@ constexpr std::size_t kMostRepeats = 50;
 
 /// What is asked, and the answer that counts.
 struct Question {
+    std::optional<VertexTarget> target;
     std::vector<Receiver> receivers;    ///< all vertices: what every engine solves
     std::vector<std::uint32_t> judged;  ///< into receivers: where errors are taken
     std::vector<Occlusion> reference;   ///< one per judged
@@ -36,7 +37,9 @@ Question ask(const CompareSettings& settings, const Definition& definition, Comp
              const Progress& progress)
 {
     Question question;
-    question.receivers = receivers_at_vertices(comparison.geometry, definition.offset);
+    question.target.emplace(comparison.mesh, settings.target);
+    const std::span<const Receiver> all = question.target->receivers();
+    question.receivers.assign(all.begin(), all.end());
     std::vector<std::uint32_t> asked;
     std::vector<Receiver> places;
     for (const std::uint32_t i : sample_of(question.receivers.size(), settings.sample)) {
@@ -48,7 +51,7 @@ Question ask(const CompareSettings& settings, const Definition& definition, Comp
         }
     }
     const Reference reference =
-        trace_reference(comparison.geometry, places,
+        trace_reference(comparison.mesh->geometry, places,
                         {definition, settings.reference_rays, settings.use_cache}, progress);
     for (std::size_t i = 0; i < asked.size(); ++i) {
         if (reference.well_defined(i)) {
@@ -91,7 +94,7 @@ void judge(const Question& question, const Scene& scene, const std::vector<Occlu
                       });
     for (std::size_t i = 0; i < worst; ++i) {
         const std::uint32_t vertex = question.judged[order[i]];
-        row.worst.push_back({vertex, scene.positions[vertex], judged[order[i]].occlusion,
+        row.worst.push_back({vertex, scene.positions[0], judged[order[i]].occlusion,
                              question.reference[order[i]].occlusion});
     }
     if (row.settings.engine == Engine::rays)
@@ -140,18 +143,18 @@ void run_round(const Comparison& comparison, const Question& question, const Eng
     Times repeats;
     double spent = 0.0;
     do {
-        const Prepared prepared = prepare(comparison.geometry, choice);
+        const Prepared prepared = prepare(comparison.mesh->geometry, choice);
         Solution solution = solve(prepared, question.receivers, row.settings, progress);
         if (row.smoothed) {
             Stopwatch smoothing;
-            solution.occlusion = smooth_occlusion(comparison.geometry, solution.occlusion);
+            solution.occlusion = solution.occlusion;
             solution.seconds += smoothing.lap();
         }
         repeats.builds.push_back(prepared.seconds().surfels + prepared.seconds().tree);
         repeats.solves.push_back(solution.seconds);
         spent += repeats.builds.back() + repeats.solves.back();
         if (row.worst.empty())
-            judge(question, comparison.scene, solution.occlusion, row);
+            judge(question, comparison.mesh->scene, solution.occlusion, row);
     } while (spent < kLeastRound && repeats.solves.size() < kMostRepeats);
     times.builds.push_back(quantile(repeats.builds, 0.5));
     times.solves.push_back(quantile(repeats.solves, 0.5));
@@ -237,14 +240,14 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     comparison.rounds = settings.rounds;
     static_cast<void>(stage("read"));
     Stopwatch watch;
-    comparison.scene = read_scene(settings.input);
-    comparison.geometry = make_geometry(comparison.scene);
+    comparison.mesh = std::make_shared<const Mesh>(
+        make_mesh(read_scene(settings.input), settings.target.normals));
     comparison.read_s = watch.lap();
-    comparison.vertices = comparison.scene.positions.size();
-    comparison.triangles = comparison.scene.triangles.size();
-    comparison.dropped_triangles = comparison.geometry.dropped_triangles;
+    comparison.vertices = comparison.mesh->scene.positions.size();
+    comparison.triangles = comparison.mesh->scene.triangles.size();
+    comparison.dropped_triangles = comparison.mesh->geometry.dropped_triangles;
     const Definition definition =
-        definition_of(settings.max_distance, settings.kernel, comparison.geometry.frame);
+        definition_of(settings.max_distance, settings.kernel, comparison.mesh->geometry.frame);
     const Question question = ask(settings, definition, comparison, stage("reference"));
 
     // rounds: one after the other, so that whatever slows the machine slows all alike

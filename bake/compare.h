@@ -29,6 +29,7 @@ struct CompareSettings {
     std::vector<std::uint32_t> smoothed_rays;            ///< rows of few rays made smooth
     DistanceLimit max_distance;
     Kernel kernel = Kernel::cosine;
+    TargetSettings target;
     std::uint32_t reference_rays = 4096;  ///< an even number
     std::uint64_t sample = 0;             ///< receivers that are judged, evenly spread; 0 = all
     int rounds = 3;                       ///< >= 1
@@ -66,8 +67,7 @@ struct CompareRow {
 
 struct Comparison {
     std::filesystem::path input;
-    Scene scene;
-    Geometry geometry;
+    std::shared_ptr<const Mesh> mesh;
     std::vector<float> reference;  ///< occlusion, one per vertex; NaN where not judged
     std::uint64_t vertices = 0;
     std::uint64_t triangles = 0;

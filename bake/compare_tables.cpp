@@ -108,7 +108,7 @@ void write_difference(const std::filesystem::path& path, const Comparison& compa
                 append_bytes(bytes, channel);
             append_bytes(bytes, std::isnan(row.errors[v]) ? 0.0f : row.errors[v]);
         }};
-    write_atomically(path, new_ply(comparison.scene, values, make_mark("compare", what.str()),
+    write_atomically(path, new_ply(comparison.mesh->scene, values, make_mark("compare", what.str()),
                                    PlyCoordinates::exact));
 }
 

@@ -39,7 +39,7 @@ double seconds_of(const Comparison& comparison, const CompareRow& row, Cost cost
 /// The most exact answers' error, and what the reference looks like.
 std::vector<std::pair<std::string, std::string>> pictures_of(const Comparison& comparison)
 {
-    const Geometry& geometry = comparison.geometry;
+    const Geometry& geometry = comparison.mesh->geometry;
     std::vector<std::pair<std::string, std::string>> pictures;
     const auto add = [&](std::string caption, const std::vector<Rgb>& colors) {
         pictures.emplace_back(
@@ -122,8 +122,7 @@ FrontierScene frontier_scene(Comparison comparison)
     FrontierScene scene;
     scene.input = comparison.input;
     scene.pictures = pictures_of(comparison);
-    comparison.scene = {};
-    comparison.geometry = {};
+    comparison.mesh = nullptr;
     comparison.reference = {};
     for (CompareRow& row : comparison.rows)
         row.errors = {};

@@ -223,8 +223,8 @@ std::string scene_html(const FrontierScene& scene)
             fixed(comparison.reference_noise, 4) + "; " + std::to_string(comparison.ill_defined) +
             " ill-defined and " + std::to_string(comparison.without_normal) +
             " without a normal left out. " + std::to_string(comparison.threads) +
-            " threads, medians of " + std::to_string(comparison.rounds) + " rounds. Offset " +
-            exact(definition.offset) + ", distance limit " +
+            " threads, medians of " + std::to_string(comparison.rounds) +
+            " rounds. Distance limit " +
             (std::isfinite(definition.max_distance) ? exact(definition.max_distance) : "none") +
             (definition.falloff == Falloff::smooth ? " with smooth falloff" : "") +
             " (in diagonals).</p>\n";

@@ -94,7 +94,8 @@ Info inspect(const std::filesystem::path& input, const Progress& progress)
     info.area *= info.diagonal * info.diagonal;
 
     const Definition definition;
-    const std::vector<Receiver> receivers = receivers_at_vertices(geometry, definition.offset);
+    const std::vector<Receiver> receivers =
+        receivers_at_wedges(geometry, make_surface(scene, geometry));
     std::vector<Receiver> examined;
     for (const std::uint32_t v : sample_of(receivers.size(), kExaminedVertices)) {
         if (receivers[v].normal != glm::vec3(0.0f))

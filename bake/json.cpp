@@ -40,8 +40,17 @@ Json json_of(const EngineSettings& settings, bool smoothed = false)
     json["max_distance"] =
         std::isfinite(definition.max_distance) ? Json(definition.max_distance) : Json();
     json["falloff"] = definition.falloff == Falloff::none ? "none" : "smooth";
-    json["offset"] = definition.offset;
     return json;
+}
+
+void add(Json& json, const TargetSettings& target)
+{
+    json["normals"] = name_of(target.normals.source);
+    json["crease"] = target.normals.crease;
+    json["values"] = name_of(target.values);
+    json["offset"] = Json();
+    if (target.offset)
+        json["offset"] = exact(target.offset->value) + (target.offset->percent ? "%" : "");
 }
 
 Json json_of(const BatchEntry& entry)
@@ -66,10 +75,15 @@ Json json_of(const BatchEntry& entry)
     json["engine"] = name_of(report.settings.engine.engine);
     json["settings"] = json_of(report.settings.engine);
     json["settings"]["threads"] = report.threads;
+    add(json["settings"], report.settings.target);
     json["settings"]["colors"] = report.settings.colors;
-    json["seconds"] = {{"read", seconds.read},   {"surfels", seconds.surfels},
-                       {"tree", seconds.tree},   {"solve", seconds.solve},
-                       {"write", seconds.write}, {"total", seconds.total}};
+    json["seconds"] = {{"read", seconds.read},  {"surfels", seconds.surfels},
+                       {"tree", seconds.tree},  {"solve", seconds.solve},
+                       {"fit", seconds.fit},    {"write", seconds.write},
+                       {"total", seconds.total}};
+    json["receivers"] = report.receivers;
+    json["corners_from_file"] = report.corners_from_file;
+    json["replaced_corners"] = report.replaced_corners;
     json["peak_rss_bytes"] = report.peak_rss_bytes;
     json["residual"] = report.residual ? Json(*report.residual) : Json();
     json["mean_occlusion"] = report.mean_occlusion;

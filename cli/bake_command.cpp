@@ -23,6 +23,7 @@ struct BakeOptions {
     std::string output;
     EngineOptions engine;
     MeasureOptions measure;
+    SurfaceOptions surface;
     bool colors = false;
     bool resume = false;
     bool overwrite = false;
@@ -80,8 +81,9 @@ void print(const BakeReport& report)
     if (report.residual)
         std::cout << ", residual " << fixed(*report.residual, 4);
     std::cout << "\n  read " << time(seconds.read) << ", surfels " << time(seconds.surfels)
-              << ", tree " << time(seconds.tree) << ", solve " << time(seconds.solve) << ", write "
-              << time(seconds.write) << ", total " << time(seconds.total) << "; " << report.threads
+              << ", tree " << time(seconds.tree) << ", solve " << time(seconds.solve) << ", fit "
+              << time(seconds.fit) << ", write " << time(seconds.write) << ", total "
+              << time(seconds.total) << "; " << report.threads
               << (report.threads == 1 ? " thread, " : " threads, ")
               << report.peak_rss_bytes / (1024 * 1024) << " MiB\n";
 }
@@ -94,6 +96,7 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.engine = settings_of(options.engine);
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
+    settings.target = target_settings_of(options.surface);
     settings.colors = options.colors;
     return settings;
 }
@@ -185,6 +188,7 @@ void add_bake_command(CLI::App& app, Work& work)
         ->type_name("OUT|DIR");
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
+    add_surface_options(*command, options->surface);
     command->add_flag("--colors", options->colors,
                       "glTF: visibility as COLOR_0 too (.ply and .obj always have colours)");
     command->add_flag(
@@ -201,6 +205,7 @@ void add_bake_command(CLI::App& app, Work& work)
     command->callback([options, &work] {
         const EngineSettings engine = settings_of(options->engine);
         static_cast<void>(distance_limit_of(options->measure));
+        static_cast<void>(target_settings_of(options->surface));
         check_kernel(engine.engine, kernel_of(options->measure));
         work = [options, jobs = jobs_of(*options)] { return run(*options, jobs); };
     });

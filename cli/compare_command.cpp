@@ -28,6 +28,7 @@ struct CompareOptions {
     std::vector<std::string> devices = {"cpu"};
     std::optional<std::vector<std::string>> qualities;
     MeasureOptions measure;
+    SurfaceOptions surface;
     std::uint32_t reference_rays = 4096;
     std::uint64_t sample = 0;
     int rounds = 3;
@@ -43,6 +44,7 @@ CompareSettings common_settings(const CompareOptions& options)
     CompareSettings settings;
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
+    settings.target = target_settings_of(options.surface);
     settings.reference_rays = options.reference_rays;
     settings.sample = options.sample;
     settings.rounds = options.rounds;
@@ -258,6 +260,7 @@ void add_compare_command(CLI::App& app, Work& work)
         ->type_name("Q,...")
         ->default_str("draft,good,best");
     add_measure_options(*command, options->measure);
+    add_surface_options(*command, options->surface);
     command
         ->add_option("--reference-rays", options->reference_rays,
                      "Rays per vertex of the reference, an even number")

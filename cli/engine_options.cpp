@@ -25,6 +25,23 @@ std::optional<double> number_of(std::string_view text)
     return value;
 }
 
+Length length_of(std::string_view text, const std::string& option)
+{
+    Length length;
+    std::string_view digits = text;
+    if (digits.ends_with('%')) {
+        length.percent = true;
+        digits.remove_suffix(1);
+    }
+    const std::optional<double> value = number_of(digits);
+    if (!value || !(*value > 0.0)) {
+        throw UsageError(option + ": \"" + std::string(text) +
+                         "\" is not a number above 0, with or without %.");
+    }
+    length.value = *value;
+    return length;
+}
+
 void refuse_unless(bool allowed, const char* option, const char* engines)
 {
     if (!allowed)
@@ -100,6 +117,40 @@ void add_measure_options(CLI::App& command, MeasureOptions& options)
         ->group("What is measured");
 }
 
+void add_surface_options(CLI::App& command, SurfaceOptions& options)
+{
+    command
+        .add_option("--normals", options.normals,
+                    "Corner normals: the file's where they are usable (auto) or wherever it has "
+                    "any (file), smooth within --crease, or flat")
+        ->check(CLI::IsMember({"auto", "file", "smooth", "flat"}))
+        ->type_name("auto|file|smooth|flat")
+        ->default_str("auto")
+        ->group("What is measured");
+    command
+        .add_option("--crease", options.crease,
+                    "Degrees: faces that meet at more are not smoothed together")
+        ->check(CLI::Range(0.0f, 180.0f))
+        ->type_name("DEG")
+        ->default_str("40")
+        ->group("What is measured");
+    command
+        .add_option("--values", options.values,
+                    "fit: the values whose interpolation is nearest to the truth all over the "
+                    "surface; point: the truth at the vertices themselves")
+        ->check(CLI::IsMember({"fit", "point"}))
+        ->type_name("fit|point")
+        ->default_str("fit")
+        ->group("What is measured");
+    command
+        .add_option("--offset", options.offset,
+                    "How far off the surface occlusion is asked: in the file's units, or with % of "
+                    "the bounding box's diagonal (default: a hundredth of each triangle, at most "
+                    "0.01%)")
+        ->type_name("D|P%")
+        ->group("What is measured");
+}
+
 void add_thread_option(CLI::App& command, std::optional<int>& threads)
 {
     command.add_option("--threads", threads, "Use at most this many cores (default: all)")
@@ -169,21 +220,31 @@ EngineSettings settings_of(const EngineOptions& options)
     return settings;
 }
 
+TargetSettings target_settings_of(const SurfaceOptions& options)
+{
+    TargetSettings settings;
+    for (const NormalSource source :
+         {NormalSource::automatic, NormalSource::file, NormalSource::smooth, NormalSource::flat}) {
+        if (options.normals == name_of(source))
+            settings.normals.source = source;
+    }
+    if (options.crease && std::isnan(*options.crease))
+        throw UsageError("--crease: nan is not a number from 0 to 180.");
+    settings.normals.crease = options.crease.value_or(settings.normals.crease);
+    if (options.values == name_of(VertexValues::point))
+        settings.values = VertexValues::point;
+    if (options.offset)
+        settings.offset = length_of(*options.offset, "--offset");
+    return settings;
+}
+
 DistanceLimit distance_limit_of(const MeasureOptions& options)
 {
     DistanceLimit limit;
     if (options.max_distance) {
-        std::string_view text = *options.max_distance;
-        if (text.ends_with('%')) {
-            limit.percent = true;
-            text.remove_suffix(1);
-        }
-        const std::optional<double> value = number_of(text);
-        if (!value || !(*value > 0.0)) {
-            throw UsageError("--max-distance: \"" + *options.max_distance +
-                             "\" is not a number above 0, with or without %.");
-        }
-        limit.value = *value;
+        const Length length = length_of(*options.max_distance, "--max-distance");
+        limit.percent = length.percent;
+        limit.value = length.value;
     }
     if (options.falloff == "smooth") {
         if (!options.max_distance)

@@ -1,6 +1,7 @@
 /// engine_options.h: the options that say what is computed, for every command that computes.
 #pragma once
 
+#include "bake/vertex_target.h"
 #include "engines/engine.h"
 
 #include <optional>
@@ -29,8 +30,18 @@ struct MeasureOptions {
     std::optional<std::string> kernel;
 };
 
+/// Where it is measured: on which surface, and for which values.
+struct SurfaceOptions {
+    std::optional<std::string> normals;
+    std::optional<float> crease;
+    std::optional<std::string> values;
+    std::optional<std::string> offset;
+};
+
 void add_engine_options(CLI::App& command, EngineOptions& options);
 void add_measure_options(CLI::App& command, MeasureOptions& options);
+
+void add_surface_options(CLI::App& command, SurfaceOptions& options);
 
 /// Adds `--threads N`.
 void add_thread_option(CLI::App& command, std::optional<int>& threads);
@@ -38,6 +49,7 @@ void add_thread_option(CLI::App& command, std::optional<int>& threads);
 /// Throw UsageError for what contradicts itself; nothing is dropped silently.
 [[nodiscard]] EngineSettings settings_of(const EngineOptions& options);
 [[nodiscard]] DistanceLimit distance_limit_of(const MeasureOptions& options);
+[[nodiscard]] TargetSettings target_settings_of(const SurfaceOptions& options);
 [[nodiscard]] Kernel kernel_of(const MeasureOptions& options);
 
 /// Throws UsageError where this engine does not know this kernel.

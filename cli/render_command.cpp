@@ -35,6 +35,7 @@ struct RenderCommandOptions {
     ShowOptions show;
     EngineOptions engine;
     MeasureOptions measure;
+    SurfaceOptions surface;
     std::optional<int> threads;
 };
 
@@ -77,13 +78,14 @@ int run(const RenderCommandOptions& options)
         picture.environment = read_image(*options.show.environment);
 
     Stopwatch watch;
-    Geometry geometry = make_geometry(read_scene(options.input));
+    const TargetSettings target = target_settings_of(options.surface);
+    Mesh mesh = make_mesh(read_scene(options.input), target.normals);
     EngineSettings engine = settings_of(options.engine);
     engine.definition = definition_of(distance_limit_of(options.measure),
-                                      kernel_of(options.measure), geometry.frame);
+                                      kernel_of(options.measure), mesh.geometry.frame);
     const UpAxis up = up_axis_of(options.show);
-    const Model model = make_model(std::move(geometry), up, engine.definition.offset);
-    const Frame& frame = model.geometry.frame;
+    const Model model = make_model(std::move(mesh), up, target);
+    const Frame& frame = model.geometry().frame;
     const Camera camera = parse_camera(
         options.camera,
         {.points = model.seen,
@@ -95,17 +97,16 @@ int run(const RenderCommandOptions& options)
 
     // only what the picture shows is solved
     const Colors colors = picture.view.colors;
-    std::vector<Occlusion> occlusion(model.receivers.size());
+    std::vector<Occlusion> occlusion(model.answer_count());
     if (colors != Colors::rays && colors != Colors::normals && colors != Colors::levels)
-        occlusion = solve_model(prepare(model.geometry, engine), model, engine,
+        occlusion = solve_model(prepare(model.geometry(), engine), model, engine,
                                 shows_ground(picture.view), stage("solve"))
                         .occlusion;
     const double solve_s = watch.lap();
     Reference reference;
     if (needs_reference(picture.view))
-        reference =
-            trace_reference(model.geometry, model.receivers,
-                            {engine.definition, options.show.reference_rays}, stage("reference"));
+        reference = reference_of(model, {engine.definition, options.show.reference_rays},
+                                 stage("reference"));
     const double reference_s = watch.lap();
     const Image image =
         render(model, occlusion, reference.occlusion, camera, picture, stage("draw"));
@@ -114,11 +115,12 @@ int run(const RenderCommandOptions& options)
 
     const auto time = [](double s) { return fixed(s, 3) + " s"; };
     std::cout << options.input << " -> " << options.output << ", " << image.width << " x "
-              << image.height << "\n  " << model.geometry.positions.size() << " vertices, "
-              << model.geometry.triangles.size() << " triangles, " << name_of(engine.engine) << ", "
-              << setting_of(engine) << "\n  read " << time(read_s) << ", solve " << time(solve_s)
-              << ", reference " << (reference.from_cache ? "from the cache" : time(reference_s))
-              << ", draw " << time(draw_s) << ", write " << time(watch.lap()) << '\n';
+              << image.height << "\n  " << model.geometry().positions.size() << " vertices, "
+              << model.geometry().triangles.size() << " triangles, " << name_of(engine.engine)
+              << ", " << setting_of(engine) << "\n  read " << time(read_s) << ", solve "
+              << time(solve_s) << ", reference "
+              << (reference.from_cache ? "from the cache" : time(reference_s)) << ", draw "
+              << time(draw_s) << ", write " << time(watch.lap()) << '\n';
     const std::filesystem::path written[] = {options.output};
     print_written(written, false);
     return kDone;
@@ -164,10 +166,12 @@ void add_render_command(CLI::App& app, Work& work)
     add_show_options(*command, options->show);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
+    add_surface_options(*command, options->surface);
     add_thread_option(*command, options->threads);
     command->callback([options, &work] {
         check_kernel(settings_of(options->engine).engine, kernel_of(options->measure));
         static_cast<void>(distance_limit_of(options->measure));
+        static_cast<void>(target_settings_of(options->surface));
         static_cast<void>(view_options_of(options->show));
         check_files(*options);
         work = [options] { return run(*options); };

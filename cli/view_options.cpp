@@ -22,11 +22,11 @@ constexpr std::array<std::pair<std::string_view, Colors>, 7> kModes = {{
     {"environment", Colors::environment},
 }};
 
-constexpr std::array<std::pair<std::string_view, Surface>, 4> kSurfaces = {{
-    {"triangles", Surface::triangles},
-    {"splats", Surface::splats},
-    {"affine", Surface::affine},
-    {"points", Surface::points},
+constexpr std::array<std::pair<std::string_view, Shape>, 4> kSurfaces = {{
+    {"triangles", Shape::triangles},
+    {"splats", Shape::splats},
+    {"affine", Shape::affine},
+    {"points", Shape::points},
 }};
 
 template <class Table>

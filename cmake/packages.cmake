@@ -9,4 +9,5 @@ find_package(embree 3.13 CONFIG REQUIRED)
 find_package(CLI11 2.1 CONFIG REQUIRED)
 find_package(nlohmann_json 3.11 CONFIG REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(Eigen3 3.4 CONFIG REQUIRED)  # sparse least squares
 find_package(PkgConfig REQUIRED)

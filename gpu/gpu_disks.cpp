@@ -121,10 +121,9 @@ struct FarSide {
     Framebuffer found;    ///< disks_fit.frag: visibility and its change
     Framebuffer before;   ///< the same of the pass before
 
-    FarSide(const GlContext& context, const Octree& octree, const Records& records, float offset,
-            float side)
+    FarSide(const GlContext& context, const Octree& octree, const Records& records, float side)
         : sign(side),
-          groups(group_receivers(far_sides(octree, offset, side))),
+          groups(group_receivers(far_sides(octree, side))),
           gathered(context, groups),
           slots(upload_slots(context, slots_of_records(records))),
           found(make_rows(context, records.records.size(), kFormats)),
@@ -190,7 +189,7 @@ public:
         std::vector<FarSide> sides;
         for (int side = 0; side < side_count() && options_.passes > 1; ++side)
             sides.emplace_back(scene_.context, scene_.octree, scene_.records,
-                               options_.definition.offset, side == 0 ? 1.0f : -1.0f);
+                               side == 0 ? 1.0f : -1.0f);
         const ReceiverGroups groups = group_receivers(receivers);
         std::uint64_t work = groups.leaves.size();
         for (const FarSide& side : sides)

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Counts up whenever rays, layout or rule change: old files are then nobody's answer.
-constexpr std::uint64_t kVersion = 2;
+constexpr std::uint64_t kVersion = 3;
 
 /// Seeds of the two halves. Neither is the opponents' seed 0, so that no error of theirs is hidden
 /// by being ours too.
@@ -70,7 +70,6 @@ ContentHash key_of(const Geometry& geometry, std::span<const Receiver> receivers
     hash.add(receivers);
     hash.add_word(std::bit_cast<std::uint32_t>(options.definition.max_distance));
     hash.add_word(static_cast<std::uint64_t>(options.definition.falloff));
-    hash.add_word(std::bit_cast<std::uint32_t>(options.definition.offset));
     hash.add_word(static_cast<std::uint64_t>(options.definition.kernel));
     hash.add_word(options.rays);
     return hash;

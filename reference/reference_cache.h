@@ -34,10 +34,9 @@ struct Reference {
 };
 
 /// Traces the reference, or reads it from the user's cache folder when the same geometry, receivers
-/// and options were traced before (by content hash). Receivers must be off the surface by
-/// options.definition.offset. A cache file that is cut, damaged or of another version is traced
-/// anew and replaced; a cache folder that cannot be written is done without. Throws SettingsError
-/// where an option is out of its range, Cancelled.
+/// and options were traced before (by content hash). A cache file that is cut, damaged or of
+/// another version is traced anew and replaced; a cache folder that cannot be written is done
+/// without. Throws SettingsError where an option is out of its range, Cancelled.
 [[nodiscard]] Reference trace_reference(const Geometry& geometry,
                                         std::span<const Receiver> receivers,
                                         const ReferenceOptions& options,

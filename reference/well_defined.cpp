@@ -9,11 +9,14 @@ namespace surfelao {
 std::vector<float> placement_change(const RayScene& scene, std::span<const Receiver> receivers,
                                     const Definition& definition, const Progress& progress)
 {
-    // steps in the receiver's own frame: (sideways x, sideways y, along the normal)
+    // in the receiver's own frame: sideways, in diagonals, and along the normal, in its offset
     constexpr float kSin120 = 0.8660254f;
-    const glm::vec3 steps[] = {
-        {0.0f, 0.0f, -0.5f * definition.offset},
-        {0.0f, 0.0f, definition.offset},
+    struct Step {
+        float x, y, offsets;
+    };
+    constexpr Step kSteps[] = {
+        {0.0f, 0.0f, -0.5f},
+        {0.0f, 0.0f, 1.0f},
         {kSidestep, 0.0f, 0.0f},
         {-0.5f * kSidestep, kSin120 * kSidestep, 0.0f},
         {-0.5f * kSidestep, -kSin120 * kSidestep, 0.0f},
@@ -25,13 +28,14 @@ std::vector<float> placement_change(const RayScene& scene, std::span<const Recei
     std::vector<float> low(receivers.size(), 1.0f), high(receivers.size(), 0.0f);
     std::vector<Receiver> moved(receivers.size());
     double done = 0.0;
-    for (const glm::vec3 step : steps) {
+    for (const Step& step : kSteps) {
         for (std::size_t i = 0; i < receivers.size(); ++i) {
             moved[i] = receivers[i];
             if (receivers[i].normal == glm::vec3(0.0f))
                 continue;
             const Hemisphere around = hemisphere_over(receivers[i].normal, 0, 0);
-            moved[i].position += step.x * around.x + step.y * around.y + step.z * around.z;
+            moved[i].position += step.x * around.x + step.y * around.y +
+                                 step.offsets * receivers[i].offset * around.z;
         }
         const Progress part = [&](double share) { return !progress || progress(done + share / 5); };
         const std::vector<Occlusion> answers = trace_occlusion(scene, moved, options, part);

@@ -1,6 +1,7 @@
 /// well_defined.h: which receivers have an answer at all.
 ///
-/// The definition (surfels/occlusion.h) puts the receiver `offset` above the surface. Where another
+/// The definition (surfels/occlusion.h) puts the receiver an offset above the surface (its own one:
+/// Receiver::offset). Where another
 /// surface is about as near as that, or the receiver stands exactly in another surface's plane, the
 /// answer belongs to the offset or to the last bit of a float, not to the scene: no method can be
 /// right or wrong there. One rule finds these receivers, and every error figure leaves them out,
@@ -36,7 +37,7 @@ inline constexpr float kSidestep = 5e-7f;
 /// its rays that hit within kSidestep if that is more; it is ill-defined when that is above
 /// kIllDefined. 0 for receivers without a normal.
 ///
-/// scene: Build::robust. receivers: off the surface by definition.offset. The five places share
+/// scene: Build::robust. The five places share
 /// their directions, so that their noise mostly cancels. Costs five times 256 rays a receiver, and
 /// as many very short ones.
 /// Throws Cancelled.

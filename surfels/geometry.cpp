@@ -1,6 +1,7 @@
 #include "surfels/geometry.h"
 
 #include "surfels/edges.h"
+#include "surfels/weld.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -9,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -20,34 +22,6 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 /// Below this share of the summed areas a vector sum counts as cancelled: its direction would be
 /// rounding noise of the file's floats.
 constexpr double kCancelled = 1e-5;
-
-std::uint64_t hash_position(glm::dvec3 p)
-{
-    std::uint64_t hash = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        hash ^= std::bit_cast<std::uint64_t>(p[axis] + 0.0);  // + 0.0: -0 and 0 are one place
-        hash *= 0x9E3779B97F4A7C15u;
-        hash ^= hash >> 29;
-    }
-    return hash;
-}
-
-/// For each vertex the lowest index of a vertex at exactly the same position.
-std::vector<std::uint32_t> weld(const std::vector<glm::dvec3>& positions)
-{
-    const std::size_t slot_count = std::bit_ceil(positions.size() * 2 + 1);
-    std::vector<std::uint32_t> slots(slot_count, kNone);
-    std::vector<std::uint32_t> welded(positions.size());
-    for (std::uint32_t v = 0; v < positions.size(); ++v) {
-        std::size_t slot = hash_position(positions[v]) & (slot_count - 1);
-        while (slots[slot] != kNone && positions[slots[slot]] != positions[v])
-            slot = (slot + 1) & (slot_count - 1);
-        if (slots[slot] == kNone)
-            slots[slot] = v;
-        welded[v] = slots[slot];
-    }
-    return welded;
-}
 
 Frame frame_of(const Scene& scene)
 {
@@ -176,7 +150,8 @@ std::vector<glm::uvec3> keep_triangles(const std::vector<glm::uvec3>& triangles,
 {
     std::vector<glm::uvec3> dropped;
     geometry.triangles.reserve(triangles.size());
-    for (const glm::uvec3 triangle : triangles) {
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        const glm::uvec3 triangle = triangles[t];
         const glm::dvec3 a = positions[triangle[0]];
         const glm::dvec3 b = positions[triangle[1]];
         const glm::dvec3 c = positions[triangle[2]];
@@ -187,9 +162,15 @@ std::vector<glm::uvec3> keep_triangles(const std::vector<glm::uvec3>& triangles,
         const glm::vec3 rounded = glm::cross(fb - fa, fc - fa);
         if (!(glm::length(doubled) > kZeroAreaRatio * longest2) ||
             !(glm::dot(rounded, rounded) > 0.0f)) {
+            if (dropped.empty()) {
+                geometry.kept.resize(t);
+                std::iota(geometry.kept.begin(), geometry.kept.end(), 0u);
+            }
             dropped.push_back(triangle);
             continue;
         }
+        if (!dropped.empty())
+            geometry.kept.push_back(static_cast<std::uint32_t>(t));
         const std::uint32_t index = static_cast<std::uint32_t>(geometry.triangles.size());
         geometry.triangles.push_back(triangle);
         const double area = 0.5 * glm::length(doubled);
@@ -251,7 +232,7 @@ Geometry make_geometry(const Scene& scene)
     Geometry geometry;
     const std::size_t vertex_count = scene.positions.size();
     geometry.frame = frame_of(scene);
-    geometry.welded = weld(scene.positions);
+    geometry.welded = weld(scene, geometry.frame.diagonal);
     geometry.positions.resize(vertex_count);
     geometry.normals.assign(vertex_count, glm::vec3(0.0f));
     geometry.areas.assign(vertex_count, 0.0f);

@@ -21,18 +21,27 @@ struct Frame {
 };
 
 /// Invariants: all values finite; every triangle has an area > 0 in float arithmetic; |normal| is 1
-/// or 0; vertices at one and the same world position have the same `welded` entry.
+/// or 0; vertices at one and the same world position, and those that differ from it by float noise
+/// only (weld.h), have the same `welded` entry.
 struct Geometry {
     Frame frame;
     std::vector<glm::vec3> positions;   ///< one per scene vertex, unit frame
     std::vector<glm::vec3> normals;     ///< one per scene vertex; zero where no triangle gives one
     std::vector<glm::uvec3> triangles;  ///< into positions; those without area are left out
-    std::vector<std::uint32_t> welded;  ///< one per vertex: lowest vertex index at this position
+    std::vector<std::uint32_t> welded;  ///< one per vertex: lowest vertex index at this place
     std::vector<float> areas;           ///< a third of the adjacent triangles, summed over welded
                                         ///< vertices, at the lowest vertex; 0 elsewhere. Of several
                                         ///< triangles over the same three positions one counts:
                                         ///< doubled faces occlude no more than single ones
     std::uint64_t dropped_triangles = 0;  ///< scene triangles without area
+    std::vector<std::uint32_t> kept;      ///< per triangle, its index in the scene; empty where
+                                          ///< none is dropped
+
+    /// The index in the scene of a triangle.
+    [[nodiscard]] std::size_t scene_triangle(std::size_t triangle) const
+    {
+        return kept.empty() ? triangle : kept[triangle];
+    }
 };
 
 /// A triangle counts as having no area when twice its area is at most this share of its longest

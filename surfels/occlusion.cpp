@@ -12,8 +12,6 @@ namespace surfelao {
 void check_definition(const Definition& definition)
 {
     require(definition.max_distance > 0.0f, "max_distance must be above 0");
-    require(definition.offset > 0.0f && std::isfinite(definition.offset),
-            "offset must be above 0 and finite");
     require(definition.falloff == Falloff::none || std::isfinite(definition.max_distance),
             "a falloff needs a max_distance");
 }

@@ -7,8 +7,11 @@
 /// with a falloff, H(w) = falloff weight of the distance of the nearest hit. 0 = open, 1 = closed.
 /// visibility = 1 - occlusion is what is drawn and what is written to colours.
 ///
-/// p is the receiver: the surface point moved along n by `offset`. On shells closer together than
-/// the offset the result depends on it, so both sides of a comparison use the same.
+/// p is the receiver: the surface point moved off the *geometric* surface, to n's side, by an
+/// offset in proportion to its triangle (surface.h). On sheets closer together than that the result
+/// depends on it: of two that coincide each lies open beside the other, and one that lies nearer
+/// behind the other than its offset is seen through it. Both sides of a comparison use the same
+/// receivers.
 ///
 /// bent normal = normalised integral of (1 - H(w)) w (n.w) dw; n itself where nothing is open.
 ///
@@ -46,7 +49,6 @@ enum class Falloff {
 struct Definition {
     float max_distance = std::numeric_limits<float>::infinity();  ///< > 0, in diagonals
     Falloff falloff = Falloff::none;  ///< must be `none` where max_distance is infinite
-    float offset = 1e-4f;             ///< > 0 and finite, in diagonals
     Kernel kernel = Kernel::cosine;
     bool operator==(const Definition&) const = default;
 };

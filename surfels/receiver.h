@@ -1,21 +1,18 @@
 /// receiver.h: the points at which occlusion is asked for.
 #pragma once
 
-#include "surfels/geometry.h"
-
 #include <glm/vec3.hpp>
-
-#include <vector>
 
 namespace surfelao {
 
-/// Any (point, normal): a vertex, a texel, a pixel, a grid cell. Results are indexed by receiver.
+/// Any (point, normal): a place on a surface, a texel, a pixel, a grid cell. Results are indexed by
+/// receiver. Those on a surface are made by surface.h.
 struct Receiver {
-    glm::vec3 position{0.0f};  ///< unit frame, already moved off the surface along the normal
+    glm::vec3 position{0.0f};  ///< unit frame, already off the surface
     glm::vec3 normal{0.0f};    ///< unit length; zero = no hemisphere: occlusion 0, bent normal zero
+    float offset = 0.0f;       ///< how far off the surface, in diagonals. No engine asks; what is
+                               ///< asked too near to another surface is told by it
+                               ///< (reference/well_defined.h)
 };
-
-/// One receiver per scene vertex, in the scene's order. offset: see occlusion.h. O(n).
-[[nodiscard]] std::vector<Receiver> receivers_at_vertices(const Geometry& geometry, float offset);
 
 }  // namespace surfelao

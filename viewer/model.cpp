@@ -146,7 +146,7 @@ bool cover_from_inside(const Geometry& geometry, float most, std::vector<Splat>&
 
 void make_splats(Model& model, float largest)
 {
-    const Geometry& geometry = model.geometry;
+    const Geometry& geometry = model.geometry();
     while (!cover_from_inside(geometry, largest, model.splats, model.splat_radii)) {
         model.splats.clear();
         model.splat_radii.clear();
@@ -190,12 +190,13 @@ std::vector<float> covering_radii(const Geometry& geometry, float most)
     return radii;
 }
 
-Model make_model(Geometry geometry, UpAxis up, float offset, float largest_splat)
+Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings, float largest_splat)
 {
     Model model;
-    model.geometry = std::move(geometry);
+    model.mesh = std::make_shared<const Mesh>(std::move(mesh));
+    model.target = std::make_shared<const VertexTarget>(model.mesh, settings);
     model.up = up;
-    const Geometry& g = model.geometry;
+    const Geometry& g = model.geometry();
 
     std::vector<bool> is_seen(g.positions.size(), false);
     for (const glm::uvec3 triangle : g.triangles)
@@ -216,14 +217,14 @@ Model make_model(Geometry geometry, UpAxis up, float offset, float largest_splat
     model.levels = leaf_levels(build_octree(surfels_at_vertices(g)));
 
     model.ground = make_ground(model.seen, up_direction(up));
-    model.receivers = receivers_at_vertices(g, offset);
+    const float offset = offset_of(settings, g.frame).value_or(kMostOffset);
     const Ground& ground = model.ground;
     for (int y = 0; y <= kGroundCells; ++y) {
         for (int x = 0; x <= kGroundCells; ++x) {
             const float cell = 1.0f / static_cast<float>(kGroundCells);
             const glm::vec3 place = ground.corner + static_cast<float>(x) * cell * ground.axis_x +
                                     static_cast<float>(y) * cell * ground.axis_y;
-            model.receivers.push_back({place + offset * ground.up, ground.up});
+            model.ground_receivers.push_back({place + offset * ground.up, ground.up, offset});
         }
     }
     return model;

@@ -4,6 +4,7 @@
 /// so that no number of the scene changes because a picture is taken.
 #pragma once
 
+#include "bake/vertex_target.h"
 #include "surfels/geometry.h"
 #include "surfels/receiver.h"
 #include "viewer/camera.h"
@@ -13,6 +14,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -42,21 +44,29 @@ struct Splat {
 inline constexpr float kLargestSplat = 0.01f;
 
 struct Model {
-    Geometry geometry;
+    std::shared_ptr<const Mesh> mesh;
+    std::shared_ptr<const VertexTarget> target;  ///< of the mesh's vertices
     std::vector<glm::vec3> seen;         ///< positions that triangles use: what a camera frames
     std::vector<std::uint32_t> surfels;  ///< vertices that are: surfels_at_vertices' order
     std::vector<float> levels;       ///< one per surfel: its leaf's depth in the octree, 0 = root
     std::vector<Splat> splats;       ///< they cover every triangle that has an area
     std::vector<float> splat_radii;  ///< one per splat
     Ground ground;
-    std::vector<Receiver> receivers;  ///< one per vertex, then the ground's
+    std::vector<Receiver> ground_receivers;
     UpAxis up = UpAxis::y;
+
+    const Geometry& geometry() const { return mesh->geometry; }
+    /// Answers that a picture needs: one per vertex, then the ground's.
+    std::size_t answer_count() const
+    {
+        return mesh->geometry.positions.size() + ground_receivers.size();
+    }
 };
 
-/// O(n log n). offset: of the receivers, see occlusion.h. largest_splat: triangles that need larger
+/// O(n log n). mesh: made with settings.normals. largest_splat: triangles that need larger
 /// disks at their corners are covered from inside; where that takes more than a few hundred
 /// thousand disks, larger ones are allowed. Infinite: one splat per surfel, however large.
-[[nodiscard]] Model make_model(Geometry geometry, UpAxis up, float offset,
+[[nodiscard]] Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings = {},
                                float largest_splat = kLargestSplat);
 
 /// The lowest and the highest level, at least 1 apart: what the ends of a colour scale stand for.

@@ -42,8 +42,7 @@ void press(char key, PanelState& state, PanelInput& input)
     input.view_changed |= std::string_view("1234567TGWS").find(key) != std::string_view::npos;
     switch (key) {
         case 'T':
-            state.view.surface =
-                static_cast<Surface>((static_cast<int>(state.view.surface) + 1) % 4);
+            state.view.surface = static_cast<Shape>((static_cast<int>(state.view.surface) + 1) % 4);
             break;
         case 'G':
             state.view.ground = !state.view.ground;
@@ -272,8 +271,8 @@ void Panel::widgets(PanelState& state, const Session& session, const PanelFigure
     ImGui::PushItemWidth(-100.0f * ImGui::GetIO().FontGlobalScale);
     if (shown_state.model)
         ImGui::Text("%s\n%zu vertices, %zu triangles", shown_state.path.filename().c_str(),
-                    shown_state.model->geometry.positions.size(),
-                    shown_state.model->geometry.triangles.size());
+                    shown_state.model->geometry().positions.size(),
+                    shown_state.model->geometry().triangles.size());
     else if (!session.opening())
         ImGui::TextUnformatted("Drop a mesh file on this window.");
     if (session.opening())

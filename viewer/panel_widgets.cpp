@@ -104,10 +104,10 @@ bool view_widgets(PanelState& state)
     }
     int surface = static_cast<int>(view.surface);
     if (ImGui::Combo("surface", &surface, kSurfaceNames, IM_ARRAYSIZE(kSurfaceNames))) {
-        view.surface = static_cast<Surface>(surface);
+        view.surface = static_cast<Shape>(surface);
         changed = true;
     }
-    if (view.surface != Surface::triangles)
+    if (view.surface != Shape::triangles)
         changed |= ImGui::SliderFloat("splat radius", &view.radius_scale, 0.1f, 4.0f, "%.2f",
                                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     if (view.colors == Colors::environment)
@@ -145,11 +145,11 @@ void stage_lines(const SessionState& s)
 void histogram(const Session& session)
 {
     const SessionState& s = session.state();
-    if (!s.is_solved || (!session.has_read_answer() && session.solving()))
+    if (!s.is_solved)
         return;
     const std::vector<Occlusion>& occlusion = session.occlusion();
     std::array<std::size_t, kBins> bins{};
-    const std::size_t vertices = s.model->geometry.positions.size();
+    const std::size_t vertices = s.model->geometry().positions.size();
     for (std::size_t v = 0; v < vertices; ++v) {
         const float position = occlusion[v].occlusion * static_cast<float>(kBins);
         ++bins[std::min(static_cast<std::size_t>(position), bins.size() - 1)];

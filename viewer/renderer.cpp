@@ -50,19 +50,19 @@ std::vector<glm::vec4> occlusion_texels(std::span<const Occlusion> values)
 /// What depends on the model alone.
 struct Upload {
     Upload(const GlContext& context, const Model& model)
-        : positions(texels(context, model.geometry.positions)),
+        : positions(texels(context, model.geometry().positions)),
           normals(texels(context, normals_and_levels(model))),
           occlusion(texels(context, open(model))),
           splats(context, TexelFormat::rgba32ui, view(at_least_one(model.splats))),
           radii(context, TexelFormat::r32f, view(at_least_one(model.splat_radii))),
-          index_buffer(context, view(at_least_one(model.geometry.triangles))),
+          index_buffer(context, view(at_least_one(model.geometry().triangles))),
           triangles(context),
-          index_count(3 * model.geometry.triangles.size()),
+          index_count(3 * model.geometry().triangles.size()),
           splat_count(model.splats.size()),
           ground(model.ground)
     {
         triangles.indices(index_buffer);
-        vertex_count = model.geometry.positions.size();
+        vertex_count = model.geometry().positions.size();
         for (const glm::vec3& p : model.seen)
             radius = std::max(radius, glm::length(p));
         radius = std::max({radius, glm::length(ground.corner),
@@ -92,7 +92,7 @@ struct Upload {
     }
     static std::vector<glm::vec4> normals_and_levels(const Model& model)
     {
-        const Geometry& geometry = model.geometry;
+        const Geometry& geometry = model.geometry();
         std::vector<float> level_at(geometry.positions.size(), 0.0f);
         const glm::vec2 range = level_range(model);
         for (std::size_t i = 0; i < model.surfels.size(); ++i)
@@ -106,8 +106,8 @@ struct Upload {
     static std::vector<glm::vec4> open(const Model& model)
     {
         std::vector<glm::vec4> values;
-        values.reserve(model.geometry.normals.size());
-        for (const glm::vec3& normal : model.geometry.normals)
+        values.reserve(model.geometry().normals.size());
+        for (const glm::vec3& normal : model.geometry().normals)
             values.emplace_back(normal, 0.0f);
         return values;
     }
@@ -411,16 +411,16 @@ void Renderer::draw_frame(const Framebuffer& target, const Camera& camera,
         impl_->draw_ground(frame);
     if (impl_->upload->splat_count > 0) {
         switch (options.surface) {
-            case Surface::triangles:
+            case Shape::triangles:
                 impl_->draw_triangles(frame);
                 break;
-            case Surface::splats:
+            case Shape::splats:
                 impl_->draw_blended_splats(frame);
                 break;
-            case Surface::affine:
+            case Shape::affine:
                 impl_->draw_plain_splats(frame, impl_->affine);
                 break;
-            case Surface::points:
+            case Shape::points:
                 impl_->draw_plain_splats(frame, impl_->points);
                 break;
         }

@@ -34,15 +34,13 @@ struct Session::Read {
     std::uint64_t number = 0;
     std::string failure;  ///< if not empty, the rest is
     std::filesystem::path path;
-    std::shared_ptr<const Scene> scene;
     std::shared_ptr<const Model> model;
     double seconds = 0.0;
 };
 
 struct Session::Answer {
     std::uint64_t number = 0;
-    std::shared_ptr<const DeviceSolution> on_device;  ///< its vertices; or null
-    std::vector<Occlusion> occlusion;                 ///< of the others
+    std::vector<Occlusion> occlusion;
     double seconds = 0.0;
     std::optional<double> build_s;
     SessionSettings settings;
@@ -79,23 +77,16 @@ struct Session::Engines {
             return;
         prepared.reset();  // before the next one is built: both may be large
         model = wanted;
-        prepared.emplace(prepare(wanted->geometry, choice));
+        prepared.emplace(prepare(wanted->geometry(), choice));
         untold_s = prepared->seconds().surfels + prepared->seconds().tree;
     }
 
     void solve(const Model& of, const SolveSettings& settings, const Progress& progress,
                Answer& answer) const
     {
-        if (lent != nullptr && prepared->choice().device == Device::gpu) {
-            ModelOnDevice found = solve_model_on_device(*prepared, of, settings, progress);
-            answer.on_device = std::move(found.vertices);
-            answer.occlusion = std::move(found.ground);
-            answer.seconds = found.seconds;
-        } else {
-            Solution found = solve_model(*prepared, of, settings, true, progress);
-            answer.occlusion = std::move(found.occlusion);
-            answer.seconds = found.seconds;
-        }
+        Solution found = solve_model(*prepared, of, settings, true, progress);
+        answer.occlusion = std::move(found.occlusion);
+        answer.seconds = found.seconds;
     }
 
     /// In the thread that has used them.
@@ -126,9 +117,8 @@ void Session::open(const std::filesystem::path& path, UpAxis up)
         read->number = number;
         read->path = path;
         try {
-            read->scene = std::make_shared<const Scene>(read_scene(path));
-            read->model = std::make_shared<const Model>(
-                make_model(make_geometry(*read->scene), up, Definition().offset));
+            read->model =
+                std::make_shared<const Model>(make_model(make_mesh(read_scene(path)), up));
         } catch (const std::exception& error) {
             read->failure = error.what();
         }
@@ -157,7 +147,7 @@ void Session::start_solve()
     const std::uint64_t number = ++solve_number_;
     EngineSettings whole = settings_.engine;
     whole.definition =
-        definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry.frame);
+        definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry().frame);
     std::vector<EngineSettings> steps = {draft_of(whole), whole};
     if (steps[0] == steps[1])
         steps.pop_back();
@@ -206,15 +196,14 @@ void Session::start_reference()
         return;
     }
     const ReferenceOptions options{
-        definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry.frame),
+        definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry().frame),
         reference_rays_};
     tracer_.start([this, number, options, model = state_.model](const Progress& progress) {
         try {
             Stopwatch watch;
             auto traced = std::make_unique<Traced>();
             traced->number = number;
-            traced->reference =
-                trace_reference(model->geometry, model->receivers, options, progress);
+            traced->reference = reference_of(*model, options, progress);
             traced->seconds = watch.lap();
             const std::lock_guard lock(mailbox_);
             traced_ = std::move(traced);
@@ -279,22 +268,15 @@ Session::Changes Session::update()
     }
     if (changes.model) {
         state_.path = read->path;
-        state_.scene = read->scene;
         state_.model = read->model;
         state_.read_s = read->seconds;
         state_.is_solved = false;
-        state_.on_device.reset();
         occlusion_.clear();
         start_reference();
         start_solve();
     }
     if (answer && answer->number == solve_number_) {
-        const auto ground = answer->occlusion.end() - kGroundReceivers;
-        ground_.assign(ground, answer->occlusion.end());
-        state_.on_device = std::move(answer->on_device);
-        occlusion_.clear();
-        if (!state_.on_device)
-            occlusion_ = std::move(answer->occlusion);
+        occlusion_ = std::move(answer->occlusion);
         state_.is_solved = true;
         solved_with_ = answer->settings;
         ++state_.answer_count;
@@ -306,11 +288,10 @@ Session::Changes Session::update()
         changes.occlusion = true;
     }
     if (traced && traced->number == trace_number_) {
-        const Geometry& geometry = state_.model->geometry;
+        const Geometry& geometry = state_.model->geometry();
         has_answer_.assign(geometry.positions.size(), false);
         for (std::size_t v = 0; v < has_answer_.size(); ++v)
-            has_answer_[v] =
-                geometry.normals[v] != glm::vec3(0.0f) && traced->reference.well_defined(v);
+            has_answer_[v] = state_.model->mesh->surface.normals[v] != glm::vec3(0.0f);
         state_.reference_s.reset();
         if (!traced->reference.from_cache)
             state_.reference_s = traced->seconds;
@@ -324,24 +305,18 @@ Session::Changes Session::update()
     return changes;
 }
 
-const std::vector<Occlusion>& Session::occlusion() const
-{
-    if (!has_read_answer()) {
-        occlusion_ = read_answers(state_.on_device->answers, state_.on_device->count);
-        occlusion_.insert(occlusion_.end(), ground_.begin(), ground_.end());
-    }
-    return occlusion_;
-}
-
 void Session::save(const std::filesystem::path& path) const
 {
     SURFELAO_CHECK(state_.is_solved);
     check_output(state_.path, path);
-    write_scene(path, *state_.scene, std::span(occlusion()).first(state_.scene->positions.size()),
-                {.mark = mark_of({.input = state_.path,
-                                  .output = path,
-                                  .engine = solved_with_.engine,
-                                  .max_distance = solved_with_.max_distance})});
+    BakeSettings made;
+    made.input = state_.path;
+    made.output = path;
+    made.engine = solved_with_.engine;
+    made.max_distance = solved_with_.max_distance;
+    const Scene& scene = state_.model->mesh->scene;
+    write_scene(path, scene, std::span(occlusion()).first(scene.positions.size()),
+                {.mark = mark_of(made)});
 }
 
 }  // namespace surfelao

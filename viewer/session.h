@@ -3,7 +3,6 @@
 #pragma once
 
 #include "bake/statistics.h"
-#include "engines/device_solution.h"
 #include "engines/engine.h"
 #include "gpu/context.h"
 #include "surfels/occlusion.h"
@@ -34,14 +33,11 @@ struct SessionSettings {
 /// A picture of the session for one frame.
 struct SessionState {
     std::filesystem::path path;          ///< of the model shown
-    std::shared_ptr<const Scene> scene;  ///< null until a file was read
-    std::shared_ptr<const Model> model;
-    bool is_solved = false;                           ///< there is an answer: Session::occlusion()
-    bool is_draft = false;                            ///< it is the rough one
-    std::shared_ptr<const DeviceSolution> on_device;  ///< its vertices, where they are on a device
-                                                      ///< that was lent; else null
-    std::vector<Occlusion> reference;  ///< empty until it was traced for the same definition
-    std::uint64_t answer_count = 0;    ///< how many have come so far, drafts too
+    std::shared_ptr<const Model> model;  ///< null until a file was read
+    bool is_solved = false;              ///< there is an answer: Session::occlusion()
+    bool is_draft = false;               ///< it is the rough one
+    std::vector<Occlusion> reference;    ///< empty until it was traced for the same definition
+    std::uint64_t answer_count = 0;      ///< how many have come so far, drafts too
     double read_s = 0.0;
     std::optional<double> build_s;  ///< empty where what was built before has answered again
     double solve_s = 0.0;
@@ -56,11 +52,8 @@ struct SessionState {
 /// another engine, device or model is wanted.
 class Session {
 public:
-    /// device: where engines compute on the GPU: a context that nobody else uses, that shares
-    /// objects with the one that is current in the caller's thread (and in update() and the
-    /// functions that say so), and that outlives the session and its answers, which stay on the
-    /// device. Null: a context of the session's own, made when it is first needed; answers come
-    /// back.
+    /// device: where engines compute on the GPU: a context that nobody else uses and that outlives
+    /// the session. Null: a context of the session's own, made when it is first needed.
     explicit Session(const GlContext* device = nullptr);
     ~Session();
 
@@ -88,15 +81,8 @@ public:
     };
     [[nodiscard]] Changes update();
 
-    /// One answer per receiver of the model; empty until something was solved. What lies on the
-    /// device is read when it is first asked for.
-    const std::vector<Occlusion>& occlusion() const;
-
-    /// Whether occlusion() has no need to wait for the device.
-    bool has_read_answer() const { return !state_.on_device || !occlusion_.empty(); }
-
-    /// The part of it that is the ground's, without reading the rest.
-    const std::vector<Occlusion>& ground() const { return ground_; }
+    /// Model::answer_count() answers; empty until something was solved.
+    const std::vector<Occlusion>& occlusion() const { return occlusion_; }
 
     /// Writes the model with the answer at its vertices, the draft where there is no other: the
     /// bytes that bake() writes for these settings. Something must be solved. Replaces what stands
@@ -126,10 +112,9 @@ private:
     bool opening_ = false;
     bool was_cancelled_ = false;
     SessionState state_;
-    std::vector<bool> has_answer_;              ///< per vertex, by the reference
-    SessionSettings solved_with_;               ///< the answer, a draft's where it is one
-    std::vector<Occlusion> ground_;             ///< the last part of the answer
-    mutable std::vector<Occlusion> occlusion_;  ///< empty while the device alone has it
+    std::vector<bool> has_answer_;  ///< per vertex, by the reference
+    SessionSettings solved_with_;   ///< the answer, a draft's where it is one
+    std::vector<Occlusion> occlusion_;
 
     std::unique_ptr<Engines> engines_;  ///< used by the solver's thread alone
 

@@ -1,57 +1,49 @@
 #include "viewer/solve_model.h"
 
+#include "surfels/stopwatch.h"
+
 #include <span>
 #include <utility>
 #include <vector>
 
 namespace surfelao {
-namespace {
-
-std::span<const Receiver> vertices_of(const Model& model)
-{
-    return std::span(model.receivers).first(model.geometry.positions.size());
-}
-
-std::span<const Receiver> ground_of(const Model& model)
-{
-    return std::span(model.receivers).subspan(model.geometry.positions.size());
-}
-
-}  // namespace
 
 Solution solve_model(const Prepared& prepared, const Model& model, const SolveSettings& settings,
                      bool with_ground, const Progress& progress)
 {
-    if (!with_ground) {
-        Solution solution = solve(prepared, vertices_of(model), settings, progress);
-        for (const Receiver& receiver : ground_of(model))
-            solution.occlusion.push_back({0.0f, receiver.normal});
-        return solution;
+    const std::span<const Receiver> asked = model.target->receivers();
+    std::vector<Solution> found;
+    if (with_ground) {
+        const std::span<const Receiver> lists[] = {asked, model.ground_receivers};
+        found = solve_lists(prepared, lists, settings, progress);
+    } else {
+        found.push_back(solve(prepared, asked, settings, progress));
+        found.emplace_back();
+        for (const Receiver& receiver : model.ground_receivers)
+            found.back().occlusion.push_back({0.0f, receiver.normal});
     }
-    const std::span<const Receiver> lists[] = {vertices_of(model), ground_of(model)};
-    std::vector<Solution> both = solve_lists(prepared, lists, settings, progress);
-    both[0].occlusion.insert(both[0].occlusion.end(), both[1].occlusion.begin(),
-                             both[1].occlusion.end());
-    return std::move(both[0]);
+    Stopwatch watch;
+    Solution solution = std::move(found[0]);
+    solution.occlusion = model.target->values(solution.occlusion);
+    solution.occlusion.insert(solution.occlusion.end(), found[1].occlusion.begin(),
+                              found[1].occlusion.end());
+    solution.seconds += watch.lap();
+    return solution;
 }
 
-ModelOnDevice solve_model_on_device(const Prepared& prepared, const Model& model,
-                                    const SolveSettings& settings, const Progress& progress)
+Reference reference_of(const Model& model, const ReferenceOptions& options,
+                       const Progress& progress)
 {
-    const double share = static_cast<double>(model.geometry.positions.size()) /
-                         static_cast<double>(model.receivers.size());
-    Progress of_vertices, of_ground;
-    if (progress) {
-        of_vertices = [&](double done) { return progress(share * done); };
-        of_ground = [&](double done) { return progress(share + (1.0 - share) * done); };
-    }
-    ModelOnDevice found;
-    found.vertices = std::make_shared<const DeviceSolution>(
-        solve_on_device(prepared, vertices_of(model), settings, of_vertices));
-    Solution ground = solve(prepared, ground_of(model), settings, of_ground);
-    found.ground = std::move(ground.occlusion);
-    found.seconds = found.vertices->seconds + ground.seconds;
-    return found;
+    const std::span<const Receiver> asked = model.target->receivers();
+    std::vector<Receiver> receivers(asked.begin(), asked.end());
+    receivers.insert(receivers.end(), model.ground_receivers.begin(), model.ground_receivers.end());
+    Reference reference = trace_reference(model.geometry(), receivers, options, progress);
+    const std::span<const Occlusion> traced = reference.occlusion;
+    std::vector<Occlusion> values = model.target->values(traced.first(asked.size()));
+    values.insert(values.end(), traced.begin() + static_cast<std::ptrdiff_t>(asked.size()),
+                  traced.end());
+    reference.occlusion = std::move(values);
+    return reference;
 }
 
 }  // namespace surfelao

@@ -4,7 +4,7 @@
 namespace surfelao {
 
 /// What stands for the surface.
-enum class Surface {
+enum class Shape {
     triangles,
     splats,  ///< surfels as disks: perspective-correct, blended where they overlap
     affine,  ///< surfels as Engleson's report draws them: affinely projected, without blending
@@ -23,7 +23,7 @@ enum class Colors {
 };
 
 struct ViewOptions {
-    Surface surface = Surface::triangles;
+    Shape surface = Shape::triangles;
     Colors colors = Colors::visibility;
     float radius_scale = 1.0f;      ///< > 0, on covering_radii (model.h)
     float difference_scale = 0.1f;  ///< > 0: the difference that is hottest

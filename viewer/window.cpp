@@ -147,10 +147,7 @@ private:
                                    (state.path.filename().string() + " - surfelao").c_str());
                 frame_all();
             }
-            if (changes.occlusion && state.on_device)
-                renderer_.set_occlusion({state.on_device, &state.on_device->answers},
-                                        session_.ground());
-            else if (changes.occlusion)
+            if (changes.occlusion)
                 renderer_.set_occlusion(session_.occlusion());
             if (changes.reference)
                 renderer_.set_reference(state.reference);
@@ -169,8 +166,8 @@ private:
             camera_ = parse_camera(
                 options_.camera,
                 {.points = model.seen,
-                 .frame_centre = model.geometry.frame.centre,
-                 .frame_diagonal = model.geometry.frame.diagonal,
+                 .frame_centre = model.geometry().frame.centre,
+                 .frame_diagonal = model.geometry().frame.diagonal,
                  .up = model.up,
                  .aspect = static_cast<float>(seen.width) / static_cast<float>(seen.height)});
         } catch (const InputError& error) {

@@ -41,8 +41,7 @@ constexpr ReportRow kRows[] = {
     {64, "6", "0.37", "0.06"}, {128, "0.48", "0.1", "0.03"}, {999, "", "", ""},
 };
 
-constexpr std::array kSurfaces = {Surface::triangles, Surface::splats, Surface::affine,
-                                  Surface::points};
+constexpr std::array kSurfaces = {Shape::triangles, Shape::splats, Shape::affine, Shape::points};
 
 /// Frames per second of each surface, in kSurfaces' order.
 std::array<double, kSurfaces.size()> frame_rates(const GlContext& context, Renderer& renderer,
@@ -90,9 +89,9 @@ void run(GlBackend backend)
                              std::tan(glm::radians(0.5 * camera.fovy_deg)) /
                              glm::distance(camera.eye, camera.target);
         std::printf("| %zu | %.3g | %s | %.3g | %s | %.3g | %.3g | %.4f | %s | %.1f |\n",
-                    model.geometry.positions.size(), rates[0], row.triangles, rates[1],
+                    model.geometry().positions.size(), rates[0], row.triangles, rates[1],
                     row.covering, rates[2], rates[3],
-                    covering_radii(model.geometry)[0] * std::sqrt(2.0) * kReportSide, row.radius,
+                    covering_radii(model.geometry())[0] * std::sqrt(2.0) * kReportSide, row.radius,
                     width);
         std::fflush(stdout);
     }

@@ -78,7 +78,7 @@ TEST(Model, HasASplatPerSurfelWhereTrianglesAreSmall)
     for (const float largest : {0.2f, std::numeric_limits<float>::infinity()}) {
         const Model model =
             make_model(make_geometry(scenes::sphere({0, 0, 0}, 1.0, 8)), UpAxis::y, 1e-4f, largest);
-        ASSERT_EQ(model.splats.size(), surfels_at_vertices(model.geometry).size());
+        ASSERT_EQ(model.splats.size(), surfels_at_vertices(model.geometry()).size());
         ASSERT_EQ(model.splat_radii.size(), model.splats.size());
         for (std::size_t i = 0; i < model.splats.size(); ++i)
             EXPECT_EQ(model.splats[i].vertices, glm::uvec3(model.surfels[i]));
@@ -94,7 +94,7 @@ TEST(Model, LargeTrianglesAreCoveredFromInside)
         const Model model = make_model(make_geometry(triangle(a, b, c)), UpAxis::y, 1e-4f);
         ASSERT_EQ(model.splat_radii.size(), model.splats.size());
         EXPECT_LT(model.splats.size(), 20'000u);
-        const std::vector<glm::vec3>& p = model.geometry.positions;
+        const std::vector<glm::vec3>& p = model.geometry().positions;
         const auto point = [&](glm::vec2 at) {
             return p[0] + at.x * (p[1] - p[0]) + at.y * (p[2] - p[0]);
         };
@@ -154,9 +154,9 @@ TEST(Model, GroundLiesUnderTheScene)
             make_model(make_geometry(scenes::box({1, 2, 3}, {2, 4, 6}, 2)), up, 1e-4f);
         const glm::vec3 above = up_direction(up);
         float lowest = 1e9f;
-        for (const glm::vec3& p : model.geometry.positions)
+        for (const glm::vec3& p : model.geometry().positions)
             lowest = std::min(lowest, glm::dot(p, above));
-        const std::size_t vertices = model.geometry.positions.size();
+        const std::size_t vertices = model.geometry().positions.size();
         ASSERT_EQ(model.receivers.size(), vertices + (kGroundCells + 1) * (kGroundCells + 1));
         for (std::size_t i = vertices; i < model.receivers.size(); ++i) {
             EXPECT_LT(glm::dot(model.receivers[i].position, above), lowest);

@@ -50,7 +50,7 @@ std::vector<Occlusion> all(const Model& model, float occlusion)
 }
 
 /// Small, by OSMesa, without the ground: only the model differs from the background.
-RenderOptions plain(Surface surface, int width, int height)
+RenderOptions plain(Shape surface, int width, int height)
 {
     RenderOptions options;
     options.width = width;
@@ -117,20 +117,20 @@ TEST(Splats, ASpheresOutlineIsRound)
 {
     const Model model = surfels_of(scenes::sphere({0, 0, 0}, 1.0, 16));
     const Camera camera = frame_points(model.seen, UpAxis::z, 1.0f);
-    const Roundness disks = roundness(draw_open(model, camera, plain(Surface::splats, 240, 240)));
+    const Roundness disks = roundness(draw_open(model, camera, plain(Shape::splats, 240, 240)));
     EXPECT_LT(disks.outside, 1.0);
     EXPECT_LT(disks.inside, 1.0);
-    const Roundness affine = roundness(draw_open(model, camera, plain(Surface::affine, 240, 240)));
+    const Roundness affine = roundness(draw_open(model, camera, plain(Shape::affine, 240, 240)));
     EXPECT_LT(affine.outside, 1.0);
     // what plain sprites do instead
-    const Roundness points = roundness(draw_open(model, camera, plain(Surface::points, 240, 240)));
+    const Roundness points = roundness(draw_open(model, camera, plain(Shape::points, 240, 240)));
     EXPECT_GT(points.outside, 2.0);
 }
 
 /// How many pixels that triangles cover the surface leaves open.
-std::size_t holes(const Model& model, const Camera& camera, Surface surface)
+std::size_t holes(const Model& model, const Camera& camera, Shape surface)
 {
-    const Image triangles = draw_open(model, camera, plain(Surface::triangles, 320, 200));
+    const Image triangles = draw_open(model, camera, plain(Shape::triangles, 320, 200));
     const Image other = draw_open(model, camera, plain(surface, 320, 200));
     EXPECT_GT(model_pixels(triangles), 1000u);
     std::size_t count = 0;
@@ -147,15 +147,15 @@ TEST(Splats, AFloorAtAGrazingAngleKeepsItsCoverage)
     camera.up = {0, 0, 1};
     camera.eye = {0.0f, -0.6f, 0.02f};
     camera.target = {0.0f, 0.0f, 0.0f};
-    EXPECT_EQ(holes(model, camera, Surface::splats), 0u);
-    EXPECT_GT(holes(model, camera, Surface::affine), 500u);
+    EXPECT_EQ(holes(model, camera, Shape::splats), 0u);
+    EXPECT_GT(holes(model, camera, Shape::affine), 500u);
 }
 
 TEST(Splats, ABumpySurfaceHasNoHoles)
 {
     const Model model = surfels_of(scenes::bumpy_sphere(24));
     const Camera camera = frame_points(model.seen, UpAxis::z, 1.6f);
-    EXPECT_EQ(holes(model, camera, Surface::splats), 0u);
+    EXPECT_EQ(holes(model, camera, Shape::splats), 0u);
 }
 
 // A room of two triangles a wall: no splat is missing inside, none sticks out at the corners.
@@ -165,12 +165,12 @@ TEST(Splats, CoarseTrianglesAreCoveredAndNotExceeded)
     for (const float elevation_deg : {2.0f, 30.0f}) {
         const Camera camera =
             frame_points(model.seen, UpAxis::z, 1.6f, {.elevation_deg = elevation_deg});
-        EXPECT_EQ(holes(model, camera, Surface::splats), 0u);
-        const auto pixels = [&](Surface surface) {
+        EXPECT_EQ(holes(model, camera, Shape::splats), 0u);
+        const auto pixels = [&](Shape surface) {
             return static_cast<double>(
                 model_pixels(draw_open(model, camera, plain(surface, 320, 200))));
         };
-        EXPECT_NEAR(pixels(Surface::splats) / pixels(Surface::triangles), 1.0, 0.01);
+        EXPECT_NEAR(pixels(Shape::splats) / pixels(Shape::triangles), 1.0, 0.01);
     }
 }
 
@@ -183,7 +183,7 @@ TEST(Splats, HaveTheRightSizeForAnyFieldOfView)
         Camera camera = frame_points(model.seen, UpAxis::z, 1.0f,
                                      {.azimuth_deg = 0, .elevation_deg = 90}, fovy_deg);
         zoom(camera, 1.5f);
-        const auto width = [&](Surface surface) {
+        const auto width = [&](Shape surface) {
             const Image image = draw_open(model, camera, plain(surface, 400, 400));
             int low = image.width, high = 0;
             for (int y = 0; y < image.height; ++y) {
@@ -199,8 +199,8 @@ TEST(Splats, HaveTheRightSizeForAnyFieldOfView)
         const float depth = glm::distance(camera.eye, camera.target);
         const float radius = model.splat_radii[0] * 400.0f /
                              (std::tan(glm::radians(fovy_deg) / 2.0f) * 2.0f * depth);
-        const int triangles = width(Surface::triangles);
-        for (Surface surface : {Surface::splats, Surface::affine, Surface::points})
+        const int triangles = width(Shape::triangles);
+        for (Shape surface : {Shape::splats, Shape::affine, Shape::points})
             EXPECT_NEAR(width(surface) - triangles, 2.0f * radius, 2.0f) << fovy_deg;
     }
 }
@@ -215,7 +215,7 @@ TEST(Splats, MayBeLargerThanTheDevicesPoints)
     Camera camera =
         frame_points(model.seen, UpAxis::z, 1.0f, {.azimuth_deg = 0, .elevation_deg = 90});
     zoom(camera, 0.4f);
-    for (Surface surface : {Surface::splats, Surface::affine, Surface::points}) {
+    for (Shape surface : {Shape::splats, Shape::affine, Shape::points}) {
         const Image image = draw_open(model, camera, plain(surface, 700, 700));
         EXPECT_EQ(model_pixels(image), 700u * 700u);
     }
@@ -225,12 +225,12 @@ TEST(Render, TheGroundIsDarkerUnderTheModelAndOnlyThere)
 {
     const Model model = model_of(scenes::box({0, 0, 0}, {1, 1, 1}, 2));
     const Camera camera = frame_points(model.seen, UpAxis::z, 1.5f);
-    RenderOptions options = plain(Surface::triangles, 150, 100);
+    RenderOptions options = plain(Shape::triangles, 150, 100);
     const Image without = render(model, all(model, 0.0f), {}, camera, options);
     options.view.ground = true;
     EXPECT_EQ(render(model, all(model, 0.0f), {}, camera, options).pixels, without.pixels);
     std::vector<Occlusion> dark = all(model, 0.0f);
-    for (std::size_t i = model.geometry.positions.size(); i < dark.size(); ++i)
+    for (std::size_t i = model.geometry().positions.size(); i < dark.size(); ++i)
         dark[i].occlusion = 0.5f;
     const Image with = render(model, dark, {}, camera, options);
     EXPECT_LT(with.at(75, 97).r, 0.6f * without.at(75, 97).r);
@@ -249,7 +249,7 @@ TEST(Render, RightOfTheWipeTheReferenceIsShown)
     const Model model = model_of(scenes::sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2));
     const Camera camera =
         frame_points(model.seen, UpAxis::z, 1.0f, {.azimuth_deg = 0, .elevation_deg = 90});
-    RenderOptions options = plain(Surface::triangles, 100, 100);
+    RenderOptions options = plain(Shape::triangles, 100, 100);
     options.view.wipe = 0.5f;
     const Image image = render(model, all(model, 0.0f), all(model, 1.0f), camera, options);
     EXPECT_GT(image.at(48, 50).r, 0.8f);
@@ -265,7 +265,7 @@ TEST(Render, TheDifferenceIsAHeatMapWithItsLegend)
     const Model model = model_of(scenes::sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2));
     const Camera camera =
         frame_points(model.seen, UpAxis::z, 1.0f, {.azimuth_deg = 0, .elevation_deg = 90});
-    RenderOptions options = plain(Surface::triangles, 300, 300);
+    RenderOptions options = plain(Shape::triangles, 300, 300);
     options.view.colors = Colors::difference;
     options.view.difference_scale = 0.2f;
     const auto middle = [&](float own, float reference) {
@@ -285,7 +285,7 @@ TEST(Render, TheEnvironmentIsLookedUpAlongTheBentNormal)
     const Model model = model_of(scenes::sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2));
     const Camera camera =
         frame_points(model.seen, UpAxis::z, 1.0f, {.azimuth_deg = 0, .elevation_deg = 90});
-    RenderOptions options = plain(Surface::triangles, 60, 60);
+    RenderOptions options = plain(Shape::triangles, 60, 60);
     options.view.colors = Colors::environment;
     options.environment = Image(64, 32, glm::vec4(0.0f));
     for (int y = 10; y < 22; ++y)
@@ -307,7 +307,7 @@ TEST(Render, SamplesSmoothTheEdges)
 {
     const Model model = model_of(scenes::sphere({0, 0, 0}, 1.0, 8));
     const Camera camera = frame_points(model.seen, UpAxis::z, 1.0f);
-    RenderOptions options = plain(Surface::triangles, 64, 64);
+    RenderOptions options = plain(Shape::triangles, 64, 64);
     const auto steps = [&](int samples) {
         options.samples = samples;
         const Image image = draw_open(model, camera, options);
@@ -323,7 +323,7 @@ TEST(Render, TheSamePictureTwiceIsTheSameBytes)
 {
     const Model model = model_of(scenes::bumpy_sphere(8));
     const Camera camera = frame_points(model.seen, UpAxis::z, 1.0f);
-    for (Surface surface : {Surface::triangles, Surface::splats}) {
+    for (Shape surface : {Shape::triangles, Shape::splats}) {
         const RenderOptions options = plain(surface, 64, 64);
         EXPECT_EQ(draw_open(model, camera, options).pixels,
                   draw_open(model, camera, options).pixels);
@@ -337,7 +337,7 @@ TEST(Render, ASceneWithoutAreaIsBackground)
     scene.triangles = {{0, 1, 2}};
     const Model model = model_of(scene);
     const Camera camera = frame_points(model.seen, UpAxis::z, 1.0f);
-    for (Surface surface : {Surface::triangles, Surface::splats, Surface::affine, Surface::points})
+    for (Shape surface : {Shape::triangles, Shape::splats, Shape::affine, Shape::points})
         EXPECT_EQ(model_pixels(draw_open(model, camera, plain(surface, 32, 32))), 0u);
 }
 
@@ -347,7 +347,7 @@ TEST(Render, SizesThatCannotBeDrawnAreRefused)
     const Camera camera = frame_points(model.seen, UpAxis::z, 1.0f);
     for (const glm::ivec2 size : {glm::ivec2(0, 10), glm::ivec2(10, 0), glm::ivec2(-1, 10),
                                   glm::ivec2(1000000, 10), glm::ivec2(10, 1000000)})
-        EXPECT_THROW((void)draw_open(model, camera, plain(Surface::triangles, size.x, size.y)),
+        EXPECT_THROW((void)draw_open(model, camera, plain(Shape::triangles, size.x, size.y)),
                      InputError)
             << size.x << " x " << size.y;
 }
@@ -356,8 +356,8 @@ TEST(Render, CanBeCancelled)
 {
     const Model model = model_of(scenes::box({0, 0, 0}, {1, 1, 1}, 1));
     const Camera camera = frame_points(model.seen, UpAxis::z, 1.0f);
-    EXPECT_THROW((void)render(model, all(model, 0.0f), {}, camera,
-                              plain(Surface::triangles, 32, 32), [](double) { return false; }),
+    EXPECT_THROW((void)render(model, all(model, 0.0f), {}, camera, plain(Shape::triangles, 32, 32),
+                              [](double) { return false; }),
                  Cancelled);
 }
 
@@ -396,14 +396,14 @@ void expect_golden(const std::string& name, const Image& actual)
 
 struct Golden {
     const char* name;
-    Surface surface;
+    Shape surface;
     Colors colors;
 };
 
 TEST(Render, LooksAsItDidWhenItWasLookedAt)
 {
     const Model model = surfels_of(corner_with_ball());
-    const RayScene scene(model.geometry, RayScene::Build::robust);
+    const RayScene scene(model.geometry(), RayScene::Build::robust);
     const std::vector<Occlusion> reference =
         trace_occlusion(scene, model.receivers, {.rays = 256, .seed = 1});
     // few rays: something to see in the difference
@@ -411,15 +411,15 @@ TEST(Render, LooksAsItDidWhenItWasLookedAt)
     const Camera camera =
         frame_points(model.seen, UpAxis::z, 4.0f / 3.0f, {.azimuth_deg = 40, .elevation_deg = 20});
     for (const Golden& golden : {
-             Golden{"triangles", Surface::triangles, Colors::rays},
-             Golden{"splats", Surface::splats, Colors::rays},
-             Golden{"affine", Surface::affine, Colors::rays},
-             Golden{"points", Surface::points, Colors::rays},
-             Golden{"difference", Surface::triangles, Colors::difference},
-             Golden{"bent_normals", Surface::triangles, Colors::bent_normals},
-             Golden{"normals", Surface::splats, Colors::normals},
-             Golden{"levels", Surface::splats, Colors::levels},
-             Golden{"environment", Surface::triangles, Colors::environment},
+             Golden{"triangles", Shape::triangles, Colors::rays},
+             Golden{"splats", Shape::splats, Colors::rays},
+             Golden{"affine", Shape::affine, Colors::rays},
+             Golden{"points", Shape::points, Colors::rays},
+             Golden{"difference", Shape::triangles, Colors::difference},
+             Golden{"bent_normals", Shape::triangles, Colors::bent_normals},
+             Golden{"normals", Shape::splats, Colors::normals},
+             Golden{"levels", Shape::splats, Colors::levels},
+             Golden{"environment", Shape::triangles, Colors::environment},
          }) {
         RenderOptions options = plain(golden.surface, 200, 150);
         options.samples = 4;

@@ -67,10 +67,10 @@ bool wait_for_whole_answer(Session& session)
 std::vector<float> vertex_answers(const Model& model, const EngineSettings& settings)
 {
     const std::vector<Receiver> receivers =
-        receivers_at_vertices(model.geometry, settings.definition.offset);
+        receivers_at_vertices(model.geometry(), settings.definition.offset);
     std::vector<float> values;
     for (const Occlusion& value :
-         solve(prepare(model.geometry, settings), receivers, settings).occlusion)
+         solve(prepare(model.geometry(), settings), receivers, settings).occlusion)
         values.push_back(value.occlusion);
     return values;
 }
@@ -89,9 +89,9 @@ TEST_F(SessionTest, ReadsAFileAndSolvesIt)
     session.open(ball(), UpAxis::y);
     ASSERT_TRUE(wait_for_whole_answer(session));
     const SessionState& state = session.state();
-    EXPECT_EQ(state.model->geometry.positions.size(), scenes::bumpy_sphere(6).positions.size());
+    EXPECT_EQ(state.model->geometry().positions.size(), scenes::bumpy_sphere(6).positions.size());
     EXPECT_EQ(session.occlusion().size(), state.model->receivers.size());
-    EXPECT_EQ(first_values(session.occlusion(), state.model->geometry.positions.size()),
+    EXPECT_EQ(first_values(session.occlusion(), state.model->geometry().positions.size()),
               vertex_answers(*state.model, {}));
     EXPECT_FALSE(state.error.has_value());
 }
@@ -142,7 +142,7 @@ TEST_F(SessionTest, OtherSettingsReplaceWhatRuns)
     EngineSettings wanted;
     wanted.quality = 0.5f;
     const Model& model = *session.state().model;
-    EXPECT_EQ(first_values(session.occlusion(), model.geometry.positions.size()),
+    EXPECT_EQ(first_values(session.occlusion(), model.geometry().positions.size()),
               vertex_answers(model, wanted));
 }
 
@@ -262,8 +262,8 @@ TEST_F(SessionTest, SavesTheBytesThatBakeWrites)
 TEST(SolveModel, WithoutTheGroundTheVerticesAreTheSameAndTheGroundIsOpen)
 {
     const Model model = make_model(make_geometry(scenes::bumpy_sphere(6)), UpAxis::z, 1e-4f);
-    const Prepared prepared = prepare(model.geometry);
-    const std::size_t vertices = model.geometry.positions.size();
+    const Prepared prepared = prepare(model.geometry());
+    const std::size_t vertices = model.geometry().positions.size();
     const std::vector<Occlusion> with = solve_model(prepared, model, {}).occlusion;
     const std::vector<Occlusion> without = solve_model(prepared, model, {}, false).occlusion;
     ASSERT_EQ(without.size(), model.receivers.size());

@@ -442,7 +442,7 @@ TEST_F(Window, EverySurfaceAndColourIsDrawn)
         options.input = box_file();
         options.width = 320;
         options.height = 240;
-        options.panel.view.surface = static_cast<Surface>(colors % 4);
+        options.panel.view.surface = static_cast<Shape>(colors % 4);
         options.panel.view.colors = static_cast<Colors>(colors);
         options.panel.reference_rays = 2;
         options.on_frame = [&](const Image&, const Session& session) {

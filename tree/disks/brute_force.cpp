@@ -72,10 +72,10 @@ DiskResult solve_disks_brute_force(const Octree& octree, std::span<const Receive
         const FarSides before = {far[0], far[1]};
         std::vector<double> changes(count, 0.0);
         for (int side = 0; side < (two_sided ? 2 : 1); ++side) {
+            const std::vector<Receiver> asked = far_sides(octree, side == 0 ? 1.0f : -1.0f);
             tbb::parallel_for(std::size_t{0}, count, [&](std::size_t s) {
-                const glm::vec3 normal = (side == 0 ? 1.0f : -1.0f) * octree.surfels[s].normal;
-                const Receiver at = {
-                    octree.surfels[s].position + options.definition.offset * normal, normal};
+                const Receiver& at = asked[s];
+                const glm::vec3 normal = at.normal;
                 const Sum sum = capped(gather(octree, before, beyond, limited, at));
                 const glm::dvec3 mean = 2.0 / 3.0 * glm::dvec3(normal);
                 const glm::dvec3 slope = -4.0 * (sum.direction - sum.occlusion * mean);

@@ -1,6 +1,7 @@
 #include "tree/disks/disks.h"
 
 #include "surfels/errors.h"
+#include "surfels/surface.h"
 #include "tree/disks/gather.h"
 #include "tree/receiver_groups.h"
 
@@ -82,10 +83,8 @@ struct FarSide {
     std::vector<DiskSum> sums;
     float sign;
 
-    FarSide(const Octree& octree, float offset, float side)
-        : groups(group_receivers(far_sides(octree, offset, side))),
-          sums(octree.surfels.size()),
-          sign(side)
+    FarSide(const Octree& octree, float side)
+        : groups(group_receivers(far_sides(octree, side))), sums(octree.surfels.size()), sign(side)
     {
     }
 
@@ -136,12 +135,15 @@ float correction_opening(float opening)
     return std::max(opening, std::min(kCoarser * opening, kDraftOpening));
 }
 
-std::vector<Receiver> far_sides(const Octree& octree, float offset, float side)
+std::vector<Receiver> far_sides(const Octree& octree, float side)
 {
     std::vector<Receiver> receivers(octree.surfels.size());
     for (std::size_t i = 0; i < receivers.size(); ++i) {
-        const glm::vec3 normal = side * octree.surfels[i].normal;
-        receivers[i] = {octree.surfels[i].position + offset * normal, normal};
+        const Surfel& surfel = octree.surfels[i];
+        const glm::vec3 normal = side * surfel.normal;
+        const float offset =
+            std::clamp(kOffsetShare * std::sqrt(surfel.area), kLeastOffset, kMostOffset);
+        receivers[i] = {surfel.position + offset * normal, normal, offset};
     }
     return receivers;
 }
@@ -170,9 +172,9 @@ std::vector<DiskResult> solve_disk_lists(const Octree& octree,
 
     std::vector<FarSide> sides;
     if (options.passes > 1)
-        sides.emplace_back(octree, definition.offset, 1.0f);
+        sides.emplace_back(octree, 1.0f);
     if (options.passes > 1 && two_sided)
-        sides.emplace_back(octree, definition.offset, -1.0f);
+        sides.emplace_back(octree, -1.0f);
     std::vector<ReceiverGroups> groups;
     std::uint64_t work = 0;
     for (const std::span<const Receiver> receivers : lists)

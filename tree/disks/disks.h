@@ -93,8 +93,9 @@ inline constexpr float kCoarser = 3.2f;
 /// Throws SettingsError where an option is out of its range; solve_disks does too.
 void check_disk_options(const DiskOptions& options);
 
-/// The surfels' far sides as receivers, one per surfel: what the correcting passes ask.
+/// The surfels' far sides as receivers, one per surfel: what the correcting passes ask. Off the
+/// surface as surface.h has it, for a triangle as high as the surfel is wide.
 /// side: +1 = where the casting normal points, -1 = the other.
-[[nodiscard]] std::vector<Receiver> far_sides(const Octree& octree, float offset, float side);
+[[nodiscard]] std::vector<Receiver> far_sides(const Octree& octree, float side);
 
 }  // namespace surfelao

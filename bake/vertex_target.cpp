@@ -1,0 +1,131 @@
+#include "bake/vertex_target.h"
+
+#include "surfels/errors.h"
+#include "surfels/number_text.h"
+
+#include <glm/geometric.hpp>
+
+#include <string>
+
+#include <utility>
+
+namespace surfelao {
+
+Offset offset_of(const TargetSettings& settings, const Frame& frame)
+{
+    if (!settings.offset)
+        return {};
+    const Length& length = *settings.offset;
+    require(length.value > 0.0, "offset must be above 0");
+    const double share = length.percent ? length.value / 100.0 : length.value / frame.diagonal;
+    const auto offset = static_cast<float>(share);
+    if (!(offset > 0.0f) || !(share < 1.0))
+        throw InputError("the offset must be smaller than the scene, whose size is " +
+                         std::to_string(frame.diagonal) + ", and not vanish beside it");
+    return offset;
+}
+
+std::string name_of(NormalSource source)
+{
+    switch (source) {
+        case NormalSource::automatic:
+            return "auto";
+        case NormalSource::file:
+            return "file";
+        case NormalSource::smooth:
+            return "smooth";
+        case NormalSource::flat:
+            return "flat";
+    }
+    throw SettingsError("normals must be auto, file, smooth or flat");
+}
+
+std::string name_of(VertexValues values)
+{
+    return values == VertexValues::fit ? "fit" : "point";
+}
+
+std::string text_of(const TargetSettings& settings)
+{
+    std::string text = "normals=" + name_of(settings.normals.source);
+    append_shortest(text += " crease=", settings.normals.crease);
+    text += " values=" + name_of(settings.values);
+    if (settings.offset) {
+        append_shortest(text += " offset=", settings.offset->value);
+        text += settings.offset->percent ? "%" : "";
+    }
+    return text;
+}
+
+VertexTarget::VertexTarget(std::shared_ptr<const Mesh> mesh, const TargetSettings& settings)
+    : mesh_(std::move(mesh))
+{
+    const Geometry& geometry = mesh_->geometry;
+    const Surface& surface = mesh_->surface;
+    const Offset offset = offset_of(settings, geometry.frame);
+    if (settings.values == VertexValues::point) {
+        receivers_ = receivers_at_wedges(geometry, surface, offset);
+        return;
+    }
+    SurfaceSamples samples = fit_samples(geometry);
+    receivers_ = receivers_at(geometry, surface, samples.points, offset);
+    fit_.emplace(geometry, surface, settings.normals, std::move(samples));
+    for (const std::uint32_t vertex : fit_->unused_vertices()) {
+        const glm::vec3 normal = surface.normals[vertex];
+        if (normal == glm::vec3(0.0f))
+            continue;
+        const float height = offset.value_or(kMostOffset);
+        lone_.push_back(vertex);
+        receivers_.push_back({geometry.positions[vertex] + height * normal, normal, height});
+    }
+}
+
+std::vector<Occlusion> VertexTarget::values(std::span<const Occlusion> answers) const
+{
+    if (!fit_)
+        return mean_of_wedges(answers);
+    const std::size_t samples = answers.size() - lone_.size();
+    std::vector<Occlusion> values = fit_->solve(answers.first(samples));
+    for (std::size_t i = 0; i < lone_.size(); ++i)
+        values[lone_[i]] = answers[samples + i];
+    return values;
+}
+
+std::vector<Occlusion> VertexTarget::mean_of_wedges(std::span<const Occlusion> answers) const
+{
+    const Surface& surface = mesh_->surface;
+    const std::size_t vertices = surface.vertex_count();
+    std::vector<Occlusion> values(answers.begin(),
+                                  answers.begin() + static_cast<std::ptrdiff_t>(vertices));
+    if (answers.size() == vertices)
+        return values;
+    const std::vector<float> angles = angles_of_wedges(mesh_->geometry, surface);
+    std::vector<float> weights(vertices, 0.0f), sums(vertices, 0.0f);
+    std::vector<glm::vec3> bent(vertices, glm::vec3(0.0f));
+    for (std::uint32_t wedge = 0; wedge < answers.size(); ++wedge) {
+        const std::uint32_t vertex = surface.vertex_of(wedge);
+        const float visibility = 1.0f - answers[wedge].occlusion;
+        weights[vertex] += angles[wedge];
+        sums[vertex] += angles[wedge] * answers[wedge].occlusion;
+        bent[vertex] += angles[wedge] * visibility * answers[wedge].bent_normal;
+    }
+    for (const std::uint32_t vertex : surface.extra_vertices) {
+        if (!(weights[vertex] > 0.0f))
+            continue;
+        values[vertex].occlusion = sums[vertex] / weights[vertex];
+        const float length = glm::length(bent[vertex]);
+        if (length > kLeastBent * weights[vertex])
+            values[vertex].bent_normal = bent[vertex] / length;
+    }
+    return values;
+}
+
+float displayed(const Geometry& geometry, std::span<const Occlusion> values,
+                const SurfacePoint& point)
+{
+    const glm::uvec3 t = geometry.triangles[point.triangle];
+    return (1.0f - point.at.x - point.at.y) * values[t.x].occlusion +
+           point.at.x * values[t.y].occlusion + point.at.y * values[t.z].occlusion;
+}
+
+}  // namespace surfelao

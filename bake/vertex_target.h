@@ -1,0 +1,80 @@
+/// vertex_target.h: what is asked so that every vertex of a scene gets its value, and how the
+/// values come of the answers.
+///
+///     const VertexTarget target(mesh, settings);
+///     const Solution solution = solve(prepared, target.receivers(), ...);
+///     write_scene(path, mesh->scene, target.values(solution.occlusion));
+#pragma once
+
+#include "bake/vertex_fit.h"
+#include "surfels/geometry.h"
+#include "surfels/occlusion.h"
+#include "surfels/receiver.h"
+#include "surfels/scene.h"
+#include "surfels/surface.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace surfelao {
+
+/// Where the values of vertices come from.
+enum class VertexValues {
+    fit,    ///< samples all over the surface, fitted (vertex_fit.h): what is seen is right
+    point,  ///< the vertex itself; where several wedges meet, their mean by angle
+};
+
+/// A length as a user says it.
+struct Length {
+    double value = 0.0;    ///< the file's units or percent
+    bool percent = false;  ///< of the bounding-box diagonal
+    bool operator==(const Length&) const = default;
+};
+
+struct TargetSettings {
+    NormalSettings normals;
+    VertexValues values = VertexValues::fit;
+    std::optional<Length> offset;  ///< > 0; empty: local (surfels/surface.h)
+    bool operator==(const TargetSettings&) const = default;
+};
+
+/// In the unit frame. Throws SettingsError where it is not above 0, InputError where it vanishes
+/// beside the scene or is larger than it.
+[[nodiscard]] Offset offset_of(const TargetSettings& settings, const Frame& frame);
+
+/// "normals=auto crease=40 values=fit", and " offset=0.1%" where there is one: for marks and
+/// reports.
+[[nodiscard]] std::string text_of(const TargetSettings& settings);
+[[nodiscard]] std::string name_of(NormalSource source);
+[[nodiscard]] std::string name_of(VertexValues values);
+
+class VertexTarget {
+public:
+    /// mesh: made with settings.normals. O(n).
+    VertexTarget(std::shared_ptr<const Mesh> mesh, const TargetSettings& settings);
+
+    [[nodiscard]] std::span<const Receiver> receivers() const { return receivers_; }
+
+    /// One per scene vertex. answers: one per receiver. Vertices that no triangle uses and that
+    /// have no normal get occlusion 0 and no bent normal. O(n).
+    [[nodiscard]] std::vector<Occlusion> values(std::span<const Occlusion> answers) const;
+
+private:
+    std::vector<Occlusion> mean_of_wedges(std::span<const Occlusion> answers) const;
+
+    std::shared_ptr<const Mesh> mesh_;
+    std::vector<Receiver> receivers_;
+    std::optional<VertexFit> fit_;
+    std::vector<std::uint32_t> lone_;  ///< fit: vertices that only triangles without area use;
+                                       ///< their receivers follow those of the samples
+};
+
+/// The displayed value of a surface point: interpolated, as whoever draws the mesh does it.
+[[nodiscard]] float displayed(const Geometry& geometry, std::span<const Occlusion> values,
+                              const SurfacePoint& point);
+
+}  // namespace surfelao

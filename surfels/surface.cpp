@@ -1,0 +1,515 @@
+#include "surfels/surface.h"
+
+#include "surfels/buckets.h"
+#include "surfels/errors.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace surfelao {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kGrain = 4096;
+
+/// Of the faces around one place, how many are told apart exactly. More come together in the hubs
+/// of fans, whose faces take the normal of the kind that is nearest to theirs.
+constexpr std::size_t kMostKinds = 64;
+
+/// A mean shorter than this share of its weights has cancelled.
+constexpr float kCancelled = 1e-4f;
+
+struct Face {
+    glm::vec3 normal{0.0f};
+    glm::vec3 angles{0.0f};  ///< at its corners, radians
+};
+
+/// In doubles from the file's own positions: a sliver's normal would not survive the unit frame.
+Face face_of(const Scene& scene, glm::uvec3 triangle)
+{
+    const std::array<glm::dvec3, 3> p{scene.positions[triangle.x], scene.positions[triangle.y],
+                                      scene.positions[triangle.z]};
+    Face face;
+    const glm::dvec3 doubled = glm::cross(p[1] - p[0], p[2] - p[0]);
+    const double length = glm::length(doubled);
+    if (!(length > 0.0) || !std::isfinite(length))
+        return face;
+    face.normal = glm::vec3(doubled / length);
+    for (int corner = 0; corner < 3; ++corner) {
+        const glm::dvec3 a = p[(corner + 1) % 3] - p[corner], b = p[(corner + 2) % 3] - p[corner];
+        face.angles[corner] = static_cast<float>(std::atan2(length, glm::dot(a, b)));
+    }
+    return face;
+}
+
+std::vector<Face> faces_of(const Scene& scene, const Geometry& geometry)
+{
+    std::vector<Face> faces(geometry.triangles.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), kGrain),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t t = range.begin(); t < range.end(); ++t)
+                              faces[t] = face_of(scene, geometry.triangles[t]);
+                      });
+    return faces;
+}
+
+/// v of unit length; `instead` where it has no direction to speak of beside `weight`.
+glm::vec3 direction_of(glm::vec3 v, float weight, glm::vec3 instead)
+{
+    const float length = glm::length(v);
+    return length > kCancelled * weight ? v / length : instead;
+}
+
+/// Smooth normals of any corner, asked for one after the other.
+class SmoothNormals {
+public:
+    SmoothNormals(const Geometry& geometry, const std::vector<Face>& faces, float crease)
+        : geometry_(geometry), faces_(faces), crease_cosine_(std::cos(glm::radians(crease)))
+    {
+        const std::vector<std::uint32_t>& welded = geometry.welded;
+        means_.assign(welded.size(), glm::vec3(0.0f));
+        for (std::size_t t = 0; t < faces.size(); ++t) {
+            for (int corner = 0; corner < 3; ++corner)
+                means_[welded[geometry.triangles[t][corner]]] +=
+                    faces[t].angles[corner] * faces[t].normal;
+        }
+        for (glm::vec3& mean : means_)
+            mean = direction_of(mean, 1.0f, glm::vec3(0.0f));
+
+        // where all are within half the angle of their mean, all are within the angle of each other
+        const float half_cosine = std::cos(0.5f * glm::radians(crease));
+        std::vector<std::uint32_t> bend_of(welded.size(), kNone);  // number among those that are
+        std::uint32_t bends = 0;                                   // not all smooth
+        for (std::size_t t = 0; t < faces.size(); ++t) {
+            for (int corner = 0; corner < 3; ++corner) {
+                const std::uint32_t place = welded[geometry.triangles[t][corner]];
+                if (bend_of[place] == kNone &&
+                    !(glm::dot(means_[place], faces[t].normal) >= half_cosine))
+                    bend_of[place] = bends++;
+            }
+        }
+        if (bends > 0)
+            solve_bends(bend_of, bends);
+    }
+
+    [[nodiscard]] glm::vec3 at(std::size_t triangle, int corner) const
+    {
+        const std::uint32_t index =
+            static_cast<std::uint32_t>(3 * triangle) + static_cast<std::uint32_t>(corner);
+        const auto bent = std::ranges::lower_bound(bent_corners_, index);
+        if (bent != bent_corners_.end() && *bent == index)
+            return bent_normals_[static_cast<std::size_t>(bent - bent_corners_.begin())];
+        return means_[geometry_.welded[geometry_.triangles[triangle][corner]]];
+    }
+
+private:
+    void solve_bends(const std::vector<std::uint32_t>& bend_of, std::uint32_t bends)
+    {
+        const Buckets<std::uint32_t> around(bends, [&](const auto& put) {
+            for (std::uint32_t t = 0; t < faces_.size(); ++t) {
+                for (std::uint32_t corner = 0; corner < 3; ++corner) {
+                    const std::uint32_t bend =
+                        bend_of[geometry_.welded[geometry_.triangles[t][static_cast<int>(corner)]]];
+                    if (bend != kNone)
+                        put(bend, 3 * t + corner);
+                }
+            }
+        });
+        std::vector<std::pair<std::uint32_t, glm::vec3>> solved;
+        for (std::uint32_t bend = 0; bend < bends; ++bend)
+            solve_bend(around[bend], solved);
+        std::ranges::sort(solved, {}, &std::pair<std::uint32_t, glm::vec3>::first);
+        for (const auto& [corner, normal] : solved) {
+            bent_corners_.push_back(corner);
+            bent_normals_.push_back(normal);
+        }
+    }
+
+    /// The corners at one place.
+    void solve_bend(std::span<const std::uint32_t> corners,
+                    std::vector<std::pair<std::uint32_t, glm::vec3>>& solved) const
+    {
+        struct Kind {
+            glm::vec3 normal;
+            float angle;
+        };
+        std::vector<Kind> kinds;
+        std::vector<std::size_t> kind_of;
+        for (const std::uint32_t corner : corners) {
+            const Face& face = faces_[corner / 3];
+            const float angle = face.angles[static_cast<int>(corner % 3)];
+            std::size_t kind = kinds.size();
+            if (kind == kMostKinds) {
+                kind = static_cast<std::size_t>(
+                    std::ranges::max_element(
+                        kinds, {},
+                        [&](const Kind& other) { return glm::dot(other.normal, face.normal); }) -
+                    kinds.begin());
+                kinds[kind].angle += angle;
+            } else {
+                kinds.push_back({face.normal, angle});
+            }
+            kind_of.push_back(kind);
+        }
+        std::vector<glm::vec3> normals;
+        for (const Kind& own : kinds) {
+            glm::vec3 sum(0.0f);
+            float weight = 0.0f;
+            for (const Kind& other : kinds) {
+                if (glm::dot(own.normal, other.normal) >= crease_cosine_ || &own == &other) {
+                    sum += other.angle * other.normal;
+                    weight += other.angle;
+                }
+            }
+            normals.push_back(direction_of(sum, weight, own.normal));
+        }
+        for (std::size_t i = 0; i < corners.size(); ++i)
+            solved.emplace_back(corners[i], normals[kind_of[i]]);
+    }
+
+    const Geometry& geometry_;
+    const std::vector<Face>& faces_;
+    float crease_cosine_;
+    std::vector<glm::vec3> means_;             ///< per place, over all faces
+    std::vector<std::uint32_t> bent_corners_;  ///< rising: corners whose normal is another one
+    std::vector<glm::vec3> bent_normals_;
+};
+
+/// Gives wedges to corners in rising order.
+class Wedges {
+public:
+    Wedges(const Geometry& geometry, Surface& surface) : surface_(surface)
+    {
+        surface_.normals.assign(geometry.positions.size(), glm::vec3(0.0f));
+        surface_.corners.reserve(geometry.triangles.size());
+    }
+
+    std::uint32_t wedge_of(std::uint32_t vertex, glm::vec3 normal)
+    {
+        glm::vec3& own = surface_.normals[vertex];
+        if (own == glm::vec3(0.0f))
+            own = normal;
+        if (glm::dot(own, normal) >= kSameNormal)
+            return vertex;
+        if (first_extra_.empty())
+            first_extra_.assign(surface_.normals.size(), kNone);
+        int looked_at = 0;
+        for (std::uint32_t e = first_extra_[vertex]; e != kNone; e = next_extra_[e]) {
+            if (glm::dot(extra_normals_[e], normal) >= kSameNormal || ++looked_at == kMostWedges)
+                return static_cast<std::uint32_t>(first_extra_.size()) + e;
+        }
+        const auto extra = static_cast<std::uint32_t>(extra_normals_.size());
+        extra_normals_.push_back(normal);
+        surface_.extra_vertices.push_back(vertex);
+        next_extra_.push_back(first_extra_[vertex]);
+        first_extra_[vertex] = extra;
+        return static_cast<std::uint32_t>(first_extra_.size()) + extra;
+    }
+
+    void finish()
+    {
+        surface_.normals.insert(surface_.normals.end(), extra_normals_.begin(),
+                                extra_normals_.end());
+    }
+
+private:
+    static constexpr int kMostWedges = 64;  ///< of one vertex that are told apart, but for a few
+
+    Surface& surface_;
+    std::vector<glm::vec3> extra_normals_;
+    std::vector<std::uint32_t> first_extra_, next_extra_;
+};
+
+/// The file's normal of a corner; zero where it gives none, or none with a direction.
+class FileNormals {
+public:
+    FileNormals(const Scene& scene, const Geometry& geometry)
+        : normals_(scene.normals), geometry_(geometry)
+    {
+    }
+
+    struct Given {
+        glm::vec3 normal{0.0f};
+        bool given = false;  ///< the file says something, be it usable or not
+    };
+
+    [[nodiscard]] Given at(std::size_t triangle, int corner) const
+    {
+        if (normals_.empty())
+            return {};
+        const std::uint32_t index =
+            normals_.corners.empty() ? geometry_.triangles[triangle][corner]
+                                     : normals_.corners[geometry_.scene_triangle(triangle)][corner];
+        if (index == CornerNormals::kNone)
+            return {};
+        const glm::vec3 value = normals_.values[index];
+        if (value == glm::vec3(0.0f))
+            return {};
+        const glm::dvec3 wide(value);
+        const double length = glm::length(wide);
+        if (!(length > 0.0) || !std::isfinite(length))
+            return {glm::vec3(0.0f), true};
+        return {glm::vec3(wide / length), true};
+    }
+
+private:
+    const CornerNormals& normals_;
+    const Geometry& geometry_;
+};
+
+}  // namespace
+
+void check_normals(const NormalSettings& settings)
+{
+    require(settings.crease >= 0.0f && settings.crease <= 180.0f,
+            "crease must be between 0 and 180 degrees");
+}
+
+Surface make_surface(const Scene& scene, const Geometry& geometry, const NormalSettings& settings)
+{
+    check_normals(settings);
+    const std::vector<Face> faces = faces_of(scene, geometry);
+    const bool flat = settings.source == NormalSource::flat;
+    const bool from_file =
+        settings.source == NormalSource::automatic || settings.source == NormalSource::file;
+    const SmoothNormals smooth(geometry, faces, flat ? 0.0f : settings.crease);
+    const FileNormals file(scene, geometry);
+    Surface surface;
+    Wedges wedges(geometry, surface);
+    for (std::size_t t = 0; t < faces.size(); ++t) {
+        glm::uvec3 corners;
+        for (int corner = 0; corner < 3; ++corner) {
+            const FileNormals::Given given = from_file ? file.at(t, corner) : FileNormals::Given{};
+            const bool usable =
+                given.normal != glm::vec3(0.0f) && (settings.source == NormalSource::file ||
+                                                    glm::dot(given.normal, faces[t].normal) > 0.0f);
+            surface.corners_from_file += usable;
+            surface.replaced_corners += given.given && !usable;
+            const glm::vec3 normal = usable ? given.normal
+                                     : flat ? faces[t].normal
+                                            : smooth.at(t, corner);
+            corners[corner] = wedges.wedge_of(geometry.triangles[t][corner], normal);
+        }
+        surface.corners.push_back(corners);
+    }
+    wedges.finish();
+    // vertices that no triangle uses: the geometry's, where it has one
+    for (std::size_t v = 0; v < geometry.normals.size(); ++v) {
+        if (surface.normals[v] == glm::vec3(0.0f))
+            surface.normals[v] = geometry.normals[v];
+    }
+    return surface;
+}
+
+float offset_at(const Geometry& geometry, std::uint32_t triangle, const Offset& offset)
+{
+    if (offset)
+        return *offset;
+    const glm::uvec3 t = geometry.triangles[triangle];
+    const glm::vec3 a = geometry.positions[t.y] - geometry.positions[t.x];
+    const glm::vec3 b = geometry.positions[t.z] - geometry.positions[t.x];
+    const float longest2 = std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(a - b, a - b)});
+    const float height = glm::length(glm::cross(a, b)) / std::sqrt(longest2);
+    return std::clamp(kOffsetShare * height, kLeastOffset, kMostOffset);
+}
+
+std::vector<Receiver> receivers_at(const Geometry& geometry, const Surface& surface,
+                                   std::span<const SurfacePoint> points, const Offset& offset)
+{
+    std::vector<Receiver> receivers(points.size());
+    const auto place = [&](const SurfacePoint& point) {
+        const glm::uvec3 t = geometry.triangles[point.triangle];
+        const glm::uvec3 wedges = surface.corners[point.triangle];
+        const glm::vec3 a = geometry.positions[t.x];
+        const glm::vec3 b = geometry.positions[t.y] - a, c = geometry.positions[t.z] - a;
+        const glm::vec3 up = glm::normalize(glm::cross(b, c));
+        const glm::vec3 shading = (1.0f - point.at.x - point.at.y) * surface.normals[wedges.x] +
+                                  point.at.x * surface.normals[wedges.y] +
+                                  point.at.y * surface.normals[wedges.z];
+        const glm::vec3 normal = direction_of(shading, 1.0f, up);
+        const float side = glm::dot(normal, up) < 0.0f ? -1.0f : 1.0f;
+        const float height = offset_at(geometry, point.triangle, offset);
+        return Receiver{a + (point.at.x * b + point.at.y * c) + side * height * up, normal, height};
+    };
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), kGrain),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i)
+                              receivers[i] = place(points[i]);
+                      });
+    return receivers;
+}
+
+namespace {
+
+/// What the corners of a wedge have in common.
+struct WedgeShape {
+    glm::vec3 inward{0.0f};        ///< their bisectors, by angle
+    std::uint32_t tear = 0;        ///< 0 where they close around the vertex (as in weld.cpp)
+    std::uint32_t middle = kNone;  ///< corner whose bisector is nearest to `inward`
+    float nearest = 0.0f;
+};
+
+/// Of a corner, into its triangle, times its angle.
+glm::vec3 bisector_of(const Geometry& geometry, glm::uvec3 t, int corner)
+{
+    const glm::vec3 p = geometry.positions[t[corner]];
+    const glm::vec3 a = glm::normalize(geometry.positions[t[(corner + 1) % 3]] - p);
+    const glm::vec3 b = glm::normalize(geometry.positions[t[(corner + 2) % 3]] - p);
+    const float angle = std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+    return angle * direction_of(a + b, 1.0f, a);
+}
+
+std::vector<WedgeShape> shapes_of(const Geometry& geometry, const Surface& surface)
+{
+    std::vector<WedgeShape> shapes(surface.normals.size());
+    const auto hash = [&](std::uint32_t v) { return (geometry.welded[v] + 1) * 0x9E3779B1u; };
+    for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
+        const glm::uvec3 triangle = geometry.triangles[t];
+        for (int corner = 0; corner < 3; ++corner) {
+            WedgeShape& shape = shapes[surface.corners[t][corner]];
+            shape.inward += bisector_of(geometry, triangle, corner);
+            shape.tear += hash(triangle[(corner + 1) % 3]) - hash(triangle[(corner + 2) % 3]);
+        }
+    }
+    for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
+        for (int corner = 0; corner < 3; ++corner) {
+            WedgeShape& shape = shapes[surface.corners[t][corner]];
+            if (shape.tear == 0)
+                continue;
+            const float near =
+                glm::dot(shape.inward, bisector_of(geometry, geometry.triangles[t], corner));
+            if (shape.middle == kNone || near > shape.nearest) {
+                shape.nearest = near;
+                shape.middle =
+                    static_cast<std::uint32_t>(3 * t) + static_cast<std::uint32_t>(corner);
+            }
+        }
+    }
+    return shapes;
+}
+
+/// A little way from a corner of a triangle towards the middle of the opposite side.
+SurfacePoint just_inside(const Geometry& geometry, std::uint32_t triangle, std::uint32_t corner,
+                         const Offset& offset)
+{
+    constexpr float kMostShare = 0.25f;
+    const glm::uvec3 t = geometry.triangles[triangle];
+    const auto c = static_cast<int>(corner);
+    const glm::vec3 middle =
+        0.5f * (geometry.positions[t[(c + 1) % 3]] + geometry.positions[t[(c + 2) % 3]]);
+    const float way = glm::distance(geometry.positions[t[c]], middle);
+    const float share = std::min(kMostShare, kInset * offset_at(geometry, triangle, offset) / way);
+    glm::vec3 weights(0.5f * share);
+    weights[c] = 1.0f - share;
+    return {triangle, {weights.y, weights.z}};
+}
+
+}  // namespace
+
+std::vector<Receiver> receivers_at_wedges(const Geometry& geometry, const Surface& surface,
+                                          const Offset& offset)
+{
+    const std::vector<WedgeShape> shapes = shapes_of(geometry, surface);
+    std::vector<float> heights(surface.normals.size(),
+                               kMostOffset);  // of what is asked at vertices
+    for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t) {
+        for (int corner = 0; corner < 3; ++corner) {
+            float& height = heights[surface.corners[t][corner]];
+            height = std::min(height, offset_at(geometry, t, offset));
+        }
+    }
+    std::vector<Receiver> receivers(surface.normals.size());
+    for (std::uint32_t wedge = 0; wedge < receivers.size(); ++wedge) {
+        const glm::vec3 normal = surface.normals[wedge];
+        if (shapes[wedge].middle == kNone) {
+            const float height = offset.value_or(heights[wedge]);
+            receivers[wedge] = {geometry.positions[surface.vertex_of(wedge)] + height * normal,
+                                normal, height};
+            continue;
+        }
+        const std::uint32_t middle = shapes[wedge].middle;
+        const SurfacePoint point = just_inside(geometry, middle / 3, middle % 3, offset);
+        receivers[wedge] = receivers_at(geometry, surface, {&point, 1}, offset).front();
+        receivers[wedge].normal = normal;
+    }
+    return receivers;
+}
+
+std::vector<float> angles_of_wedges(const Geometry& geometry, const Surface& surface)
+{
+    std::vector<float> angles(surface.normals.size(), 0.0f);
+    for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
+        for (int corner = 0; corner < 3; ++corner)
+            angles[surface.corners[t][corner]] +=
+                glm::length(bisector_of(geometry, geometry.triangles[t], corner));
+    }
+    return angles;
+}
+
+bool are_smooth(glm::vec3 a, glm::vec3 b, const NormalSettings& settings)
+{
+    return glm::dot(a, b) >= std::min(std::cos(0.5f * glm::radians(settings.crease)), kSameNormal);
+}
+
+Scene split_at_creases(const Scene& scene, const Geometry& geometry, const Surface& surface,
+                       const NormalSettings& settings)
+{
+    // per wedge: the vertex that it gets
+    std::vector<std::uint32_t> vertices(surface.normals.size());
+    std::vector<std::vector<std::uint32_t>> kinds(
+        surface.extra_vertices.empty() ? 0 : surface.vertex_count());
+    Scene split = scene;
+    for (std::uint32_t wedge = 0; wedge < vertices.size(); ++wedge) {
+        const std::uint32_t vertex = surface.vertex_of(wedge);
+        vertices[wedge] = vertex;
+        if (kinds.empty())
+            continue;
+        std::vector<std::uint32_t>& own = kinds[vertex];  // wedges with a vertex of their own
+        const auto alike = std::ranges::find_if(own, [&](std::uint32_t other) {
+            return are_smooth(surface.normals[other], surface.normals[wedge], settings);
+        });
+        if (alike != own.end()) {
+            vertices[wedge] = vertices[*alike];
+            continue;
+        }
+        if (!own.empty()) {
+            vertices[wedge] = static_cast<std::uint32_t>(split.positions.size());
+            split.positions.push_back(scene.positions[vertex]);
+        }
+        own.push_back(wedge);
+    }
+    for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
+        for (int corner = 0; corner < 3; ++corner)
+            split.triangles[geometry.scene_triangle(t)][corner] =
+                vertices[surface.corners[t][corner]];
+    }
+    split.parts.back().vertex_count +=
+        static_cast<std::uint32_t>(split.positions.size() - scene.positions.size());
+    return split;
+}
+
+Mesh make_mesh(Scene scene, const NormalSettings& settings)
+{
+    Mesh mesh{std::move(scene), {}, {}};
+    const auto look = [&] {
+        mesh.geometry = make_geometry(mesh.scene);
+        mesh.surface = make_surface(mesh.scene, mesh.geometry, settings);
+    };
+    look();
+    if (mesh.scene.free_vertices && !mesh.surface.extra_vertices.empty()) {
+        mesh.scene = split_at_creases(mesh.scene, mesh.geometry, mesh.surface, settings);
+        look();
+    }
+    return mesh;
+}
+
+}  // namespace surfelao

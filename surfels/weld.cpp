@@ -1,0 +1,159 @@
+#include "surfels/weld.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+
+namespace surfelao {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+std::uint64_t hash_position(glm::dvec3 p)
+{
+    std::uint64_t hash = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        hash ^= std::bit_cast<std::uint64_t>(p[axis] + 0.0);  // + 0.0: -0 and 0 are one place
+        hash *= 0x9E3779B97F4A7C15u;
+        hash ^= hash >> 29;
+    }
+    return hash;
+}
+
+/// For each vertex the lowest index of a vertex at exactly the same position.
+std::vector<std::uint32_t> weld_equal(const std::vector<glm::dvec3>& positions)
+{
+    const std::size_t slot_count = std::bit_ceil(positions.size() * 2 + 1);
+    std::vector<std::uint32_t> slots(slot_count, kNone);
+    std::vector<std::uint32_t> welded(positions.size());
+    for (std::uint32_t v = 0; v < positions.size(); ++v) {
+        std::size_t slot = hash_position(positions[v]) & (slot_count - 1);
+        while (slots[slot] != kNone && positions[slots[slot]] != positions[v])
+            slot = (slot + 1) & (slot_count - 1);
+        if (slots[slot] == kNone)
+            slots[slot] = v;
+        welded[v] = slots[slot];
+    }
+    return welded;
+}
+
+/// Around a vertex whose triangles close, each neighbour is once the next corner and once the one
+/// before: the difference of the sums of their hashes is zero, in whatever order they come. Returns
+/// that difference per place; where it is not zero the surface is torn (or its winding turns).
+std::vector<std::uint32_t> tears_of(const std::vector<glm::uvec3>& triangles,
+                                    const std::vector<std::uint32_t>& welded)
+{
+    const auto hash = [](std::uint32_t v) {
+        return (v + 1) * 0x9E3779B1u ^ (v >> 7) * 0x85EBCA6Bu;
+    };
+    std::vector<std::uint32_t> tears(welded.size(), 0);
+    for (const glm::uvec3 t : triangles) {
+        const glm::uvec3 w{welded[t.x], welded[t.y], welded[t.z]};
+        const glm::uvec3 h{hash(w.x), hash(w.y), hash(w.z)};
+        tears[w.x] += h.y - h.z;
+        tears[w.y] += h.z - h.x;
+        tears[w.z] += h.x - h.y;
+    }
+    return tears;
+}
+
+/// Joins torn places that are equal but for noise.
+class NoiseWelder {
+public:
+    NoiseWelder(const Scene& scene, double diagonal, const std::vector<std::uint32_t>& welded)
+        : scene_(scene), reach_(kWeldDistance * diagonal), tears_(tears_of(scene.triangles, welded))
+    {
+        if (std::ranges::all_of(tears_, [](std::uint32_t tear) { return tear == 0; }))
+            return;
+        shortest_.assign(welded.size(), std::numeric_limits<double>::infinity());
+        for (const glm::uvec3 t : scene.triangles) {
+            for (int side = 0; side < 3; ++side) {
+                const std::uint32_t a = welded[t[side]], b = welded[t[(side + 1) % 3]];
+                if (a == b)
+                    continue;
+                const double length = glm::distance(scene.positions[a], scene.positions[b]);
+                shortest_[a] = std::min(shortest_[a], length);
+                shortest_[b] = std::min(shortest_[b], length);
+            }
+        }
+    }
+
+    /// The place that v, lowest at its own position, joins; v itself where there is none.
+    std::uint32_t join(std::uint32_t v)
+    {
+        if (tears_[v] == 0)
+            return v;
+        const glm::dvec3 p = scene_.positions[v];
+        const double reach = std::min(reach_, kWeldShare * shortest_[v]);
+        std::uint32_t found = kNone;
+        for_each_cell(p, reach, [&](std::uint64_t cell) {
+            const auto entry = first_in_.find(cell);
+            std::uint32_t place = entry == first_in_.end() ? kNone : entry->second;
+            for (int n = 0; place != kNone && n < kMostInCell; ++n, place = next_[place]) {
+                if (glm::distance(scene_.positions[place], p) <=
+                    std::min(reach, kWeldShare * shortest_[place]))
+                    found = std::min(found, place);
+            }
+        });
+        if (found != kNone)
+            return found;
+        if (next_.empty())
+            next_.assign(scene_.positions.size(), kNone);
+        const auto [entry, is_new] = first_in_.try_emplace(cell_of(p), v);
+        if (!is_new)
+            next_[v] = std::exchange(entry->second, v);
+        return v;
+    }
+
+private:
+    /// Of places in one cell that are compared: more lie there only where a whole object is no
+    /// larger than noise.
+    static constexpr int kMostInCell = 64;
+
+    std::uint64_t cell_of(glm::dvec3 p) const
+    {
+        const glm::dvec3 cell = glm::floor(p / (2.0 * reach_));
+        return hash_position(cell);
+    }
+
+    /// Each cell that the cube of 2 reach around p touches, once: 1 to 8 of them.
+    template <class Visit>
+    void for_each_cell(glm::dvec3 p, double reach, const Visit& visit) const
+    {
+        const double size = 2.0 * reach_;
+        const glm::dvec3 low = glm::floor((p - reach) / size);
+        const glm::dvec3 high = glm::floor((p + reach) / size);
+        for (double x = low.x; x <= high.x; ++x) {
+            for (double y = low.y; y <= high.y; ++y) {
+                for (double z = low.z; z <= high.z; ++z)
+                    visit(hash_position({x, y, z}));
+            }
+        }
+    }
+
+    const Scene& scene_;
+    double reach_;
+    std::vector<std::uint32_t> tears_;
+    std::vector<double> shortest_;                               ///< edge at a place
+    std::unordered_map<std::uint64_t, std::uint32_t> first_in_;  ///< cell -> its last place
+    std::vector<std::uint32_t> next_;                            ///< and the one before it
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> weld(const Scene& scene, double diagonal)
+{
+    std::vector<std::uint32_t> welded = weld_equal(scene.positions);
+    NoiseWelder noise(scene, diagonal, welded);
+    for (std::uint32_t v = 0; v < welded.size(); ++v)
+        welded[v] = welded[v] == v ? noise.join(v) : welded[welded[v]];
+    return welded;
+}
+
+}  // namespace surfelao

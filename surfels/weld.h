@@ -1,0 +1,29 @@
+/// weld.h: which vertices stand at one place.
+#pragma once
+
+#include "surfels/scene.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace surfelao {
+
+/// For each vertex the lowest index of a vertex at its place: at exactly its position, or, where
+/// the surface is torn open there, within float noise of it.
+///
+/// Exporters that write every corner of every facet (STL), or move a mesh's parts about in floats,
+/// leave corners that are equal but for their last digits. Where a vertex's triangles close around
+/// it nothing is missing, and nothing but its exact position is looked at. Where they do not, the
+/// nearest torn vertices within kWeldDistance are taken for the same place, but never two that are
+/// farther apart than kWeldShare of the shortest edge at either: so no edge vanishes, and small
+/// things in big worlds keep their shape.
+///
+/// diagonal: of the scene's box, > 0. O(n) expected; equal input gives equal bytes.
+[[nodiscard]] std::vector<std::uint32_t> weld(const Scene& scene, double diagonal);
+
+/// In diagonals: 32 roundings of a float at the rim of the box (2^-24 each). What exporters leave
+/// is some 3e-7 along each axis, both ways.
+inline constexpr double kWeldDistance = 2e-6;
+inline constexpr double kWeldShare = 0.25;
+
+}  // namespace surfelao
