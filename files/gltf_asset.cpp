@@ -240,6 +240,17 @@ std::size_t mesh_text_size(const GltfAsset& asset, std::size_t mesh)
     return (*asset.document)["meshes"][mesh].dump().size();
 }
 
+std::size_t node_text_size(const GltfAsset& asset, std::size_t node)
+{
+    std::size_t size = 0;
+    for (const char* key : {"name", "weights"}) {
+        const json& entry = (*asset.document)["nodes"][node];
+        if (entry.contains(key))
+            size += entry[key].dump().size();
+    }
+    return size;
+}
+
 void load_gltf_asset(const fs::path& path, std::string contents, GltfAsset& asset)
 {
     asset.path = path;

@@ -12,20 +12,10 @@ namespace {
 using nlohmann::json;
 using test::bytes_of;
 using test::GltfMaker;
+using test::Malformed;
 using test::primitive;
 using test::refusal;
 using test::square;
-
-struct Malformed {
-    const char* name;
-    const char* sentence;        ///< behind "made.glb: "
-    void (*damage)(GltfMaker&);  ///< breaks the square of gltf_maker.h
-};
-
-void PrintTo(const Malformed& malformed, std::ostream* stream)
-{
-    *stream << malformed.name;
-}
 
 json& accessor(GltfMaker& maker, std::size_t index)
 {
@@ -68,8 +58,6 @@ const Malformed kMalformed[] = {
      [](GltfMaker& m) { m.document["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }},
     {"NeedsMeshopt", "requires the extension EXT_meshopt_compression, which is not supported",
      [](GltfMaker& m) { m.document["extensionsRequired"] = {"EXT_meshopt_compression"}; }},
-    {"NeedsInstancing", "requires the extension EXT_mesh_gpu_instancing, which is not supported",
-     [](GltfMaker& m) { m.document["extensionsRequired"] = {"EXT_mesh_gpu_instancing"}; }},
     {"NeedsUnknown", "requires the extension ACME_secret, which is not supported",
      [](GltfMaker& m) { m.document["extensionsRequired"] = {"ACME_secret"}; }},
     {"RequiredIsObject", "extensionsRequired is not an array",
@@ -215,10 +203,6 @@ const Malformed kMalformed[] = {
      "mesh 0 primitive 0 is compressed by KHR_draco_mesh_compression, which is not supported",
      [](GltfMaker& m) {
          primitive(m)["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}};
-     }},
-    {"InstancedNode", "node 0 uses EXT_mesh_gpu_instancing, which is not supported",
-     [](GltfMaker& m) {
-         m.document["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = json::object();
      }},
     {"BufferLengthFraction", "buffer 0 has no byteLength that is a whole number",
      [](GltfMaker& m) { m.document["buffers"][0]["byteLength"] = 59.5; }},
