@@ -212,6 +212,13 @@ void load_buffers(GltfAsset& asset)
 
 }  // namespace
 
+bool is_listed(std::string_view name, std::span<const std::string_view> list)
+{
+    return std::ranges::any_of(list, [&](std::string_view entry) {
+        return entry.ends_with('_') ? name.starts_with(entry) : name == entry;
+    });
+}
+
 std::string shortened(std::string_view text)
 {
     std::size_t length = std::min(text.size(), kMaxQuote);

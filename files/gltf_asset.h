@@ -16,6 +16,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -85,6 +86,9 @@ void load_gltf_asset(const std::filesystem::path& path, std::string contents, Gl
 
 /// The same for what the instances of a node take over from it: its name and weights.
 [[nodiscard]] std::size_t node_text_size(const GltfAsset& asset, std::size_t node);
+
+/// Whether the list holds the name; an entry that ends in '_' stands for all that begin with it.
+[[nodiscard]] bool is_listed(std::string_view name, std::span<const std::string_view> list);
 
 /// Text out of the file for use in a message: cut to a bearable length, between characters.
 [[nodiscard]] std::string shortened(std::string_view text);

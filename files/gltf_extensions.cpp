@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -13,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A name that ends in '_' stands for all that begin with it. From the Khronos registry and from
+/// For is_listed(). From the Khronos registry and from
 /// the lists of vendors (Cesium, VRM, OMI, Microsoft, Babylon, Hubs).
 constexpr std::string_view kHarmlessExtensions[] = {
     // read here
@@ -98,10 +97,7 @@ void check_required_extensions(const json& document, const std::filesystem::path
         if (!entry.is_string())
             fail_gltf(path, "extensionsRequired", "holds something that is not a string");
         const auto& name = entry.get_ref<const std::string&>();
-        const bool harmless = std::ranges::any_of(kHarmlessExtensions, [&](std::string_view known) {
-            return known.ends_with('_') ? name.starts_with(known) : name == known;
-        });
-        if (!harmless)
+        if (!is_listed(name, kHarmlessExtensions))
             fail_gltf(path, "",
                       "requires the extension " + shortened(name) + ", which is not supported");
     }

@@ -44,7 +44,7 @@ namespace surfelao {
 /// vertices, as many triangles, as many displacements by morph targets and joints, and as many
 /// bytes of JSON in the copies of meshes that a writer makes. Nodes and instances that use a mesh
 /// again and again can multiply a small file without end; beyond this it is refused.
-inline constexpr std::uint64_t kInstancingBase = 1u << 22;
+inline constexpr std::uint64_t kInstancingBase = 1u << 23;
 inline constexpr std::uint64_t kInstancingPerByte = 16;
 
 /// `contents` is the file at `path`; the path is for messages, and its folder is where external

@@ -68,7 +68,7 @@ constexpr Field kPrimitive[] = {
     {"mode", Kind::small},
 };
 constexpr Field kAccessorIndex = {"", Kind::index, Need::optional, "accessors"};
-/// A name that ends in '_' stands for all that begin with it.
+/// For is_listed().
 constexpr std::string_view kAttributes[] = {"POSITION", "NORMAL", "COLOR_0", "JOINTS_", "WEIGHTS_"};
 constexpr std::string_view kTargetAttributes[] = {"POSITION", "NORMAL"};
 constexpr Field kNode[] = {
@@ -121,10 +121,7 @@ public:
     {
         json checked = json::object();
         for (const auto& [name, accessor] : value.items()) {
-            const bool is_wanted = std::ranges::any_of(wanted, [&](std::string_view known) {
-                return known.ends_with('_') ? name.starts_with(known) : name == known;
-            });
-            if (!is_wanted && !wanted.empty())
+            if (!wanted.empty() && !is_listed(name, wanted))
                 continue;
             Field field = kAccessorIndex;
             field.key = name.c_str();

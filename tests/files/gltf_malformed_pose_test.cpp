@@ -221,7 +221,7 @@ const Malformed kMalformedPoses[] = {
 
     // small files that stand for very much
     {"ManyInstances",
-     "node 2 brings the scene to more than 4224448 instances, far more than a file of this size "
+     "node 2 brings the scene to more than 8418752 instances, far more than a file of this size "
      "may stand for",
      [](GltfMaker& m) {
          m.add("accessors", accessor_of(m, 7));
@@ -249,7 +249,7 @@ const Malformed kMalformedPoses[] = {
          m.document["nodes"][2]["name"] = std::string(100000, 'x');
      }},
     {"ManyTargets",
-     "node 0 brings the scene to more than 12574592 displacements of morph targets and skins, far "
+     "node 0 brings the scene to more than 16768896 displacements of morph targets and skins, far "
      "more than a file of this size may stand for",
      [](GltfMaker& m) {
          const int points =

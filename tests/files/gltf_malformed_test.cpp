@@ -354,7 +354,7 @@ const Malformed kMalformed[] = {
          accessor(m, 0)["sparse"]["values"]["byteOffset"] = 2147483647;
      }},
     {"ZeroAccessorHuge",
-     "node 0 brings the scene to more than 4205696 vertices, far more than a file of this size may "
+     "node 0 brings the scene to more than 8400000 vertices, far more than a file of this size may "
      "stand for",
      [](GltfMaker& m) {
          make_sparse(m, {1});
@@ -467,7 +467,7 @@ const Malformed kMalformed[] = {
 
     // small files that stand for very much
     {"InstancesWithoutEnd",
-     "node 299 brings the scene to more than 11978496 vertices, far more than a file of this size "
+     "node 404 brings the scene to more than 16196800 vertices, far more than a file of this size "
      "may stand for",
      [](GltfMaker& m) {
          m.document["scenes"][0]["nodes"] = json::array();
@@ -475,11 +475,11 @@ const Malformed kMalformed[] = {
          const std::string points(40000 * 12, '\0');
          primitive(m)["attributes"]["POSITION"] =
              m.add_accessor(m.add_view(points), 5126, "VEC3", 40000);
-         for (int i = 0; i < 400; ++i)
+         for (int i = 0; i < 500; ++i)
              m.document["scenes"][0]["nodes"].push_back(m.add("nodes", {{"mesh", 0}}));
      }},
     {"JsonWithoutEnd",
-     "node 20 repeats mesh 0 of 2000070 bytes of JSON: there are more repetitions than a file of "
+     "node 22 repeats mesh 0 of 2000070 bytes of JSON: there are more repetitions than a file of "
      "this size may stand for",
      [](GltfMaker& m) {
          m.document["meshes"][0]["extras"] = std::string(2000000, 'x');
@@ -489,7 +489,7 @@ const Malformed kMalformed[] = {
              m.document["scenes"][0]["nodes"].push_back(m.add("nodes", {{"mesh", 0}}));
      }},
     {"TrianglesWithoutEnd",
-     "node 0 brings the scene to more than 7353344 triangles, far more than a file of this size "
+     "node 0 brings the scene to more than 11547648 triangles, far more than a file of this size "
      "may stand for",
      [](GltfMaker& m) {
          const json again = primitive(m);
