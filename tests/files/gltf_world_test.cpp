@@ -165,13 +165,13 @@ TEST(GltfSkins, VerticesFollowTheirJointsAlone)
 TEST(GltfSkins, InverseBindMatricesComeFirst)
 {
     GltfMaker maker = skinned_square();
-    // moves by (1, 0, 0) before joint 0, halves before joint 1
+    // before joint 0: moves by (1, 0, 0); before joint 1: halves, then moves by (1, 0, 0)
     maker.document["skins"][0]["inverseBindMatrices"] = maker.add_accessor(
-        maker.add_view(bytes_of<float>({1,  0, 0, 0, 0, 1,  0, 0, 0, 0, 1,  0, 1, 0, 0, 1,
-                                        .5, 0, 0, 0, 0, .5, 0, 0, 0, 0, .5, 0, 0, 0, 0, 1})),
+        maker.add_view(bytes_of<float>({1,   0, 0, 0, 0, 1,   0, 0, 0, 0, 1,   0, 1, 0, 0, 1,
+                                        0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 1, 0, 0, 1})),
         5126, "MAT4", 2);
     EXPECT_EQ(read_made(maker).positions,
-              (Points{{1, 0, 10}, {0, .5, 0}, {.75, .75, 5}, {1, 1, 10}}));
+              (Points{{1, 0, 10}, {0, 1.5, 0}, {0.75, 1.25, 5}, {1, 1, 10}}));
 }
 
 TEST(GltfSkins, JointsAndWeightsOfAllTypesAndSeveralSets)
