@@ -191,22 +191,25 @@ private:
         const std::optional<std::size_t> instances = instance_count(model_, use, asset_.path);
         if (groups.empty() || instances == std::size_t{0})
             return;
+        if (!instances) {
+            asset_.uses.push_back({use.node, use.mesh, {}});
+            for (const Group& group : groups)
+                add_part(use, group, read_vertices(group, weights_of(use), resolver_));
+            return;
+        }
         std::vector<MeshVertices> vertices;
         for (const Group& group : groups)
             vertices.push_back(read_vertices(group, weights_of(use), resolver_));
-        const auto add_parts = [&](std::optional<GltfPlacement> instance) {
+        for (const GltfPlacement& instance : read_instances(model_, use, resolver_)) {
             asset_.uses.push_back({use.node, use.mesh, instance});
             for (std::size_t g = 0; g < groups.size(); ++g)
                 add_part(use, groups[g], vertices[g]);
-        };
-        if (!instances)
-            return add_parts({});
-        for (const GltfPlacement& instance : read_instances(model_, use, resolver_))
-            add_parts(instance);
+        }
     }
 
-    /// A part of the use that was added last.
-    void add_part(const MeshNode& use, const Group& group, const MeshVertices& vertices)
+    /// A part of the use that was added last. The vertices are taken, as a large mesh's make the
+    /// peak of memory.
+    void add_part(const MeshNode& use, const Group& group, MeshVertices vertices)
     {
         const std::string& node_name = model_.nodes[use.node].name;
         Part part;
@@ -221,6 +224,7 @@ private:
         // without joints the node moves the mesh, skin or not
         if (use.skin && !group.influences.empty()) {
             const std::vector<bool> mirrored = add_skinned(use, group, vertices);
+            vertices = {};
             for (const Primitive& primitive : group.primitives)
                 add_triangles(primitive, part, [&](glm::uvec3 triangle) {
                     triangle -= part.first_vertex;
@@ -229,6 +233,7 @@ private:
         } else {
             const glm::dmat4 world = world_of(use);
             add_rigid(use, vertices, world);
+            vertices = {};
             const bool mirrored = glm::determinant(scaled_to_one(glm::dmat3(world))) < 0.0;
             for (const Primitive& primitive : group.primitives)
                 add_triangles(primitive, part, [&](glm::uvec3) { return mirrored; });
