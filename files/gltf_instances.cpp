@@ -47,34 +47,34 @@ std::vector<double> read_attribute(const tinygltf::Model& model, const MeshNode&
 }  // namespace
 
 std::optional<std::size_t> instance_count(const tinygltf::Model& model, const MeshNode& use,
-                                          const std::filesystem::path& path)
+                                          const AccessorResolver& resolver)
 {
     const tinygltf::Value* attributes = attributes_of(model, use.node);
     if (attributes == nullptr)
         return std::nullopt;
     if (use.skin)
-        fail_gltf(path, element_of(use), "stands beside a skin, which is not supported");
+        resolver.fail(element_of(use), "stands beside a skin, which is not supported");
     std::optional<std::size_t> count;
     std::string first;
     for (const std::string& name : attributes->Keys()) {
         const auto accessor = static_cast<std::size_t>(attributes->Get(name).GetNumberAsInt());
         const std::size_t of_this = model.accessors[accessor].count;
         if (count && of_this != *count)
-            fail_gltf(path, element_of(use),
-                      "has " + std::to_string(*count) + " values of " + shortened(first) + " and " +
-                          std::to_string(of_this) + " of " + shortened(name));
+            resolver.fail(element_of(use), "has " + std::to_string(*count) + " values of " +
+                                               shortened(first) + " and " +
+                                               std::to_string(of_this) + " of " + shortened(name));
         count = of_this;
         first = name;
     }
     if (!count)
-        fail_gltf(path, element_of(use), "has no attributes");
+        resolver.fail(element_of(use), "has no attributes");
     return count;
 }
 
 std::vector<GltfPlacement> read_instances(const tinygltf::Model& model, const MeshNode& use,
                                           const AccessorResolver& resolver)
 {
-    std::vector<GltfPlacement> instances(*instance_count(model, use, {}));
+    std::vector<GltfPlacement> instances(*instance_count(model, use, resolver));
     const std::vector<double> translations = read_attribute(model, use, "TRANSLATION", 3, resolver);
     const std::vector<double> rotations = read_attribute(model, use, "ROTATION", 4, resolver);
     const std::vector<double> scales = read_attribute(model, use, "SCALE", 3, resolver);

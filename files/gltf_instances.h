@@ -5,7 +5,6 @@
 #include "files/gltf_resolve.h"
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -15,7 +14,7 @@ namespace surfelao {
 /// InputError where the attributes differ in length, or there are none, or the node has a skin.
 [[nodiscard]] std::optional<std::size_t> instance_count(const tinygltf::Model& model,
                                                         const MeshNode& use,
-                                                        const std::filesystem::path& path);
+                                                        const AccessorResolver& resolver);
 
 /// Where they stand, seen from the node. Attributes of any type but unsigned int; other attributes
 /// than TRANSLATION, ROTATION and SCALE move nothing. Throws InputError. O(instances).

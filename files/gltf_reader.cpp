@@ -171,7 +171,7 @@ private:
         bool has_normals = false;
         for (const MeshNode& use : nodes_.mesh_nodes) {
             const std::vector<Group>& groups = *meshes_[use.mesh];
-            const std::optional<std::size_t> instances = instance_count(model_, use, asset_.path);
+            const std::optional<std::size_t> instances = instance_count(model_, use, resolver_);
             amounts.add(use, instances, groups, weights_of(use));
             has_normals = has_normals || std::ranges::any_of(groups, [](const Group& group) {
                               return group.normals.has_value();
@@ -188,7 +188,7 @@ private:
     void add_uses(const MeshNode& use)
     {
         const std::vector<Group>& groups = *meshes_[use.mesh];
-        const std::optional<std::size_t> instances = instance_count(model_, use, asset_.path);
+        const std::optional<std::size_t> instances = instance_count(model_, use, resolver_);
         if (groups.empty() || instances == std::size_t{0})
             return;
         if (!instances) {
