@@ -74,46 +74,47 @@ std::vector<std::uint32_t> sparse_targets(const GltfAccessor& accessor)
     return targets;
 }
 
-/// Calls store(i, vector) for `count` elements of dimension N that begin at `bytes`.
-template <int N, typename Store>
-void load_vectors(const GltfAccessor& accessor, const char* bytes, std::size_t stride,
-                  std::size_t count, Store&& store)
+/// Stores `dimension` numbers for each of `count` elements, the i-th element's from place(i) on.
+template <typename Place>
+void load_elements(const GltfAccessor& accessor, const char* bytes, std::size_t stride,
+                   std::size_t count, Place&& place)
 {
     with_type(accessor.component, [&](auto sample) {
         using T = decltype(sample);
         for (std::size_t i = 0; i < count; ++i, bytes += stride) {
-            glm::vec<N, double> vector;
-            for (int k = 0; k < N; ++k)
-                vector[k] = to_real(load<T>(bytes + static_cast<std::size_t>(k) * sizeof(T)),
-                                    accessor.normalized);
-            store(i, vector);
+            double* const numbers = place(i);
+            for (int k = 0; k < accessor.dimension; ++k)
+                numbers[k] = to_real(load<T>(bytes + static_cast<std::size_t>(k) * sizeof(T)),
+                                     accessor.normalized);
         }
     });
 }
 
-template <int N>
-void append(const GltfAccessor& accessor, std::vector<glm::vec<N, double>>& vectors)
+/// All elements, into count * dimension zeros.
+void load_all(const GltfAccessor& accessor, double* numbers)
 {
-    SURFELAO_CHECK(accessor.dimension == N);
-    const std::size_t first = vectors.size();
-    vectors.resize(first + accessor.count, glm::vec<N, double>(0.0));
+    const auto dimension = static_cast<std::size_t>(accessor.dimension);
     if (!accessor.zero)
-        load_vectors<N>(accessor, accessor.bytes.data(), accessor.stride, accessor.count,
-                        [&](std::size_t i, const auto& vector) { vectors[first + i] = vector; });
+        load_elements(accessor, accessor.bytes.data(), accessor.stride, accessor.count,
+                      [&](std::size_t i) { return numbers + i * dimension; });
     if (accessor.sparse_count > 0) {
         const std::vector<std::uint32_t> targets = sparse_targets(accessor);
-        load_vectors<N>(accessor, accessor.sparse_values.data(), N * size_of(accessor.component),
-                        targets.size(), [&](std::size_t i, const auto& vector) {
-                            vectors[first + targets[i]] = vector;
-                        });
+        load_elements(accessor, accessor.sparse_values.data(),
+                      dimension * size_of(accessor.component), targets.size(),
+                      [&](std::size_t i) { return numbers + targets[i] * dimension; });
     }
-    for (std::size_t i = first; i < vectors.size(); ++i) {
+}
+
+void check_finite(const GltfAccessor& accessor, const double* numbers)
+{
+    const auto dimension = static_cast<std::size_t>(accessor.dimension);
+    for (std::size_t i = 0; i < accessor.count; ++i) {
         // doubles that were floats cannot overflow: the sum is finite when all of them are
         double sum = 0.0;
-        for (int k = 0; k < N; ++k)
-            sum += vectors[i][k];
+        for (std::size_t k = 0; k < dimension; ++k)
+            sum += numbers[i * dimension + k];
         if (!std::isfinite(sum))
-            throw AccessorError("element " + std::to_string(i - first) + " is not finite");
+            throw AccessorError("element " + std::to_string(i) + " is not finite");
     }
 }
 
@@ -138,22 +139,36 @@ std::uint32_t largest_index(GltfComponent component)
     return std::numeric_limits<std::uint32_t>::max() >> (32 - 8 * size_of(component));
 }
 
-void append_vectors(const GltfAccessor& accessor, std::vector<glm::dvec3>& vectors)
+std::vector<double> read_numbers(const GltfAccessor& accessor)
 {
-    append<3>(accessor, vectors);
+    std::vector<double> numbers(accessor.count * static_cast<std::size_t>(accessor.dimension), 0.0);
+    load_all(accessor, numbers.data());
+    check_finite(accessor, numbers.data());
+    return numbers;
+}
+
+std::vector<glm::dvec3> read_vectors(const GltfAccessor& accessor, Finite finite)
+{
+    static_assert(sizeof(glm::dvec3) == 3 * sizeof(double));
+    SURFELAO_CHECK(accessor.dimension == 3);
+    std::vector<glm::dvec3> vectors(accessor.count, glm::dvec3(0.0));
+    if (vectors.empty())
+        return vectors;
+    load_all(accessor, &vectors.front().x);
+    if (finite == Finite::must_be)
+        check_finite(accessor, &vectors.front().x);
+    return vectors;
 }
 
 std::vector<glm::dvec4> read_colors(const GltfAccessor& accessor)
 {
+    const std::vector<double> numbers = read_numbers(accessor);
+    const auto dimension = static_cast<std::size_t>(accessor.dimension);
     std::vector<glm::dvec4> colors;
-    if (accessor.dimension == 4) {
-        append<4>(accessor, colors);
-        return colors;
-    }
-    std::vector<glm::dvec3> opaque;
-    append<3>(accessor, opaque);
-    for (const glm::dvec3& color : opaque)
-        colors.emplace_back(color, 1.0);
+    colors.reserve(accessor.count);
+    for (std::size_t i = 0; i < numbers.size(); i += dimension)
+        colors.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2],
+                            dimension == 4 ? numbers[i + 3] : 1.0);
     return colors;
 }
 

@@ -52,11 +52,19 @@ struct AccessorError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Appends `count` vectors; asks for three components of any type. Throws AccessorError on a value
-/// that is not finite and on bad sparse indices.
-void append_vectors(const GltfAccessor& accessor, std::vector<glm::dvec3>& vectors);
+/// All components of all elements, one element after the other: count * dimension numbers. A MAT4
+/// is 16 of them, column by column; matrices of types that need padding are not read rightly.
+/// Throws AccessorError on a value that is not finite and on bad sparse indices.
+[[nodiscard]] std::vector<double> read_numbers(const GltfAccessor& accessor);
 
-/// Asks for three components of any type (alpha is then 1) or four. Throws like append_vectors.
+enum class Finite { must_be, may_be };
+
+/// Asks for three components of any type. Throws AccessorError on bad sparse indices, and on a
+/// value that is not finite where it must be.
+[[nodiscard]] std::vector<glm::dvec3> read_vectors(const GltfAccessor& accessor,
+                                                   Finite finite = Finite::must_be);
+
+/// Asks for three components of any type (alpha is then 1) or four. Throws like read_numbers.
 [[nodiscard]] std::vector<glm::dvec4> read_colors(const GltfAccessor& accessor);
 
 /// Asks for one component of an unsigned type. Throws AccessorError on bad sparse indices.

@@ -212,6 +212,13 @@ void load_buffers(GltfAsset& asset)
 
 }  // namespace
 
+bool is_listed(std::string_view name, std::span<const std::string_view> list)
+{
+    return std::ranges::any_of(list, [&](std::string_view entry) {
+        return entry.ends_with('_') ? name.starts_with(entry) : name == entry;
+    });
+}
+
 std::string shortened(std::string_view text)
 {
     std::size_t length = std::min(text.size(), kMaxQuote);
@@ -238,6 +245,17 @@ GltfAsset::~GltfAsset() = default;
 std::size_t mesh_text_size(const GltfAsset& asset, std::size_t mesh)
 {
     return (*asset.document)["meshes"][mesh].dump().size();
+}
+
+std::size_t node_text_size(const GltfAsset& asset, std::size_t node)
+{
+    std::size_t size = 0;
+    for (const char* key : {"name", "weights"}) {
+        const json& entry = (*asset.document)["nodes"][node];
+        if (entry.contains(key))
+            size += entry[key].dump().size();
+    }
+    return size;
 }
 
 void load_gltf_asset(const fs::path& path, std::string contents, GltfAsset& asset)

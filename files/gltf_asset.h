@@ -6,12 +6,17 @@
 #include "surfels/scene.h"
 
 #include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +27,28 @@ namespace surfelao {
 struct GltfBuffer {
     std::shared_ptr<const std::string> contents;  ///< of its uri; buffers with one file share it
     std::string_view bytes;  ///< byteLength bytes; empty: has no data (see below)
+};
+
+/// Scale, then rotation (a unit quaternion x y z w), then translation, as of nodes and instances.
+struct GltfPlacement {
+    glm::dvec3 translation{0.0};
+    glm::dvec4 rotation{0.0, 0.0, 0.0, 1.0};
+    glm::dvec3 scale{1.0};
+};
+
+/// A node's mesh, or one of its instances, in the scene.
+struct GltfUse {
+    std::size_t node = 0;
+    std::size_t mesh = 0;
+    std::optional<GltfPlacement> instance;  ///< seen from the node (EXT_mesh_gpu_instancing)
+};
+
+/// What the writer knows of a Part.
+struct GltfPart {
+    std::size_t use = 0;       ///< into GltfAsset::uses
+    glm::dmat3 to_world{1.0};  ///< the linear part of mesh space -> world; not for skinned parts
+    /// Skinned parts: the same per vertex, at any scale; empty for others.
+    std::vector<glm::mat3> vertices_to_world;
 };
 
 /// Everything a writer needs to hand the file back with attributes added.
@@ -39,7 +66,11 @@ struct GltfAsset : SourceAsset {
     std::vector<std::string_view> other_chunks;  ///< of a GLB: neither JSON nor BIN, with headers
     std::vector<GltfBuffer> buffers;
     std::map<std::size_t, GltfAccessor> colors;  ///< COLOR_0 by accessor index, of all parts
-    std::vector<glm::dmat3> part_matrices;  ///< per Part: the linear part of mesh space -> world
+    /// Per mesh that the scene uses and primitive: the first primitive that shares all its vertices
+    /// (Part::primitive), or -1 where it draws no triangles. Empty for other meshes.
+    std::vector<std::vector<std::int32_t>> group_of_primitive;
+    std::vector<GltfUse> uses;    ///< in the order of the parts; each has one at least
+    std::vector<GltfPart> parts;  ///< as Scene::parts
 };
 
 /// Takes the container apart, parses the document and loads all buffers into `asset`. A buffer
@@ -52,6 +83,12 @@ void load_gltf_asset(const std::filesystem::path& path, std::string contents, Gl
 
 /// The length of a mesh's entry in the document, written close together.
 [[nodiscard]] std::size_t mesh_text_size(const GltfAsset& asset, std::size_t mesh);
+
+/// The same for what the instances of a node take over from it: its name and weights.
+[[nodiscard]] std::size_t node_text_size(const GltfAsset& asset, std::size_t node);
+
+/// Whether the list holds the name; an entry that ends in '_' stands for all that begin with it.
+[[nodiscard]] bool is_listed(std::string_view name, std::span<const std::string_view> list);
 
 /// Text out of the file for use in a message: cut to a bearable length, between characters.
 [[nodiscard]] std::string shortened(std::string_view text);

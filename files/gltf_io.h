@@ -4,17 +4,27 @@
 /// a mesh, triangles, strips and fans with or without indices of any type, sparse, normalised and
 /// interleaved accessors (KHR_mesh_quantization), data URIs and external buffers. Positions are
 /// transformed in double precision; under a mirroring node the winding is turned, so that the
-/// outside stays outside. Points and lines are left out, images are not looked at. Skinned and
-/// morphed meshes stand as they are stored, moved by their node: no joint and no morph weight is
-/// applied.
+/// outside stays outside. Points and lines are left out, images are not looked at.
 ///
-/// A primitive becomes one Part per node that uses its mesh, with all vertices of its POSITION
-/// accessor; primitives of one mesh that share that accessor are one Part (Part::primitive is the
-/// first of them).
+/// The scene stands as a viewer shows it before any animation is played:
+///   morph targets    with the node's weights, else the mesh's; weights that are missing are 0
+///   skins            the joints move the mesh, its node does not. Weights need not sum up to 1; a
+///                    vertex without any follows its first joint. JOINTS_1 and so on count too
+///   hidden nodes     (KHR_node_visibility) are left out with all below them
+///   instances        (EXT_mesh_gpu_instancing) are uses of the mesh like those of nodes
+///   CESIUM_RTC       is left out: it moves everything alike
+/// Scene::notes says what is not honoured: animations, see-through materials, points and lines.
+///
+/// Normals are those of NORMAL at unit length, moved along with morph targets, joints and nodes (by
+/// the inverse transpose); zero where a part has none or what it has is no number.
+///
+/// A primitive becomes one Part per use of its mesh, with all vertices of its POSITION accessor;
+/// primitives of one mesh that share all accessors their vertices come from (POSITION, NORMAL,
+/// joints, weights, targets) are one Part (Part::primitive is the first of them).
 ///
 /// Refused are compressed geometry (KHR_draco_mesh_compression, EXT_meshopt_compression without
-/// plain data), EXT_mesh_gpu_instancing, and any other extension that the file requires unless it
-/// is known to leave geometry alone (materials, textures, lights).
+/// plain data), and any extension that the file requires unless it is known to leave triangles
+/// alone or to be read here (gltf_extensions.cpp lists them).
 ///
 /// The file is taken as hostile: every index, offset, count, stride and type is checked before use,
 /// and what stands after the whole file has been multiplied by its nodes is bounded (see
@@ -31,10 +41,10 @@
 namespace surfelao {
 
 /// A scene may have kInstancingBase + kInstancingPerByte * (bytes of the file and its buffers)
-/// vertices, as many triangles, and as many bytes of JSON in the copies of meshes that a writer
-/// makes. Nodes that use a mesh again and again can multiply a small file without end; beyond this
-/// it is refused.
-inline constexpr std::uint64_t kInstancingBase = 1u << 22;
+/// vertices, as many triangles, as many displacements by morph targets and joints, and as many
+/// bytes of JSON in the copies of meshes that a writer makes. Nodes and instances that use a mesh
+/// again and again can multiply a small file without end; beyond this it is refused.
+inline constexpr std::uint64_t kInstancingBase = 1u << 23;
 inline constexpr std::uint64_t kInstancingPerByte = 16;
 
 /// `contents` is the file at `path`; the path is for messages, and its folder is where external
@@ -48,8 +58,8 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
 ///   _OCCLUSION    SCALAR float, 0 = open, 1 = closed (occlusion.h)
 ///   _BENT_NORMAL  VEC3 float, unit length, in the mesh's own space like NORMAL: the normal matrix
 ///   of
-///                 the node turns it into world space. Zero where there is none, and where the node
-///                 flattens the mesh so that no direction is left.
+///                 the node (of a skin: the joints) turns it into world space. Zero where there is
+///                 none, and where the mesh is flattened so that no direction is left.
 ///   COLOR_0       when options.colors: VEC3 float, visibility as grey. Where the file has vertex
 ///                 colours they are multiplied by the visibility, alpha kept (so baking twice
 ///                 darkens twice).
@@ -57,7 +67,9 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
 /// Everything else is handed back: materials, textures, animations, nodes, extensions, extras,
 /// unknown GLB chunks; keys of JSON objects come out sorted. A mesh that several nodes use is
 /// listed once per use, as each has its own occlusion; the copies share all accessors but the new
-/// ones. Nodes outside the scene that was read keep the mesh as it was.
+/// ones. Nodes outside the scene that was read and hidden ones keep the mesh as it was. Instances
+/// of a node (EXT_mesh_gpu_instancing) become nodes below it, each with a mesh of its own, and
+/// stand where they stood (gltf_uses.h).
 ///
 /// .glb: one file with one binary chunk; external buffers move into it, external images as well
 /// where they lie in the model's folder (another image keeps its uri).

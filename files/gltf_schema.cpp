@@ -1,6 +1,7 @@
 #include "files/gltf_schema.h"
 
 #include "files/gltf_asset.h"
+#include "files/gltf_extensions.h"
 
 #include <nlohmann/json.hpp>
 
@@ -23,7 +24,7 @@ enum class Kind {
     small,    // whole number up to 2^31 - 1: tinygltf stores an int
     index,    // entry of the section Field::into
     indices,  // array of them
-    numbers,  // array of Field::length numbers
+    numbers,  // array of Field::length numbers; of any number of them where that is 0
     flag,
     text,
 };
@@ -66,32 +67,29 @@ constexpr Field kPrimitive[] = {
     {"indices", Kind::index, Need::optional, "accessors"},
     {"mode", Kind::small},
 };
-constexpr Field kAttributes[] = {
-    {"POSITION", Kind::index, Need::optional, "accessors"},
-    {"COLOR_0", Kind::index, Need::optional, "accessors"},
-};
+constexpr Field kAccessorIndex = {"", Kind::index, Need::optional, "accessors"};
+/// For is_listed().
+constexpr std::string_view kAttributes[] = {"POSITION", "NORMAL", "COLOR_0", "JOINTS_", "WEIGHTS_"};
+constexpr std::string_view kTargetAttributes[] = {"POSITION", "NORMAL"};
 constexpr Field kNode[] = {
     {"name", Kind::text},
     {"mesh", Kind::index, Need::optional, "meshes"},
+    {"skin", Kind::index, Need::optional, "skins"},
+    {"weights", Kind::numbers},
     {"children", Kind::indices, Need::optional, "nodes"},
     {"matrix", Kind::numbers, Need::optional, nullptr, 16},
     {"translation", Kind::numbers, Need::optional, nullptr, 3},
     {"rotation", Kind::numbers, Need::optional, nullptr, 4},
     {"scale", Kind::numbers, Need::optional, nullptr, 3},
 };
-constexpr Field kMesh[] = {{"name", Kind::text}};
+constexpr Field kMesh[] = {{"name", Kind::text}, {"weights", Kind::numbers}};
+constexpr Field kSkin[] = {
+    {"joints", Kind::indices, Need::required, "nodes"},
+    {"inverseBindMatrices", Kind::index, Need::optional, "accessors"},
+};
+constexpr Field kVisibility[] = {{"visible", Kind::flag}};
 constexpr Field kScene[] = {{"nodes", Kind::indices, Need::optional, "nodes"}};
 constexpr Field kRoot[] = {{"scene", Kind::index, Need::optional, "scenes"}};
-
-/// Extensions that leave positions, indices and transforms as they are, or that this reader knows.
-/// A name that ends in '_' stands for all that begin with it.
-constexpr std::string_view kHarmlessExtensions[] = {
-    "KHR_mesh_quantization",  // known
-    "KHR_materials_",        "KHR_texture_",          "EXT_texture_",
-    "MSFT_texture_",         "KHR_lights_",           "EXT_lights_",
-    "KHR_technique_webgl",   "KHR_techniques_webgl",  "KHR_xmp",
-    "KHR_xmp_json_ld",       "KHR_animation_pointer", "KHR_audio",
-};
 
 constexpr std::string_view kTypeNames[] = {"SCALAR", "VEC2", "VEC3", "VEC4",
                                            "MAT2",   "MAT3", "MAT4"};
@@ -112,6 +110,22 @@ public:
                 checked[field.key] = member(*found, field, element);
             else if (field.need == Need::required)
                 fail_gltf(path_, element, std::string("has no ") + field.key);
+        }
+        return checked;
+    }
+
+    /// Those members of an object of accessor indices whose names `wanted` lists; all where it is
+    /// empty.
+    json attributes(const json& value, std::span<const std::string_view> wanted,
+                    const std::string& element) const
+    {
+        json checked = json::object();
+        for (const auto& [name, accessor] : value.items()) {
+            if (!wanted.empty() && !is_listed(name, wanted))
+                continue;
+            Field field = kAccessorIndex;
+            field.key = name.c_str();
+            checked[name] = member(accessor, field, element);
         }
         return checked;
     }
@@ -205,7 +219,7 @@ private:
     {
         if (!value.is_array())
             fail(element, field, "is not an array");
-        if (field.kind == Kind::numbers && value.size() != field.length)
+        if (field.kind == Kind::numbers && field.length != 0 && value.size() != field.length)
             fail(element, field,
                  "has " + std::to_string(value.size()) + " numbers instead of " +
                      std::to_string(field.length));
@@ -224,26 +238,6 @@ private:
     const json& document_;
     const fs::path& path_;
 };
-
-void check_extensions(const json& document, const fs::path& path)
-{
-    const auto required = document.find("extensionsRequired");
-    if (required == document.end())
-        return;
-    if (!required->is_array())
-        fail_gltf(path, "extensionsRequired", "is not an array");
-    for (const json& entry : *required) {
-        if (!entry.is_string())
-            fail_gltf(path, "extensionsRequired", "holds something that is not a string");
-        const auto& name = entry.get_ref<const std::string&>();
-        const bool harmless = std::ranges::any_of(kHarmlessExtensions, [&](std::string_view known) {
-            return known.ends_with('_') ? name.starts_with(known) : name == known;
-        });
-        if (!harmless)
-            fail_gltf(path, "",
-                      "requires the extension " + shortened(name) + ", which is not supported");
-    }
-}
 
 json checked_accessor(const Checker& check, const json& value, const std::string& element,
                       const fs::path& path)
@@ -272,6 +266,39 @@ bool has_extension(const json& entry, const char* name)
     return extensions != entry.end() && extensions->is_object() && extensions->contains(name);
 }
 
+json checked_targets(const Checker& check, const json& value, const std::string& element,
+                     const fs::path& path)
+{
+    if (!value.is_array())
+        fail_gltf(path, element + ": targets", "is not an array");
+    json targets = json::array();
+    for (const json& entry : value) {
+        const std::string place = element + " target " + std::to_string(targets.size());
+        if (!entry.is_object())
+            fail_gltf(path, place, "is not an object");
+        targets.push_back(check.attributes(entry, kTargetAttributes, place));
+    }
+    return targets;
+}
+
+/// The extensions that say whether and where a node's mesh stands.
+json checked_node(const Checker& check, const json& value, const std::string& element)
+{
+    json node = check.object(value, kNode, element);
+    if (has_extension(value, "KHR_node_visibility"))
+        node["extensions"]["KHR_node_visibility"] =
+            check.object(value["extensions"]["KHR_node_visibility"], kVisibility,
+                         element + " KHR_node_visibility");
+    if (has_extension(value, "EXT_mesh_gpu_instancing")) {
+        const std::string place = element + " EXT_mesh_gpu_instancing";
+        const json& instances =
+            check.child(value["extensions"], "EXT_mesh_gpu_instancing", element);
+        node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] =
+            check.attributes(check.child(instances, "attributes", place), {}, place);
+    }
+    return node;
+}
+
 json checked_mesh(const Checker& check, const json& value, const std::string& element,
                   const fs::path& path)
 {
@@ -291,7 +318,9 @@ json checked_mesh(const Checker& check, const json& value, const std::string& el
             !check.section("accessors")[indices->get<std::size_t>()].contains("bufferView"))
             fail_gltf(path, place + " indices accessor " + indices->dump(), "has no bufferView");
         primitive["attributes"] =
-            check.object(check.child(entry, "attributes", place), kAttributes, place);
+            check.attributes(check.child(entry, "attributes", place), kAttributes, place);
+        if (entry.contains("targets"))
+            primitive["targets"] = checked_targets(check, entry["targets"], place, path);
         // even where plain accessors stand beside it: decoders may number its vertices otherwise
         if (has_extension(entry, "KHR_draco_mesh_compression"))
             fail_gltf(path, place,
@@ -305,7 +334,7 @@ json checked_mesh(const Checker& check, const json& value, const std::string& el
 
 std::string geometry_text(const json& document, const fs::path& path)
 {
-    check_extensions(document, path);
+    check_required_extensions(document, path);
     const Checker check(document, path);
 
     json geometry = check.object(document, kRoot, "");
@@ -333,11 +362,10 @@ std::string geometry_text(const json& document, const fs::path& path)
         return checked_mesh(check, value, element, path);
     });
     collect("nodes", "node", [&](const json& value, const std::string& element) {
-        json node = check.object(value, kNode, element);
-        // even where it is not required: without its instances the occlusion would be wrong
-        if (has_extension(value, "EXT_mesh_gpu_instancing"))
-            fail_gltf(path, element, "uses EXT_mesh_gpu_instancing, which is not supported");
-        return node;
+        return checked_node(check, value, element);
+    });
+    collect("skins", "skin", [&](const json& value, const std::string& element) {
+        return check.object(value, kSkin, element);
     });
     collect("scenes", "scene", [&](const json& value, const std::string& element) {
         return check.object(value, kScene, element);

@@ -9,14 +9,15 @@
 
 namespace surfelao {
 
-/// As JSON text, a document with the scenes, nodes, meshes (POSITION, COLOR_0 and indices),
-/// accessors and buffer views of `document`, and of those only the fields that geometry needs. What
-/// stands in it is of the type that the specification asks for, nothing required is missing, whole
+/// As JSON text, a document with the scenes, nodes (their visibility and instances too), skins,
+/// meshes (positions, normals, COLOR_0, joints and weights, morph targets, indices), accessors and
+/// buffer views of `document`, and of those only the fields that geometry needs. What stands in it
+/// is of the type that the specification asks for, nothing required is missing, whole
 /// numbers are not written as fractions, every index lies inside the section it points into, and no
 /// number is too large for what tinygltf stores it in. Entries keep their indices.
 ///
-/// Throws InputError naming the element at fault (`path` is for the message), and for an extension
-/// that the file requires and that changes geometry in a way this reader does not know.
+/// Throws InputError naming the element at fault (`path` is for the message), and like
+/// check_required_extensions().
 [[nodiscard]] std::string geometry_text(const nlohmann::json& document,
                                         const std::filesystem::path& path);
 

@@ -5,7 +5,9 @@
 #include "files/gltf_accessor.h"
 #include "files/gltf_asset.h"
 #include "files/gltf_old_results.h"
+#include "files/gltf_pose.h"
 #include "files/gltf_uri.h"
+#include "files/gltf_uses.h"
 #include "files/maker_mark.h"
 #include "surfels/errors.h"
 
@@ -32,7 +34,6 @@ using nlohmann::json;
 
 constexpr int kFloat = 5126;
 constexpr int kArrayBuffer = 34962;
-constexpr int kTriangles = 4;  // the first of the modes that draw triangles
 
 /// Extensions of a bufferView that name a buffer and an offset of their own.
 constexpr const char* kBufferViewExtensions[] = {"EXT_meshopt_compression",
@@ -108,17 +109,15 @@ std::vector<float> occlusion_values(std::span<const Occlusion> occlusion)
 
 /// World directions as normals of mesh space. A normal n becomes M^-T n in the world, so what comes
 /// back is M^T n.
-std::vector<float> bent_normal_values(std::span<const Occlusion> occlusion, glm::dmat3 to_world)
+std::vector<float> bent_normal_values(std::span<const Occlusion> occlusion, const GltfPart& part)
 {
-    double largest = 0.0;
-    for (int i = 0; i < 9; ++i)
-        largest = std::max(largest, std::abs(to_world[i / 3][i % 3]));
-    if (largest > 0.0)
-        to_world /= largest;  // only directions count, and tiny units must not underflow
+    const glm::dmat3 rigid = scaled_to_one(part.to_world);
     std::vector<float> values;
     values.reserve(3 * occlusion.size());
-    for (const Occlusion& vertex : occlusion) {
-        const glm::dvec3 direction = glm::dvec3(vertex.bent_normal) * to_world;
+    for (std::size_t v = 0; v < occlusion.size(); ++v) {
+        const glm::dmat3 to_world =
+            part.vertices_to_world.empty() ? rigid : glm::dmat3(part.vertices_to_world[v]);
+        const glm::dvec3 direction = glm::dvec3(occlusion[v].bent_normal) * to_world;
         const double length = glm::length(direction);
         const glm::vec3 unit = length > 0.0 ? glm::vec3(direction / length) : glm::vec3(0.0f);
         values.insert(values.end(), {unit.x, unit.y, unit.z});
@@ -181,66 +180,28 @@ private:
     std::map<std::optional<std::size_t>, std::size_t> added_;
 };
 
-/// Gives each use of a mesh a mesh of its own; returns per part which. The first use keeps the
-/// entry, unless a node outside the scene uses it too.
-std::vector<std::size_t> separate_meshes(json& document, const Scene& scene)
-{
-    std::vector<bool> node_is_used(document["nodes"].size(), false);
-    for (const Part& part : scene.parts)
-        node_is_used[static_cast<std::size_t>(part.node)] = true;
-    std::vector<bool> taken(document["meshes"].size(), false);
-    for (std::size_t i = 0; i < node_is_used.size(); ++i) {
-        const json& node = document["nodes"][i];
-        if (!node_is_used[i] && node.contains("mesh"))
-            taken[node["mesh"].get<std::size_t>()] = true;
-    }
-    std::vector<std::size_t> meshes;
-    for (std::size_t p = 0; p < scene.parts.size(); ++p) {
-        const Part& part = scene.parts[p];
-        if (p > 0 && scene.parts[p - 1].node == part.node) {
-            meshes.push_back(meshes.back());
-            continue;
-        }
-        auto mesh = static_cast<std::size_t>(part.mesh);
-        if (taken[mesh]) {
-            const json copy = document["meshes"][mesh];
-            mesh = document["meshes"].size();
-            document["meshes"].push_back(copy);
-            document["nodes"][static_cast<std::size_t>(part.node)]["mesh"] = mesh;
-        } else {
-            taken[mesh] = true;
-        }
-        meshes.push_back(mesh);
-    }
-    return meshes;
-}
-
 void add_attributes(json& document, const GltfAsset& asset, const Scene& scene,
                     std::span<const Occlusion> occlusion, const WriteOptions& options,
                     NewAccessors& accessors)
 {
-    const std::vector<std::size_t> meshes = separate_meshes(document, scene);
+    const std::vector<std::size_t> meshes = separate_uses(document, asset.uses);
     for (std::size_t p = 0; p < scene.parts.size(); ++p) {
         const Part& part = scene.parts[p];
         if (part.vertex_count == 0)
             continue;
         const auto values = occlusion.subspan(part.first_vertex, part.vertex_count);
         const std::size_t scalar = accessors.add(1, occlusion_values(values));
-        const std::size_t bent =
-            accessors.add(3, bent_normal_values(values, asset.part_matrices[p]));
+        const std::size_t bent = accessors.add(3, bent_normal_values(values, asset.parts[p]));
         ColorWriter colors(asset, accessors);
 
         // the primitives that this part stands for: those that share its vertices
-        json& primitives = document["meshes"][meshes[p]]["primitives"];
-        const json position =
-            primitives[static_cast<std::size_t>(part.primitive)]["attributes"]["POSITION"];
-        for (json& primitive : primitives) {
-            json& attributes = primitive["attributes"];
-            const bool is_member = attributes.contains("POSITION") &&
-                                   attributes["POSITION"] == position &&
-                                   primitive.value("mode", kTriangles) >= kTriangles;
-            if (!is_member)
+        json& primitives = document["meshes"][meshes[asset.parts[p].use]]["primitives"];
+        const std::vector<std::int32_t>& groups =
+            asset.group_of_primitive[static_cast<std::size_t>(part.mesh)];
+        for (std::size_t i = 0; i < groups.size(); ++i) {
+            if (groups[i] != part.primitive)
                 continue;
+            json& attributes = primitives[i]["attributes"];
             attributes["_OCCLUSION"] = scalar;
             attributes["_BENT_NORMAL"] = bent;
             if (options.colors)

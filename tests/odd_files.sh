@@ -37,8 +37,8 @@ declare -A odd=(
     [glTF2/wrongTypes/badObject.gltf]="wrong types where no geometry is"
     [glTF2/wrongTypes/badString.gltf]="wrong types where no geometry is"
     [glTF2/wrongTypes/badUint.gltf]="wrong types where no geometry is"
-    [glTF2/simple_skin/simple_skin.gltf]="a skin: taken as it is stored"
-    [glTF2/glTF-Sample-Models/AnimatedMorphCube-glTF/AnimatedMorphCube.gltf]="morph targets: the plain mesh"
+    [glTF2/simple_skin/simple_skin.gltf]="a skin: its default pose"
+    [glTF2/glTF-Sample-Models/AnimatedMorphCube-glTF/AnimatedMorphCube.gltf]="morph targets: the default weights"
 )
 
 faults=0

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <initializer_list>
+#include <ostream>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -148,6 +149,18 @@ inline std::string refusal(const std::string& contents)
         return what.starts_with("made.glb: ") ? what.substr(10) : what;
     }
     return "was read";
+}
+
+/// A row of a table of broken files.
+struct Malformed {
+    const char* name;
+    const char* sentence;        ///< behind "made.glb: "
+    void (*damage)(GltfMaker&);  ///< breaks a good file
+};
+
+inline void PrintTo(const Malformed& malformed, std::ostream* stream)
+{
+    *stream << malformed.name;
 }
 
 }  // namespace surfelao::test

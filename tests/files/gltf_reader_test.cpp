@@ -110,7 +110,6 @@ TEST(GltfReader, WhatIsNotGeometryIsNotJudged)
     GltfMaker maker = square();
     maker.document["animations"] = "dance";
     maker.document["materials"] = {1, nullptr, {{"pbrMetallicRoughness", "shiny"}}};
-    maker.document["skins"] = {{{"joints", {99}}}};
     maker.document["extras"] = {{"deep", {1, {2, {3}}}}};
     maker.document["extensionsUsed"] = 5;
     maker.document["nodes"][0]["camera"] = "yes";

@@ -20,6 +20,7 @@ void check_round_trip(const Scene& scene)
         const Scene again = read_gltf(path, gltf_contents(path, scene, occlusion));
         SURFELAO_CHECK(again.positions == scene.positions);
         SURFELAO_CHECK(again.triangles == scene.triangles);
+        SURFELAO_CHECK(again.normals.values == scene.normals.values);
     }
 }
 

@@ -44,6 +44,46 @@ GltfMaker everything()
     return maker;
 }
 
+/// A skinned and morphed square with normals, and two instances of it, one node hidden.
+GltfMaker posed()
+{
+    GltfMaker maker = square();
+    const int vectors = maker.add_vectors<float>({0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, 1});
+    const int joints = maker.add_accessor(
+        maker.add_view(bytes_of<std::uint8_t>({0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0})),
+        5121, "VEC4", 4);
+    const int weights = maker.add_accessor(
+        maker.add_view(bytes_of<std::uint8_t>({9, 9, 0, 0, 9, 0, 0, 0, 0, 0, 0, 0, 9, 0, 0, 0})),
+        5121, "VEC4", 4);
+    maker.document["accessors"][weights]["normalized"] = true;
+    const int binds = maker.add_accessor(
+        maker.add_view(bytes_of<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1,
+                                        0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1})),
+        5126, "MAT4", 2);
+    const int places = maker.add_vectors<float>({0, 0, 0, 0, 0, 5});
+    const int turns = maker.add_accessor(
+        maker.add_view(bytes_of<std::int16_t>({0, 0, 0, 32767, 0, 0, 23170, 23170})), 5122, "VEC4",
+        2);
+    maker.document["accessors"][turns]["normalized"] = true;
+    maker.document["meshes"][0]["weights"] = {0.5};
+    primitive(maker)["targets"] = {{{"POSITION", vectors}, {"NORMAL", vectors}}};
+    primitive(maker)["attributes"].update(
+        {{"NORMAL", vectors}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}});
+    maker.document["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", binds}}};
+    maker.document["nodes"] = {
+        {{"mesh", 0}, {"skin", 0}, {"weights", {1}}},
+        {{"rotation", {0, 0, 1, 1}}, {"children", {2}}},
+        {{"scale", {1, -2, 1}}},
+        {{"mesh", 0},
+         {"extensions",
+          {{"EXT_mesh_gpu_instancing",
+            {{"attributes", {{"TRANSLATION", places}, {"ROTATION", turns}, {"SCALE", places}}}}}}}},
+        {{"mesh", 0}, {"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}}};
+    maker.document["scenes"][0]["nodes"] = {0, 1, 3, 4};
+    maker.document["extensionsRequired"] = {"EXT_mesh_gpu_instancing", "KHR_node_visibility"};
+    return maker;
+}
+
 void save(const fs::path& path, const std::string& bytes)
 {
     fs::create_directories(path.parent_path());
@@ -56,6 +96,7 @@ void save_gltf_seeds(const fs::path& folder)
     save(folder / "square.glb", square().glb());
     save(folder / "sparse.glb", sparse_square().glb());
     save(folder / "everything.glb", everything().glb());
+    save(folder / "posed.glb", posed().glb());
     save(folder / "triangle.gltf", one_triangle().gltf(kTriangleUri));
 }
 

@@ -1,0 +1,49 @@
+/// gltf_mesh.h: what the meshes of a glTF are made of, checked. Internal to the glTF reader.
+#pragma once
+
+#include "files/gltf_resolve.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace surfelao {
+
+/// One primitive that draws triangles.
+struct Primitive {
+    std::size_t index;                     // in its mesh
+    std::optional<NamedAccessor> indices;  // without: the vertices in order
+    int mode;
+    std::size_t triangle_count;
+};
+
+/// Displacements; one for each vertex.
+struct MorphTarget {
+    std::optional<NamedAccessor> positions;
+    std::optional<NamedAccessor> normals;
+};
+
+/// Four joints and their weights for each vertex: JOINTS_n and WEIGHTS_n.
+struct InfluenceSet {
+    NamedAccessor joints;
+    NamedAccessor weights;
+};
+
+/// Primitives of one mesh that share their vertices, that is all of the following accessors: a part
+/// of the scene for each use of the mesh.
+struct Group {
+    NamedAccessor positions;
+    std::optional<NamedAccessor> normals;
+    std::vector<MorphTarget> targets;
+    std::vector<InfluenceSet> influences;
+    std::vector<Primitive> primitives;
+};
+
+/// The groups of one mesh; reads no element yet. The index of the first primitive of its group (-1:
+/// draws no triangles) is noted for each primitive in asset.group_of_primitive, which has room for
+/// all meshes; colours in asset.colors. Throws InputError for accessors of a wrong type or length.
+/// O(size of its JSON).
+[[nodiscard]] std::vector<Group> resolve_mesh(const tinygltf::Model& model, std::size_t mesh,
+                                              GltfAsset& asset);
+
+}  // namespace surfelao

@@ -1,0 +1,16 @@
+/// gltf_notes.h: what a glTF file holds and nobody honours. Internal to the glTF reader.
+#pragma once
+
+#include "files/gltf_nodes.h"
+
+#include <string>
+#include <vector>
+
+namespace surfelao {
+
+/// A short sentence for each kind of thing, without a full stop, for Scene::notes: hidden nodes,
+/// points and lines, see-through materials, animations. Takes the scene as built: asset.uses and
+/// asset.group_of_primitive. O(document).
+[[nodiscard]] std::vector<std::string> gltf_notes(const GltfAsset& asset, const PlacedNodes& nodes);
+
+}  // namespace surfelao

@@ -1,0 +1,161 @@
+#include "files/gltf_pose.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace surfelao {
+namespace {
+
+constexpr std::size_t kJointsInSet = 4;
+
+/// What `read` makes of an accessor, with the element's name in what it throws.
+template <typename Read>
+auto read_named(const NamedAccessor& named, const AccessorResolver& resolver, Read&& read)
+{
+    try {
+        return read(named.accessor);
+    } catch (const AccessorError& error) {
+        resolver.fail(named.element + ":", error.what());
+    }
+}
+
+void add_scaled(std::vector<glm::dvec3>& sums, const std::vector<glm::dvec3>& vectors,
+                double weight)
+{
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        sums[i] += weight * vectors[i];
+}
+
+}  // namespace
+
+MeshVertices read_vertices(const Group& group, std::span<const double> weights,
+                           const AccessorResolver& resolver)
+{
+    const auto positions = [](const GltfAccessor& accessor) { return read_vectors(accessor); };
+    // exporters leave NaN where triangles have no area: such a normal is none, no fault
+    const auto normals = [](const GltfAccessor& accessor) {
+        return read_vectors(accessor, Finite::may_be);
+    };
+    MeshVertices vertices;
+    vertices.positions = read_named(group.positions, resolver, positions);
+    if (group.normals)
+        vertices.normals = read_named(*group.normals, resolver, normals);
+    for (std::size_t t = 0; t < std::min(weights.size(), group.targets.size()); ++t) {
+        const MorphTarget& target = group.targets[t];
+        if (weights[t] == 0.0)
+            continue;
+        if (target.positions)
+            add_scaled(vertices.positions, read_named(*target.positions, resolver, positions),
+                       weights[t]);
+        if (target.normals && group.normals)
+            add_scaled(vertices.normals, read_named(*target.normals, resolver, normals),
+                       weights[t]);
+    }
+    return vertices;
+}
+
+std::vector<glm::dmat4> joint_matrices(const tinygltf::Model& model, std::size_t skin,
+                                       std::span<const glm::dmat4> world,
+                                       const AccessorResolver& resolver)
+{
+    const tinygltf::Skin& source = model.skins[skin];
+    std::vector<glm::dmat4> matrices;
+    for (const int joint : source.joints)
+        matrices.push_back(world[static_cast<std::size_t>(joint)]);
+    if (source.inverseBindMatrices < 0)
+        return matrices;
+
+    NamedAccessor named = resolver.resolve(source.inverseBindMatrices,
+                                           numbered("skin", skin) + " inverseBindMatrices");
+    GltfAccessor& accessor = named.accessor;
+    if (accessor.dimension != 16)
+        resolver.fail(named.element, "is not of type MAT4");
+    if (accessor.component != GltfComponent::float32 || accessor.normalized)
+        resolver.fail(named.element, "is not float");
+    // more than there are joints is allowed; but many skins may use one long accessor
+    if (accessor.count > matrices.size() && accessor.sparse_count == 0)
+        accessor.count = matrices.size();
+    resolver.check_count(named, matrices.size(), "joints");
+    const std::vector<double> numbers = read_named(named, resolver, read_numbers);
+    for (std::size_t j = 0; j < matrices.size(); ++j) {
+        glm::dmat4 inverse_bind(1.0);
+        for (std::size_t i = 0; i < 16; ++i) {
+            if (i % 4 != 3)  // the last row is 0 0 0 1 by definition
+                inverse_bind[static_cast<int>(i / 4)][static_cast<int>(i % 4)] =
+                    numbers[16 * j + i];
+        }
+        matrices[j] = matrices[j] * inverse_bind;
+    }
+    return matrices;
+}
+
+std::vector<glm::dmat4> vertex_matrices(const Group& group, std::span<const glm::dmat4> joints,
+                                        const AccessorResolver& resolver)
+{
+    const std::size_t count = group.positions.accessor.count;
+    std::vector<glm::dmat4> matrices(count, glm::dmat4(0.0));
+    std::vector<double> sums(count, 0.0);
+    const auto joint_of = [&](const InfluenceSet& set, std::size_t vertex, double number) {
+        if (number >= static_cast<double>(joints.size()))
+            resolver.fail(set.joints.element + ":",
+                          numbered("vertex", vertex) + " uses joint " +
+                              std::to_string(static_cast<std::uint64_t>(number)) +
+                              ", but the skin has " + std::to_string(joints.size()));
+        return joints[static_cast<std::size_t>(number)];
+    };
+    for (const InfluenceSet& set : group.influences) {
+        const std::vector<double> numbers = read_named(set.joints, resolver, read_numbers);
+        const std::vector<double> weights = read_named(set.weights, resolver, read_numbers);
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            const std::size_t vertex = i / kJointsInSet;
+            if (weights[i] > 0.0) {  // joints without weight may be anything
+                matrices[vertex] += weights[i] * joint_of(set, vertex, numbers[i]);
+                sums[vertex] += weights[i];
+            }
+        }
+    }
+    std::vector<double> first;
+    for (std::size_t vertex = 0; vertex < count; ++vertex) {
+        if (sums[vertex] > 0.0) {
+            matrices[vertex] /= sums[vertex];
+            continue;
+        }
+        const InfluenceSet& set = group.influences.front();
+        if (first.empty())
+            first = read_named(set.joints, resolver, read_numbers);
+        matrices[vertex] = joint_of(set, vertex, first[kJointsInSet * vertex]);
+    }
+    return matrices;
+}
+
+glm::dmat3 scaled_to_one(const glm::dmat3& matrix)
+{
+    double largest = 0.0;
+    for (int i = 0; i < 9; ++i)
+        largest = std::max(largest, std::abs(matrix[i / 3][i % 3]));
+    return largest > 0.0 ? matrix / largest : matrix;
+}
+
+NormalMatrix::NormalMatrix(const glm::dmat3& to_world)
+{
+    // the cofactors are the inverse transpose times the determinant: the same direction, and still
+    // there where a node flattens the mesh
+    const glm::dmat3 m = scaled_to_one(to_world);
+    matrix_ = {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
+    if (glm::determinant(m) < 0.0)
+        matrix_ = -matrix_;
+}
+
+glm::vec3 NormalMatrix::operator()(const glm::dvec3& normal) const
+{
+    const glm::dvec3 direction = matrix_ * normal;
+    const double length = glm::length(direction);
+    return length > 0.0 && std::isfinite(length) ? glm::vec3(direction / length) : glm::vec3(0.0f);
+}
+
+}  // namespace surfelao

@@ -1,0 +1,59 @@
+/// gltf_pose.h: the vertices of a glTF mesh as its default pose has them: morphed, skinned, placed.
+/// Internal to the glTF reader.
+#pragma once
+
+#include "files/gltf_mesh.h"
+#include "files/gltf_nodes.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include <span>
+#include <vector>
+
+namespace surfelao {
+
+/// The vertices of a group, in mesh space.
+struct MeshVertices {
+    std::vector<glm::dvec3> positions;
+    std::vector<glm::dvec3> normals;  ///< as stored, of any length, finite or not; may be empty
+};
+
+/// The stored vertices plus the displacements of the targets times their weights; targets beyond
+/// the weights have none. Throws InputError where values are not finite. O(vertices * targets of a
+/// weight that is not 0).
+[[nodiscard]] MeshVertices read_vertices(const Group& group, std::span<const double> weights,
+                                         const AccessorResolver& resolver);
+
+/// The matrices that take a skin's joints from the mesh as it was bound to the world: the joint's
+/// own times its inverse bind matrix (without: the identity). Throws InputError. O(joints).
+[[nodiscard]] std::vector<glm::dmat4> joint_matrices(const tinygltf::Model& model, std::size_t skin,
+                                                     std::span<const glm::dmat4> world,
+                                                     const AccessorResolver& resolver);
+
+/// Per vertex, the mean of the joints' matrices by weight. Weights need not sum up to 1, negative
+/// ones count as 0; where all are 0 the vertex follows its first joint, as in viewers (three.js).
+/// Throws InputError naming a joint that the skin does not have. O(vertices * sets).
+[[nodiscard]] std::vector<glm::dmat4> vertex_matrices(const Group& group,
+                                                      std::span<const glm::dmat4> joints,
+                                                      const AccessorResolver& resolver);
+
+/// Brings normals from mesh space into the world: along the inverse transpose of the linear part,
+/// so that they stay upright under uneven scales and on the outside under mirrors.
+class NormalMatrix {
+public:
+    explicit NormalMatrix(const glm::dmat3& to_world);
+
+    /// At unit length; zero where there is no direction.
+    [[nodiscard]] glm::vec3 operator()(const glm::dvec3& normal) const;
+
+private:
+    glm::dmat3 matrix_;
+};
+
+/// The matrix times a positive number, so that its largest entry is 1: for directions, which must
+/// neither underflow nor overflow. Zero stays zero.
+[[nodiscard]] glm::dmat3 scaled_to_one(const glm::dmat3& matrix);
+
+}  // namespace surfelao
