@@ -103,8 +103,8 @@ struct VertexFit::Impl {
     const Geometry& geometry;
     const Surface& surface;
     SurfaceSamples samples;
+    std::size_t unknown_count = 0;        ///< found with the next
     std::vector<std::uint32_t> unknowns;  ///< per vertex; kUnused where no triangle uses it
-    std::size_t unknown_count = 0;
     Buckets<std::uint32_t> corners;  ///< 3 * triangle + corner, by unknown
     Matrix matrix;
 
