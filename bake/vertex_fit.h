@@ -20,6 +20,8 @@
 #include "surfels/occlusion.h"
 #include "surfels/surface.h"
 
+#include <glm/vec4.hpp>
+
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -35,17 +37,26 @@ inline constexpr double kFitSmoothness = 0.03;
 /// kFewestSamples where that is more. So a scan has about one a triangle, and a floor of two
 /// triangles hundreds: twice as many cost twice the time and lower the seen error by a hundredth.
 inline constexpr std::uint64_t kFewestSamples = 4096;
-inline constexpr std::uint32_t kMostSampleRows = 32;  ///< per triangle: 32^2 samples
+inline constexpr std::uint32_t kMostSampleRows = 32;  ///< of a triangle or quad: 32^2 samples
 
-/// By triangle: those of triangle t are first[t] to first[t + 1].
-struct SurfaceSamples {
-    std::vector<SurfacePoint> points;
-    std::vector<std::uint32_t> first;  ///< one more than triangles
+/// What the sum over the samples runs over: triangles, and planar quads of two of them. A file, or
+/// whoever draws it, cuts a quad either way; so its samples see the mean of both interpolations,
+/// and neither the values nor the samples depend on the cut at hand.
+struct FitCell {
+    glm::uvec4 unknowns;             ///< at its corners; the last is kNoCorner in a triangle
+    std::uint32_t first_sample = 0;  ///< those up to the next cell's are its own
+    static constexpr std::uint32_t kNoCorner = 0xffffffff;
 };
 
-/// Each triangle is cut into m^2 equal ones, with a sample near the middle of each: evenly spread,
-/// the same from whichever corner one looks but for kSampleShift. O(triangles + samples).
-[[nodiscard]] SurfaceSamples fit_samples(const Geometry& geometry);
+/// Samples by cell. A triangle is cut into m^2 equal ones, a quad into m^2 cells of its bilinear
+/// map, with a sample near the middle of each: evenly spread, and the same from whichever corner
+/// one looks but for kSampleShift.
+struct SurfaceSamples {
+    std::vector<SurfacePoint> points;
+    std::vector<float> areas;             ///< that each stands for; unit frame
+    std::vector<glm::vec4> quad_weights;  ///< of the samples in quads, which come first
+    std::vector<FitCell> cells;           ///< and one more, where the samples end
+};
 
 /// In sides of the small triangles, away from their middles. Built things are symmetric: in a ship
 /// of panels a fifth of a percent of all middles lay exactly in the plane of another panel.
@@ -58,11 +69,12 @@ inline constexpr float kLeastBent = 1e-4f;
 class VertexFit {
 public:
     /// geometry and surface must outlive it. O(n) time and memory.
-    VertexFit(const Geometry& geometry, const Surface& surface, const NormalSettings& normals,
-              SurfaceSamples samples);
+    VertexFit(const Geometry& geometry, const Surface& surface, const NormalSettings& normals);
     ~VertexFit();
     VertexFit(VertexFit&&) noexcept;
     VertexFit& operator=(VertexFit&&) noexcept;
+
+    [[nodiscard]] const SurfaceSamples& samples() const;
 
     /// One per scene vertex: occlusion, cut to [0, 1], and the bent normal: the direction of the
     /// fitted visibility times bent normal. answers: one per sample. Unused vertices: occlusion 0,
