@@ -285,7 +285,8 @@ SurfaceSamples samples_of(const Geometry& geometry, std::span<const std::uint32_
     double whole = 0.0;
     for (std::size_t t = 0; t < count; ++t)
         whole += areas[t] = area_of(geometry, t);
-    const auto wanted = static_cast<double>(std::max<std::uint64_t>(kFewestSamples, count));
+    const auto wanted = static_cast<double>(std::max<std::uint64_t>(
+        std::min<std::uint64_t>(kFewestSamples, kMostSamplesEach * count), count));
     const auto rows_of = [&](double area) {
         const double rows = std::round(std::sqrt(wanted * area / whole));
         return static_cast<std::uint32_t>(std::clamp(rows, 1.0, double{kMostSampleRows}));

@@ -33,10 +33,13 @@ namespace surfelao {
 /// and up to a sixth higher at .001, where a triangle's single sample leaves its corners free.
 inline constexpr double kFitSmoothness = 0.03;
 
-/// Samples of a surface: at least one a triangle, and as many by area as there are triangles, or
-/// kFewestSamples where that is more. So a scan has about one a triangle, and a floor of two
-/// triangles hundreds: twice as many cost twice the time and lower the seen error by a hundredth.
-inline constexpr std::uint64_t kFewestSamples = 4096;
+/// Samples of a surface: at least one a triangle, and by area as many as there are triangles; of
+/// coarse meshes kFewestSamples, or kMostSamplesEach a triangle where that is less. So a scan has
+/// about one a triangle, and a floor of two triangles dozens. Seen error with samples by area for a
+/// half, one and four times the number of triangles: pandora .0420, .0411, .0399; bunny .0066,
+/// .0066, .0064; at twice the time for four times as many.
+inline constexpr std::uint64_t kFewestSamples = 2048;
+inline constexpr std::uint64_t kMostSamplesEach = 32;
 inline constexpr std::uint32_t kMostSampleRows = 32;  ///< of a triangle or quad: 32^2 samples
 
 /// What the sum over the samples runs over: triangles, and planar quads of two of them. A file, or
