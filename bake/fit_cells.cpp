@@ -1,5 +1,8 @@
 #include "bake/fit_cells.h"
 
+#include "surfels/edges.h"
+#include "surfels/union_find.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -9,7 +12,6 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <unordered_map>
 #include <utility>
 
 namespace surfelao {
@@ -51,58 +53,66 @@ double turn(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, glm::dvec3 normal)
 
 class QuadFinder {
 public:
+    /// among: rising.
     QuadFinder(const Geometry& geometry, std::span<const std::uint32_t> unknowns,
-               const std::vector<std::uint32_t>& large)
-        : geometry_(geometry), unknowns_(unknowns)
+               const std::vector<std::uint32_t>& among)
+        : geometry_(geometry), unknowns_(unknowns), edges_(geometry)
     {
-        for (const std::uint32_t t : large) {
-            for (int side = 0; side < 3; ++side) {
-                const auto [entry, is_new] =
-                    sides_.try_emplace(key(unknown(t, side), unknown(t, side + 1)),
-                                       3 * t + static_cast<unsigned>(side));
-                if (!is_new)
-                    entry->second = kNone;  // three or more triangles meet: no quad
-            }
-        }
-        std::unordered_map<std::uint32_t, std::uint32_t> best;  // triangle -> neighbour
-        for (const std::uint32_t t : large)
-            best[t] = best_neighbour(t);
-        for (const std::uint32_t t : large) {
-            const std::uint32_t other = best[t];
-            if (other != kNone && t < other && best[other] == t)
-                quads.push_back(*quad_at(t, other));
+        std::vector<std::uint32_t> best;
+        for (const std::uint32_t t : among)
+            best.push_back(best_neighbour(t));
+        for (std::size_t i = 0; i < among.size(); ++i) {
+            const auto other = std::ranges::lower_bound(among, best[i]);
+            if (other != among.end() && *other == best[i] && among[i] < best[i] &&
+                best[static_cast<std::size_t>(other - among.begin())] == among[i])
+                quads.push_back(*quad_of(among[i], best[i]));
         }
     }
 
     std::vector<Quad> quads;  ///< by rising first triangle
 
 private:
-    static std::uint64_t key(std::uint32_t from, std::uint32_t to)
+    std::uint32_t vertex(std::uint32_t triangle, int corner) const
     {
-        return std::uint64_t{from} << 32 | to;
+        return geometry_.triangles[triangle][corner % 3];
     }
     std::uint32_t unknown(std::uint32_t triangle, int corner) const
     {
-        return unknowns_[geometry_.triangles[triangle][corner % 3]];
+        return unknowns_[vertex(triangle, corner)];
     }
     glm::dvec3 place(std::uint32_t triangle, int corner) const
     {
-        return geometry_.positions[geometry_.triangles[triangle][corner % 3]];
+        return geometry_.positions[vertex(triangle, corner)];
     }
 
-    /// The triangle on the other side of a side, and its side; kNone where there is none.
-    std::uint32_t across(std::uint32_t triangle, int side) const
+    /// The one triangle on the other side of a side, and its side; kNone where there is none or
+    /// more, or it does not share both unknowns.
+    Side across(std::uint32_t triangle, int side) const
     {
-        const auto own = sides_.find(key(unknown(triangle, side), unknown(triangle, side + 1)));
-        const auto found = sides_.find(key(unknown(triangle, side + 1), unknown(triangle, side)));
-        return found == sides_.end() || own->second == kNone ? kNone : found->second;
+        const std::uint32_t from = geometry_.welded[vertex(triangle, side)];
+        const std::uint32_t to = geometry_.welded[vertex(triangle, side + 1)];
+        Side found = kNone;
+        int count = 0;
+        for (const EdgeSide& other : edges_.at(std::min(from, to))) {
+            if (other.upper != std::max(from, to))
+                continue;
+            ++count;
+            if (other.triangle() != triangle && other.rises() == (to < from))
+                found = other.side();
+        }
+        if (count != 2 || found == kNone)
+            return kNone;
+        const int back = static_cast<int>(found % 3);
+        const bool shared = unknown(found / 3, back) == unknown(triangle, side + 1) &&
+                            unknown(found / 3, back + 1) == unknown(triangle, side);
+        return shared ? found : kNone;
     }
 
     /// Of t and the triangle beyond its side; empty where they make none.
     std::optional<Quad> quad_over(std::uint32_t t, int side) const
     {
-        const std::uint32_t found = across(t, side);
-        if (found == kNone || found / 3 == t)
+        const Side found = across(t, side);
+        if (found == kNone)
             return std::nullopt;
         const std::uint32_t other = found / 3;
         const int back = static_cast<int>(found % 3);
@@ -117,7 +127,7 @@ private:
         return quad;
     }
 
-    std::optional<Quad> quad_at(std::uint32_t t, std::uint32_t other) const
+    std::optional<Quad> quad_of(std::uint32_t t, std::uint32_t other) const
     {
         for (int side = 0; side < 3; ++side) {
             const std::optional<Quad> quad = quad_over(t, side);
@@ -166,7 +176,7 @@ private:
 
     const Geometry& geometry_;
     std::span<const std::uint32_t> unknowns_;
-    std::unordered_map<std::uint64_t, std::uint32_t> sides_;  ///< 3 triangle + side
+    Edges edges_;
 };
 
 class Sampler {
@@ -203,6 +213,17 @@ public:
         begin(quad.unknowns);
         const auto& [a, b, c, d] = quad.places;
         const std::size_t first = samples_.areas.size();
+        if (rows == 1) {
+            for (int second = 0; second < 2; ++second) {
+                const glm::dvec3& tip = second == 0 ? b : d;
+                const double tip_share = 1.0 / 3.0 + static_cast<double>(kSampleShift[0]);
+                const double a_share = 1.0 / 3.0 + static_cast<double>(kSampleShift[1]);
+                add_sample(quad, a_share * a + tip_share * tip + (1.0 - a_share - tip_share) * c);
+                samples_.areas.push_back(
+                    static_cast<float>(0.5 * glm::length(glm::cross(c - a, tip - a))));
+            }
+            return;
+        }
         double sum = 0.0;
         for (std::uint32_t i = 0; i < rows; ++i) {
             for (std::uint32_t j = 0; j < rows; ++j) {
@@ -278,35 +299,102 @@ double area_of(const Geometry& geometry, std::size_t triangle)
                                         glm::dvec3(geometry.positions[t.z]) - a));
 }
 
+namespace {
+
+/// How many samples so many triangles have together.
+double wanted_of(std::size_t triangles)
+{
+    const std::uint64_t count = triangles;
+    return static_cast<double>(
+        std::max(std::min<std::uint64_t>(kFewestSamples, kMostSamplesEach * count), count));
+}
+
+/// Rows of samples of a triangle, or of any shape on the same piece, by its area.
+class Density {
+public:
+    Density(const Geometry& geometry, std::span<const double> areas)
+        : geometry_(geometry), pieces_(geometry.positions.size())
+    {
+        for (const glm::uvec3 t : geometry.triangles) {
+            const glm::uvec3 w{geometry.welded[t.x], geometry.welded[t.y], geometry.welded[t.z]};
+            pieces_.join(w.x, w.y);
+            pieces_.join(w.y, w.z);
+        }
+        struct Piece {
+            double area = 0.0;
+            std::size_t triangles = 0;
+        };
+        std::vector<Piece> pieces(geometry.positions.size());
+        double area = 0.0;
+        for (std::uint32_t t = 0; t < areas.size(); ++t) {
+            Piece& piece = pieces[piece_of(t)];
+            piece.area += areas[t];
+            ++piece.triangles;
+            area += areas[t];
+        }
+        // pieces of few triangles want many samples each: no more than all together may have
+        double wanted = 0.0;
+        for (const Piece& piece : pieces)
+            wanted += piece.triangles > 0 ? wanted_of(piece.triangles) : 0.0;
+        const auto count = static_cast<double>(areas.size());
+        const double most = std::max(count, static_cast<double>(kMostByPiece));
+        const double extra = wanted > most ? (most - count) / (wanted - count) : 1.0;
+        per_area_ = area > 0.0 ? wanted_of(areas.size()) / area : 0.0;
+        per_area_of_.resize(pieces.size(), 0.0);
+        for (std::size_t p = 0; p < pieces.size(); ++p) {
+            if (pieces[p].triangles == 0)
+                continue;
+            const auto own = static_cast<double>(pieces[p].triangles);
+            const double share = own + extra * (wanted_of(pieces[p].triangles) - own);
+            per_area_of_[p] = std::max(per_area_, share / pieces[p].area);
+        }
+    }
+
+    std::uint32_t rows_of(std::uint32_t triangle, double area)
+    {
+        const double rows = std::round(std::sqrt(per_area_of_[piece_of(triangle)] * area));
+        return static_cast<std::uint32_t>(std::clamp(rows, 1.0, double{kMostSampleRows}));
+    }
+
+private:
+    std::uint32_t piece_of(std::uint32_t triangle)
+    {
+        return pieces_.root(geometry_.welded[geometry_.triangles[triangle].x]);
+    }
+
+    const Geometry& geometry_;
+    UnionFind pieces_;
+    double per_area_ = 0.0;
+    std::vector<double> per_area_of_;  ///< by piece
+};
+
+}  // namespace
+
 SurfaceSamples samples_of(const Geometry& geometry, std::span<const std::uint32_t> unknowns)
 {
-    const std::size_t count = geometry.triangles.size();
+    const auto count = static_cast<std::uint32_t>(geometry.triangles.size());
     std::vector<double> areas(count);
-    double whole = 0.0;
-    for (std::size_t t = 0; t < count; ++t)
-        whole += areas[t] = area_of(geometry, t);
-    const auto wanted = static_cast<double>(std::max<std::uint64_t>(
-        std::min<std::uint64_t>(kFewestSamples, kMostSamplesEach * count), count));
-    const auto rows_of = [&](double area) {
-        const double rows = std::round(std::sqrt(wanted * area / whole));
-        return static_cast<std::uint32_t>(std::clamp(rows, 1.0, double{kMostSampleRows}));
-    };
+    for (std::uint32_t t = 0; t < count; ++t)
+        areas[t] = area_of(geometry, t);
+    Density density(geometry, areas);
 
-    std::vector<std::uint32_t> large;
+    std::vector<std::uint32_t> among;
     for (std::uint32_t t = 0; t < count; ++t) {
-        if (rows_of(areas[t]) > 1)
-            large.push_back(t);
+        if (count <= kQuadsEverywhere || density.rows_of(t, areas[t]) > 1)
+            among.push_back(t);
     }
-    const std::vector<Quad> quads = QuadFinder(geometry, unknowns, large).quads;
+    std::vector<Quad> quads;
+    if (!among.empty())
+        quads = QuadFinder(geometry, unknowns, among).quads;
     SurfaceSamples samples;
     samples.cells.reserve(count - quads.size() + 1);
-    samples.points.reserve(count + static_cast<std::size_t>(wanted) / 4);
+    samples.points.reserve(count + count / 4);
     samples.areas.reserve(samples.points.capacity());
     Sampler sampler(geometry, samples);
     std::vector<bool> done(count, false);
     for (const Quad& quad : quads) {
         const double area = areas[quad.triangles[0]] + areas[quad.triangles[1]];
-        sampler.add_quad(quad, rows_of(area), area);
+        sampler.add_quad(quad, density.rows_of(quad.triangles[0], area), area);
         done[quad.triangles[0]] = done[quad.triangles[1]] = true;
     }
     for (std::uint32_t t = 0; t < count; ++t) {
@@ -314,7 +402,7 @@ SurfaceSamples samples_of(const Geometry& geometry, std::span<const std::uint32_
             continue;
         const glm::uvec3 corners = geometry.triangles[t];
         sampler.add_triangle(t, {unknowns[corners.x], unknowns[corners.y], unknowns[corners.z]},
-                             rows_of(areas[t]), areas[t]);
+                             density.rows_of(t, areas[t]), areas[t]);
     }
     sampler.begin(glm::uvec4(FitCell::kNoCorner));
     return samples;

@@ -40,6 +40,10 @@ inline constexpr double kFitSmoothness = 0.03;
 /// .0066, .0064; at twice the time for four times as many.
 inline constexpr std::uint64_t kFewestSamples = 2048;
 inline constexpr std::uint64_t kMostSamplesEach = 32;
+/// The same holds for each connected piece by itself, so that nothing that is put beside it changes
+/// its samples; but for scenes of many small pieces, which have kMostByPiece by that count, or as
+/// many as there are triangles.
+inline constexpr std::uint64_t kMostByPiece = 8192;
 inline constexpr std::uint32_t kMostSampleRows = 32;  ///< of a triangle or quad: 32^2 samples
 
 /// What the sum over the samples runs over: triangles, and planar quads of two of them. A file, or
@@ -53,7 +57,7 @@ struct FitCell {
 
 /// Samples by cell. A triangle is cut into m^2 equal ones, a quad into m^2 cells of its bilinear
 /// map, with a sample near the middle of each: evenly spread, and the same from whichever corner
-/// one looks but for kSampleShift.
+/// one looks but for kSampleShift. A quad with m = 1 has one for each of its triangles instead.
 struct SurfaceSamples {
     std::vector<SurfacePoint> points;
     std::vector<float> areas;             ///< that each stands for; unit frame

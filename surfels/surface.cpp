@@ -397,20 +397,20 @@ std::vector<WedgeShape> shapes_of(const Geometry& geometry, const Surface& surfa
     return shapes;
 }
 
-/// A little way from a corner of a triangle towards the middle of the opposite side.
-SurfacePoint just_inside(const Geometry& geometry, std::uint32_t triangle, std::uint32_t corner,
-                         const Offset& offset)
+/// Just inside of a wedge that ends at its vertex: a little way into it, on its middle triangle.
+Receiver just_inside(const Geometry& geometry, const Surface& surface, std::uint32_t wedge,
+                     const WedgeShape& shape, float height)
 {
-    constexpr float kMostShare = 0.25f;
-    const glm::uvec3 t = geometry.triangles[triangle];
-    const auto c = static_cast<int>(corner);
-    const glm::vec3 middle =
-        0.5f * (geometry.positions[t[(c + 1) % 3]] + geometry.positions[t[(c + 2) % 3]]);
-    const float way = glm::distance(geometry.positions[t[c]], middle);
-    const float share = std::min(kMostShare, kInset * offset_at(geometry, triangle, offset) / way);
-    glm::vec3 weights(0.5f * share);
-    weights[c] = 1.0f - share;
-    return {triangle, {weights.y, weights.z}};
+    const glm::vec3 normal = surface.normals[wedge];
+    const glm::uvec3 t = geometry.triangles[shape.middle / 3];
+    const auto corner = static_cast<int>(shape.middle % 3);
+    const glm::vec3 p = geometry.positions[t[corner]];
+    glm::vec3 up = glm::normalize(glm::cross(geometry.positions[t.y] - geometry.positions[t.x],
+                                             geometry.positions[t.z] - geometry.positions[t.x]));
+    const glm::vec3 flat = shape.inward - glm::dot(shape.inward, up) * up;
+    const glm::vec3 way = direction_of(flat, 1.0f, bisector_of(geometry, t, corner));
+    up *= glm::dot(normal, up) < 0.0f ? -1.0f : 1.0f;
+    return {p + kInset * height * way + height * up, normal, height};
 }
 
 }  // namespace
@@ -430,16 +430,12 @@ std::vector<Receiver> receivers_at_wedges(const Geometry& geometry, const Surfac
     std::vector<Receiver> receivers(surface.normals.size());
     for (std::uint32_t wedge = 0; wedge < receivers.size(); ++wedge) {
         const glm::vec3 normal = surface.normals[wedge];
-        if (shapes[wedge].middle == kNone) {
-            const float height = offset.value_or(heights[wedge]);
-            receivers[wedge] = {geometry.positions[surface.vertex_of(wedge)] + height * normal,
-                                normal, height};
-            continue;
-        }
-        const std::uint32_t middle = shapes[wedge].middle;
-        const SurfacePoint point = just_inside(geometry, middle / 3, middle % 3, offset);
-        receivers[wedge] = receivers_at(geometry, surface, {&point, 1}, offset).front();
-        receivers[wedge].normal = normal;
+        const float height = offset.value_or(heights[wedge]);
+        receivers[wedge] =
+            shapes[wedge].middle == kNone
+                ? Receiver{geometry.positions[surface.vertex_of(wedge)] + height * normal, normal,
+                           height}
+                : just_inside(geometry, surface, wedge, shapes[wedge], height);
     }
     return receivers;
 }
