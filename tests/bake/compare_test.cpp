@@ -117,17 +117,21 @@ TEST_F(Compare, IllDefinedPointsAreLeftOutAndCounted)
     EXPECT_NE(table_of(c).find("500 ill-defined points left out (50.00 %)"), std::string::npos);
 }
 
+// A triangle without area in front counts in the scene, and nowhere else.
 TEST_F(Compare, WorstPointsAreOnTheirTrianglesInTheFilesUnits)
 {
     using scenes::operator+;
-    Scene scene = scenes::triangle({9, 0, 0}, {9, 0, 0}, {9, 0, 0});  // without area: left out
-    scene = scene + scenes::wall_and_floor(10.0, 2);
-    write_obj(folder_ / "wall.obj", scene);
+    const Scene wall = scenes::wall_and_floor(10.0, 2);
+    write_obj(folder_ / "wall.obj", wall);
+    write_obj(folder_ / "one_more.obj", scenes::triangle({9, 0, 0}, {9, 0, 0}, {9, 0, 0}) + wall);
     const Comparison c = compare(quick(folder_ / "wall.obj"));
-    for (const WorstPoint& worst : c.rows[0].worst) {
-        ASSERT_LT(worst.triangle, c.mesh->scene.triangles.size());
-        const glm::uvec3 t = c.mesh->scene.triangles[worst.triangle];
-        const std::vector<glm::dvec3>& p = c.mesh->scene.positions;
+    const Comparison more = compare(quick(folder_ / "one_more.obj"));
+    for (std::size_t i = 0; i < 5; ++i) {
+        const WorstPoint& worst = c.rows[0].worst.at(i);
+        EXPECT_EQ(more.rows[0].worst.at(i).triangle, worst.triangle + 1);
+        EXPECT_EQ(more.rows[0].worst.at(i).position, worst.position);
+        const glm::uvec3 t = wall.triangles[worst.triangle];
+        const std::vector<glm::dvec3>& p = wall.positions;
         const glm::dvec3 normal = glm::normalize(glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x]));
         EXPECT_NEAR(glm::dot(normal, worst.position - p[t.x]), 0.0, 1e-9);
         EXPECT_LT(glm::distance(worst.position, p[t.x]), 7.5);
