@@ -36,9 +36,9 @@ TEST_F(ReportCommands, InfoTellsCountsAsTextAndJson)
 
 TEST_F(ReportCommands, ComparePrintsATableAndWritesPictures)
 {
-    const Outcome outcome =
-        run({"compare", folder_ / "a.obj", "-o", folder_.path(), "--reference-rays", "256",
-             "--rounds", "1", "--json", folder_ / "c.json", "--csv", folder_ / "c.csv"});
+    const Outcome outcome = run({"compare", folder_ / "a.obj", "-o", folder_.path(),
+                                 "--reference-rays", "256", "--sample", "1000", "--rounds", "1",
+                                 "--json", folder_ / "c.json", "--csv", folder_ / "c.csv"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     for (const char* word :
          {"masks", "disks", "rays", "seen RMSE", "solve RMSE", "floor", "Embree/ours"})
@@ -79,6 +79,10 @@ TEST_F(ReportCommands, DevicesStandSideBySideAndErrAlike)
                                  "good",
                                  "--reference-rays",
                                  "256",
+                                 "--sample",
+                                 "300",
+                                 "--values",
+                                 "point",
                                  "--rounds",
                                  "1",
                                  "--max-distance",
@@ -102,9 +106,10 @@ TEST_F(ReportCommands, DevicesStandSideBySideAndErrAlike)
 
 TEST_F(ReportCommands, FrontierSumsUpOverScenesAndNamesTheBadOne)
 {
-    const Outcome outcome = run({"compare", "--frontier", folder_ / "a.obj", folder_ / "none.obj",
-                                 folder_ / "b.obj", "-o", folder_.path(), "--reference-rays", "256",
-                                 "--json", folder_ / "f.json", "--csv", folder_ / "f.csv"});
+    const Outcome outcome =
+        run({"compare", "--frontier", folder_ / "a.obj", folder_ / "none.obj", folder_ / "b.obj",
+             "-o", folder_.path(), "--reference-rays", "256", "--sample", "1000", "--json",
+             folder_ / "f.json", "--csv", folder_ / "f.csv"});
     EXPECT_EQ(outcome.code, 1);  // one scene failed
     EXPECT_NE(outcome.err.find("none.obj"), std::string::npos);
     EXPECT_NE(outcome.out.find("MEDIAN"), std::string::npos);
