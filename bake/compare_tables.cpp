@@ -99,8 +99,7 @@ std::string errors_text(const Comparison& comparison)
            " ill-defined points left out (" + fixed(share, 2) +
            " %)\nreference: " + std::to_string(comparison.reference_rays) +
            " robust rays a point, noise " + fixed(comparison.reference_noise, 4) +
-           "; floor: " + std::to_string(comparison.floor_rays) + " rays at each of " +
-           std::to_string(comparison.receivers) + " receivers, noise " +
+           "; floor: " + std::to_string(comparison.floor_rays) + " rays a receiver, noise " +
            fixed(comparison.floor_noise, 4);
 }
 
@@ -117,6 +116,7 @@ std::string table_of(const Comparison& comparison)
     }
     std::string text = comparison.input.string() + ": " + std::to_string(comparison.vertices) +
                        " vertices, " + std::to_string(comparison.triangles) + " triangles, " +
+                       std::to_string(comparison.receivers) + " receivers, " +
                        std::to_string(comparison.threads) + " threads, median of " +
                        std::to_string(comparison.rounds) + '\n' + errors_text(comparison) + "\n\n" +
                        table.text() + rows_run_once(comparison);

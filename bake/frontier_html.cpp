@@ -218,6 +218,7 @@ std::string scene_html(const FrontierScene& scene)
     const Comparison& comparison = *scene.comparison;
     const Definition& definition = comparison.rows.front().settings.definition;
     html += "<p>" + std::to_string(comparison.vertices) + " vertices, " +
+            std::to_string(comparison.receivers) + " receivers, " +
             std::to_string(comparison.triangles) + " triangles (" +
             std::to_string(comparison.dropped_triangles) + " without area dropped). " +
             errors_text(comparison) + ". " + std::to_string(comparison.threads) +

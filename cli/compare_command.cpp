@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Each takes some hundred bytes, and thousands of rays.
-constexpr std::uint64_t kMostSample = 100'000'000;
+constexpr std::uint64_t kMostSample = 10'000'000;
 
 struct CompareOptions {
     std::vector<std::string> inputs;
