@@ -220,7 +220,7 @@ std::string scene_html(const FrontierScene& scene)
     html += "<p>" + std::to_string(comparison.vertices) + " vertices, " +
             std::to_string(comparison.receivers) + " receivers, " +
             std::to_string(comparison.triangles) + " triangles (" +
-            std::to_string(comparison.dropped_triangles) + " without area dropped). " +
+            std::to_string(comparison.dropped_triangles) + " without area dropped); " +
             errors_text(comparison) + ". " + std::to_string(comparison.threads) +
             " threads, medians of " + std::to_string(comparison.rounds) +
             " rounds. Distance limit " +
@@ -286,7 +286,7 @@ std::string html_of(const Frontier& frontier)
         "the best values that the vertices can hold, and <i>beyond</i> what an engine adds to it: "
         "seen² = floor² + beyond². In the plots lower left is better. In the pictures red is "
         "too dark, blue too bright against the floor's values, full colour at an error of " +
-        exact(kFullColorError) + ".</p>\n";
+        fixed(kFullColorError, 1) + ".</p>\n";
     if (frontier.scenes.size() > 1)
         html += summary_html(frontier);
     for (const FrontierScene& scene : frontier.scenes)
