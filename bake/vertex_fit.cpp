@@ -1,5 +1,6 @@
 #include "bake/vertex_fit.h"
 
+#include "bake/fit_cells.h"
 #include "surfels/buckets.h"
 
 #include <tbb/blocked_range.h>
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -32,36 +32,6 @@ using Solver = Eigen::ConjugateGradient<Matrix, Eigen::Lower | Eigen::Upper>;
 /// Bent vector and occlusion are four right sides of one matrix.
 constexpr int kChannels = 4;
 
-double area_of(const Geometry& geometry, std::size_t triangle)
-{
-    const glm::uvec3 t = geometry.triangles[triangle];
-    const glm::dvec3 a(geometry.positions[t.x]);
-    return 0.5 * glm::length(glm::cross(glm::dvec3(geometry.positions[t.y]) - a,
-                                        glm::dvec3(geometry.positions[t.z]) - a));
-}
-
-void add_samples(std::uint32_t triangle, std::uint32_t rows, std::vector<SurfacePoint>& points)
-{
-    const float size = 1.0f / static_cast<float>(rows);
-    const glm::vec2 shift(kSampleShift[0], kSampleShift[1]);
-    const glm::vec2 upright = glm::vec2(1.0f / 3.0f) + shift;
-    const glm::vec2 turned = glm::vec2(2.0f / 3.0f) - shift;
-    for (std::uint32_t i = 0; i < rows; ++i) {
-        for (std::uint32_t j = 0; i + j < rows; ++j) {
-            const glm::vec2 corner(static_cast<float>(i), static_cast<float>(j));
-            points.push_back({triangle, size * (corner + upright)});
-            if (i + j + 1 < rows)
-                points.push_back({triangle, size * (corner + turned)});
-        }
-    }
-}
-
-/// Barycentric weight of one corner.
-double weight_of(glm::vec2 at, int corner)
-{
-    return corner == 0 ? 1.0 - at.x - at.y : at[corner - 1];
-}
-
 template <class Body>
 void in_blocks(std::size_t count, const Body& body)
 {
@@ -72,74 +42,10 @@ void in_blocks(std::size_t count, const Body& body)
                       });
 }
 
-/// Part of the matrix that one triangle makes: its diagonal, then the entries (0,1) (1,2) (2,0).
-using TriangleMatrix = std::array<float, 6>;
-
-}  // namespace
-
-SurfaceSamples fit_samples(const Geometry& geometry)
-{
-    const std::size_t count = geometry.triangles.size();
-    std::vector<double> areas(count);
-    in_blocks(count, [&](std::size_t t) { areas[t] = area_of(geometry, t); });
-    double area = 0.0;
-    for (const double each : areas)
-        area += each;
-    const auto wanted = static_cast<double>(std::max<std::uint64_t>(kFewestSamples, count));
-    SurfaceSamples samples;
-    samples.first.reserve(count + 1);
-    samples.first.push_back(0);
-    samples.points.reserve(count + static_cast<std::size_t>(wanted) / 4);
-    for (std::uint32_t t = 0; t < count; ++t) {
-        const double rows = std::round(std::sqrt(wanted * areas[t] / area));
-        add_samples(t, static_cast<std::uint32_t>(std::clamp(rows, 1.0, double{kMostSampleRows})),
-                    samples.points);
-        samples.first.push_back(static_cast<std::uint32_t>(samples.points.size()));
-    }
-    return samples;
-}
-
-struct VertexFit::Impl {
-    const Geometry& geometry;
-    const Surface& surface;
-    SurfaceSamples samples;
-    std::size_t unknown_count = 0;        ///< found with the next
-    std::vector<std::uint32_t> unknowns;  ///< per vertex; kUnused where no triangle uses it
-    Buckets<std::uint32_t> corners;  ///< 3 * triangle + corner, by unknown
-    Matrix matrix;
-
-    Impl(const Geometry& g, const Surface& s, const NormalSettings& normals, SurfaceSamples places)
-        : geometry(g),
-          surface(s),
-          samples(std::move(places)),
-          unknowns(find_unknowns(normals)),
-          corners(unknown_count, [&](const auto& put) {
-              for (std::uint32_t t = 0; t < g.triangles.size(); ++t) {
-                  for (std::uint32_t corner = 0; corner < 3; ++corner)
-                      put(unknown_at(t, static_cast<int>(corner)), 3 * t + corner);
-              }
-          })
-    {
-        make_matrix();
-    }
-
-    std::uint32_t unknown_at(std::size_t triangle, int corner) const
-    {
-        return unknowns[geometry.triangles[triangle][corner]];
-    }
-
-    double sample_area(std::size_t triangle) const
-    {
-        return area_of(geometry, triangle) /
-               (samples.first[triangle + 1] - samples.first[triangle]);
-    }
-
-    std::vector<std::uint32_t> find_unknowns(const NormalSettings& normals);
-    TriangleMatrix matrix_of(std::size_t triangle) const;
-    void make_matrix();
-};
-
-std::vector<std::uint32_t> VertexFit::Impl::find_unknowns(const NormalSettings& normals)
+/// Per vertex; kUnused where no triangle uses it. At each place, vertices whose normals are smooth
+/// with those of an earlier one share its unknown.
+std::vector<std::uint32_t> unknowns_of(const Geometry& geometry, const Surface& surface,
+                                       const NormalSettings& normals, std::size_t& unknown_count)
 {
     const std::size_t count = geometry.positions.size();
     std::vector<bool> used(count, false);
@@ -164,33 +70,84 @@ std::vector<std::uint32_t> VertexFit::Impl::find_unknowns(const NormalSettings& 
     return found;
 }
 
-TriangleMatrix VertexFit::Impl::matrix_of(std::size_t triangle) const
+int corner_count(const FitCell& cell)
 {
-    std::array<double, 6> sum{};
-    const double area = sample_area(triangle);
-    for (std::uint32_t s = samples.first[triangle]; s < samples.first[triangle + 1]; ++s) {
-        std::array<double, 3> b;
-        for (int corner = 0; corner < 3; ++corner)
-            b[static_cast<std::size_t>(corner)] = weight_of(samples.points[s].at, corner);
-        for (std::size_t i = 0; i < 3; ++i) {
-            sum[i] += area * b[i] * b[i];
-            sum[3 + i] += area * b[i] * b[(i + 1) % 3];
-        }
+    return cell.unknowns.w == FitCell::kNoCorner ? 3 : 4;
+}
+
+}  // namespace
+
+struct VertexFit::Impl {
+    const Geometry& geometry;
+    const Surface& surface;
+    std::size_t unknown_count = 0;        ///< found with the next
+    std::vector<std::uint32_t> unknowns;  ///< per vertex
+    SurfaceSamples samples;
+    Buckets<std::uint32_t> corners;  ///< 4 * cell + corner, by unknown
+    Matrix matrix;
+
+    Impl(const Geometry& g, const Surface& s, const NormalSettings& normals)
+        : geometry(g),
+          surface(s),
+          unknowns(unknowns_of(g, s, normals, unknown_count)),
+          samples(samples_of(g, unknowns)),
+          corners(unknown_count, [this](const auto& put) {
+              for (std::uint32_t cell = 0; cell + 1 < samples.cells.size(); ++cell) {
+                  const FitCell& own = samples.cells[cell];
+                  for (int corner = 0; corner < corner_count(own); ++corner)
+                      put(own.unknowns[corner], 4 * cell + static_cast<std::uint32_t>(corner));
+              }
+          })
+    {
+        make_matrix();
     }
-    const double edge = kFitSmoothness * area_of(geometry, triangle) / 3.0;
-    TriangleMatrix own;
-    for (std::size_t i = 0; i < 3; ++i) {
-        own[i] = static_cast<float>(sum[i] + 2.0 * edge);
-        own[3 + i] = static_cast<float>(sum[3 + i] - edge);
+
+    /// Of a sample at the corners of its cell.
+    glm::dvec4 weights_of(std::uint32_t sample) const
+    {
+        if (sample < samples.quad_weights.size())
+            return samples.quad_weights[sample];
+        const glm::dvec2 at = samples.points[sample].at;
+        return {1.0 - at.x - at.y, at.x, at.y, 0.0};
     }
-    return own;
+
+    /// Calls visit(sample) for those of a cell.
+    template <class Visit>
+    void for_each_sample(std::uint32_t cell, const Visit& visit) const
+    {
+        for (std::uint32_t s = samples.cells[cell].first_sample;
+             s < samples.cells[cell + 1].first_sample; ++s)
+            visit(s);
+    }
+
+    glm::dvec4 row_of(std::uint32_t cell, int corner) const;
+    void make_matrix();
+};
+
+/// What a cell adds to the row of one of its corners: an entry for each corner.
+glm::dvec4 VertexFit::Impl::row_of(std::uint32_t cell, int corner) const
+{
+    glm::dvec4 row(0.0);
+    double area = 0.0;
+    for_each_sample(cell, [&](std::uint32_t s) {
+        const glm::dvec4 weights = weights_of(s);
+        row += static_cast<double>(samples.areas[s]) * weights[corner] * weights;
+        area += static_cast<double>(samples.areas[s]);
+    });
+    // edges that meet at the corner: in a quad either cut gives half of its two triangles' edges
+    const int count = corner_count(samples.cells[cell]);
+    for (int other = 0; other < count; ++other) {
+        if (other == corner)
+            continue;
+        const double edge = kFitSmoothness * area / (count == 3 ? 3.0 : 6.0);
+        row[corner] += edge;
+        row[other] -= edge;
+    }
+    return row;
 }
 
 void VertexFit::Impl::make_matrix()
 {
-    std::vector<TriangleMatrix> local(geometry.triangles.size());
-    in_blocks(local.size(), [&](std::size_t t) { local[t] = matrix_of(t); });
-
     struct Block {
         std::vector<int> counts, columns;  ///< of rows; of entries
         std::vector<double> values;
@@ -204,14 +161,10 @@ void VertexFit::Impl::make_matrix()
         for (std::size_t unknown = index * kGrain; unknown < end; ++unknown) {
             row.clear();
             for (const std::uint32_t at : corners[unknown]) {
-                const TriangleMatrix& m = local[at / 3];
-                const std::size_t own = at % 3, after = (own + 1) % 3, before = (own + 2) % 3;
-                const auto column = [&](std::size_t corner) {
-                    return static_cast<int>(unknown_at(at / 3, static_cast<int>(corner)));
-                };
-                row.emplace_back(static_cast<int>(unknown), m[own]);
-                row.emplace_back(column(after), m[3 + own]);
-                row.emplace_back(column(before), m[3 + before]);
+                const FitCell& cell = samples.cells[at / 4];
+                const glm::dvec4 entries = row_of(at / 4, static_cast<int>(at % 4));
+                for (int corner = 0; corner < corner_count(cell); ++corner)
+                    row.emplace_back(static_cast<int>(cell.unknowns[corner]), entries[corner]);
             }
             std::ranges::stable_sort(row, {}, &std::pair<int, double>::first);
             const std::size_t filled = block.columns.size();
@@ -248,13 +201,18 @@ void VertexFit::Impl::make_matrix()
 }
 
 VertexFit::VertexFit(const Geometry& geometry, const Surface& surface,
-                     const NormalSettings& normals, SurfaceSamples samples)
-    : impl_(std::make_unique<Impl>(geometry, surface, normals, std::move(samples)))
+                     const NormalSettings& normals)
+    : impl_(std::make_unique<Impl>(geometry, surface, normals))
 {
 }
 VertexFit::~VertexFit() = default;
 VertexFit::VertexFit(VertexFit&&) noexcept = default;
 VertexFit& VertexFit::operator=(VertexFit&&) noexcept = default;
+
+const SurfaceSamples& VertexFit::samples() const
+{
+    return impl_->samples;
+}
 
 std::vector<std::uint32_t> VertexFit::unused_vertices() const
 {
@@ -271,25 +229,22 @@ std::vector<Occlusion> VertexFit::solve(std::span<const Occlusion> answers) cons
     const Impl& impl = *impl_;
     const auto count = static_cast<std::ptrdiff_t>(impl.unknown_count);
     std::array<Eigen::VectorXd, kChannels> right, solution;
-    for (int channel = 0; channel < kChannels; ++channel) {
-        right[static_cast<std::size_t>(channel)].resize(count);
-        solution[static_cast<std::size_t>(channel)].resize(count);
+    for (std::size_t channel = 0; channel < kChannels; ++channel) {
+        right[channel].resize(count);
+        solution[channel].resize(count);
     }
     in_blocks(impl.unknown_count, [&](std::size_t unknown) {
         glm::dvec4 sum(0.0);
         double weights = 0.0;
         for (const std::uint32_t at : impl.corners[unknown]) {
-            const std::uint32_t triangle = at / 3;
-            const double area = impl.sample_area(triangle);
-            for (std::uint32_t s = impl.samples.first[triangle];
-                 s < impl.samples.first[triangle + 1]; ++s) {
+            impl.for_each_sample(at / 4, [&](std::uint32_t s) {
                 const Occlusion& answer = answers[s];
-                const double weight =
-                    area * weight_of(impl.samples.points[s].at, static_cast<int>(at % 3));
+                const double weight = static_cast<double>(impl.samples.areas[s]) *
+                                      impl.weights_of(s)[static_cast<int>(at % 4)];
                 sum += weight *
                        glm::dvec4((1.0f - answer.occlusion) * answer.bent_normal, answer.occlusion);
                 weights += weight;
-            }
+            });
         }
         for (int channel = 0; channel < kChannels; ++channel) {
             const auto c = static_cast<std::size_t>(channel);

@@ -67,9 +67,8 @@ VertexTarget::VertexTarget(std::shared_ptr<const Mesh> mesh, const TargetSetting
         receivers_ = receivers_at_wedges(geometry, surface, offset);
         return;
     }
-    SurfaceSamples samples = fit_samples(geometry);
-    receivers_ = receivers_at(geometry, surface, samples.points, offset);
-    fit_.emplace(geometry, surface, settings.normals, std::move(samples));
+    fit_.emplace(geometry, surface, settings.normals);
+    receivers_ = receivers_at(geometry, surface, fit_->samples().points, offset);
     for (const std::uint32_t vertex : fit_->unused_vertices()) {
         const glm::vec3 normal = surface.normals[vertex];
         if (normal == glm::vec3(0.0f))
