@@ -19,15 +19,13 @@ constexpr glm::vec3 kSheetNormal{0, 0, 1};
 /// A mesh with its fit, answered by a function of the place in the scene.
 struct Fitted {
     explicit Fitted(Scene scene)
-        : mesh(make_mesh(std::move(scene))),
-          samples(fit_samples(mesh.geometry)),
-          fit(mesh.geometry, mesh.surface, {}, samples)
+        : mesh(make_mesh(std::move(scene))), fit(mesh.geometry, mesh.surface, {})
     {
     }
     std::vector<Occlusion> solve(const std::function<double(glm::dvec3)>& occlusion) const
     {
         std::vector<Occlusion> answers;
-        for (const SurfacePoint& point : samples.points) {
+        for (const SurfacePoint& point : fit.samples().points) {
             const glm::uvec3 t = mesh.geometry.triangles[point.triangle];
             const std::vector<glm::dvec3>& p = mesh.scene.positions;
             const glm::dvec2 at(point.at);
@@ -39,7 +37,6 @@ struct Fitted {
     }
 
     Mesh mesh;
-    SurfaceSamples samples;
     VertexFit fit;
 };
 
@@ -91,7 +88,7 @@ TEST(VertexFit, UnknownsAreNotMergedOverCreases)
 TEST(VertexFit, BentNormalsWeighByVisibility)
 {
     const Fitted triangle(scenes::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
-    std::vector<Occlusion> answers(triangle.samples.points.size(), {0.0f, {1, 0, 0}});
+    std::vector<Occlusion> answers(triangle.fit.samples().points.size(), {0.0f, {1, 0, 0}});
     for (std::size_t i = 0; i < answers.size(); i += 2)
         answers[i] = {1.0f, {0, 1, 0}};  // closed: their bent normals are nobody's
     for (const Occlusion& value : triangle.fit.solve(answers))
@@ -124,22 +121,50 @@ TEST(VertexFit, SameBytesForAnyNumberOfThreads)
     EXPECT_TRUE(same_bytes(one, solve(5)));
 }
 
-TEST(FitSamples, AreAtLeastOneATriangleAndAsManyByArea)
+/// A sheet of 3 * 3 quads, each cut along its first or its second diagonal.
+Scene cut_sheet(bool along_second)
 {
-    const Geometry geometry = make_geometry(scenes::sheet({0, 0, 0}, {3, 0, 0}, {0, 3, 0}, 4) +
-                                            scenes::sheet({0, 0, 1}, {.01, 0, 0}, {0, .01, 0}, 1));
-    const SurfaceSamples samples = fit_samples(geometry);
-    ASSERT_EQ(samples.first.size(), geometry.triangles.size() + 1);
-    for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
-        const std::uint32_t count = samples.first[t + 1] - samples.first[t];
-        EXPECT_EQ(count, t < 32 ? 121u : 1u);  // 4096 / 32 = 128: 11 rows
-        for (std::uint32_t s = samples.first[t]; s < samples.first[t + 1]; ++s) {
-            EXPECT_EQ(samples.points[s].triangle, t);
-            EXPECT_GT(samples.points[s].at.x, 0.0f);
-            EXPECT_GT(samples.points[s].at.y, 0.0f);
-            EXPECT_LT(samples.points[s].at.x + samples.points[s].at.y, 1.0f);
-        }
+    Scene scene = scenes::sheet({0, 0, 0}, {1, 0, 0}, {0, 1.2, 0}, 3);
+    for (std::size_t t = 0; along_second && t < scene.triangles.size(); t += 2) {
+        const std::uint32_t row = static_cast<std::uint32_t>(t) / 6, column = t / 2 % 3;
+        const std::uint32_t a = 4 * row + column, b = a + 1, c = a + 5, d = a + 4;
+        const glm::uvec3 first = scene.triangles[t];
+        const bool has_ac = first == glm::uvec3(a, b, c);
+        scene.triangles[t] = has_ac ? glm::uvec3(a, b, d) : glm::uvec3(a, b, c);
+        scene.triangles[t + 1] = has_ac ? glm::uvec3(b, c, d) : glm::uvec3(a, c, d);
     }
+    return scene;
+}
+
+TEST(VertexFit, QuadsDoNotDependOnTheirCut)
+{
+    const auto curved = [](glm::dvec3 p) { return p.x * p.x + 0.3 * p.y * (1.0 - p.x); };
+    const Fitted one(cut_sheet(false)), other(cut_sheet(true));
+    ASSERT_NE(one.mesh.scene.triangles, other.mesh.scene.triangles);
+    const std::vector<Occlusion> values = one.solve(curved), others = other.solve(curved);
+    for (std::size_t v = 0; v < values.size(); ++v)
+        EXPECT_NEAR(values[v].occlusion, others[v].occlusion, 1e-3) << v;  // where it stops
+}
+
+TEST(FitSamples, StandForTheWholeAreaAndAreAtLeastOneATriangle)
+{
+    const Mesh mesh = make_mesh(scenes::sheet({0, 0, 0}, {3, 0, 0}, {0, 3, 0}, 4) +
+                                scenes::triangle({0, 0, 1}, {.01, 0, 1}, {0, .01, 1}));
+    const VertexFit fit(mesh.geometry, mesh.surface, {});
+    const SurfaceSamples& samples = fit.samples();
+    ASSERT_EQ(samples.areas.size(), samples.points.size());
+    std::vector<double> areas(mesh.geometry.triangles.size(), 0.0);
+    for (std::size_t s = 0; s < samples.points.size(); ++s) {
+        const glm::vec2 at = samples.points[s].at;
+        EXPECT_GE(at.x, 0.0f);
+        EXPECT_GE(at.y, 0.0f);
+        EXPECT_LE(at.x + at.y, 1.0f + 1e-6f);
+        areas[samples.points[s].triangle] += samples.areas[s];
+    }
+    const double diagonal = mesh.geometry.frame.diagonal;
+    for (std::size_t t = 0; t < 32; t += 2)  // two triangles are a quad
+        EXPECT_NEAR((areas[t] + areas[t + 1]) * diagonal * diagonal, 9.0 / 16.0, 1e-5) << t;
+    EXPECT_NEAR(areas[32] * diagonal * diagonal, 5e-5, 1e-8);
 }
 
 }  // namespace
