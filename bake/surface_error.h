@@ -10,9 +10,9 @@
 ///   (vertex_fit.h) of the reference's answers. It belongs to the mesh, not to the engine.
 /// - **Beyond**: RMS over the surface points of what is displayed less what the floor's values
 ///   display: the engine's part. Least squares makes the floor's own error orthogonal to all that
-///   vertices can hold, so that seen^2 = floor^2 + beyond^2, but for the few samples of the fit and
-///   its smoothness; and where the floor is .2, the fourth digit of either decides over the
-///   difference of the squares, which beyond has as its first.
+///   vertices can hold, so that seen^2 = floor^2 + beyond^2 but for the fit's few samples, its
+///   smoothness and its other cut of quads: to a few percent of beyond. Where the floor is .2 the
+///   fourth digit of either error decides over that difference of squares; beyond has it first.
 ///
 /// All RMS figures are what they would be with exact references: the variances of the noise of
 /// truth and floor, both known from two independent halves, are taken out of the squares.
