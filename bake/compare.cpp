@@ -1,18 +1,16 @@
 #include "bake/compare.h"
 
-#include "bake/sample.h"
+#include "bake/surface_error.h"
 #include "engines/threads.h"
 #include "files/scene_io.h"
 #include "gpu/context.h"
-#include "reference/reference_cache.h"
-#include "reference/smoothing.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
+#include <ranges>
 #include <utility>
 
 namespace surfelao {
@@ -25,139 +23,160 @@ constexpr std::size_t kWorstCount = 5;
 constexpr double kLeastRound = 0.05;
 constexpr std::size_t kMostRepeats = 50;
 
-/// What is asked, and the answer that counts.
+/// What is asked, and what is right.
 struct Question {
-    std::optional<VertexTarget> target;
-    std::vector<Receiver> receivers;    ///< all vertices: what every engine solves
-    std::vector<std::uint32_t> judged;  ///< into receivers: where errors are taken
-    std::vector<Occlusion> reference;   ///< one per judged
+    VertexTarget target;
+    SurfaceTruth truth;
+    Floor floor;
 };
 
-Question ask(const CompareSettings& settings, const Definition& definition, Comparison& comparison,
-             const Progress& progress)
+TruthSettings truth_settings_of(const CompareSettings& settings, const Definition& definition,
+                                const Frame& frame)
 {
-    Question question;
-    question.target.emplace(comparison.mesh, settings.target);
-    const std::span<const Receiver> all = question.target->receivers();
-    question.receivers.assign(all.begin(), all.end());
-    std::vector<std::uint32_t> asked;
-    std::vector<Receiver> places;
-    for (const std::uint32_t i : sample_of(question.receivers.size(), settings.sample)) {
-        if (question.receivers[i].normal == glm::vec3(0.0f)) {
-            ++comparison.without_normal;
-        } else {
-            asked.push_back(i);
-            places.push_back(question.receivers[i]);
-        }
+    TruthSettings truth;
+    truth.definition = definition;
+    truth.offset = offset_of(settings.target, frame);
+    truth.points = settings.sample > 0 ? settings.sample : kSurfacePoints;
+    truth.rays = settings.reference_rays;
+    truth.use_cache = settings.use_cache;
+    return truth;
+}
+
+Floor floor_of(const Comparison& comparison, const VertexTarget& target, const SurfaceTruth& truth,
+               const TruthSettings& settings, const Progress& progress)
+{
+    const Geometry& geometry = comparison.mesh->geometry;
+    if (comparison.target.values == VertexValues::fit)
+        return find_floor(target, geometry, truth, settings, progress);
+    TargetSettings fitted = comparison.target;
+    fitted.values = VertexValues::fit;
+    return find_floor(VertexTarget(comparison.mesh, fitted), geometry, truth, settings, progress);
+}
+
+void tell(const Question& question, std::uint32_t reference_rays, Comparison& comparison)
+{
+    comparison.reference_rays = reference_rays;
+    comparison.reference_noise = question.truth.noise;
+    comparison.reference_from_cache = question.truth.from_cache;
+    comparison.points = question.truth.points.size();
+    comparison.ill_defined = question.truth.ill_defined;
+    comparison.floor = question.floor.error;
+    comparison.floor_rays = question.floor.rays;
+    comparison.floor_noise = question.floor.noise;
+    for (const Occlusion& value : question.floor.values)
+        comparison.reference.push_back(value.occlusion);
+}
+
+std::vector<WorstPoint> worst_of(const Mesh& mesh, const SurfaceTruth& truth,
+                                 std::span<const Occlusion> shown)
+{
+    const auto error_at = [&](std::size_t i) {
+        return std::fabs(shown[i].occlusion - truth.reference[i].occlusion);
+    };
+    std::vector<std::uint32_t> order(std::min(kWorstCount, shown.size()));
+    std::ranges::partial_sort_copy(
+        std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(shown.size())), order,
+        [&](std::uint32_t a, std::uint32_t b) {
+            return error_at(a) != error_at(b) ? error_at(a) > error_at(b) : a < b;
+        });
+    std::vector<WorstPoint> worst;
+    for (const std::uint32_t i : order) {
+        const SurfacePoint& point = truth.points[i];
+        const std::size_t triangle = mesh.geometry.scene_triangle(point.triangle);
+        const glm::uvec3 t = mesh.scene.triangles[triangle];
+        const std::vector<glm::dvec3>& p = mesh.scene.positions;
+        const glm::dvec2 at(point.at);
+        worst.push_back({triangle, (1.0 - at.x - at.y) * p[t.x] + at.x * p[t.y] + at.y * p[t.z],
+                         shown[i].occlusion, truth.reference[i].occlusion});
     }
-    const Reference reference =
-        trace_reference(comparison.mesh->geometry, places,
-                        {definition, settings.reference_rays, settings.use_cache}, progress);
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-        if (reference.well_defined(i)) {
-            question.judged.push_back(asked[i]);
-            question.reference.push_back(reference.occlusion[i]);
-        } else {
-            ++comparison.ill_defined;
-        }
-    }
-    comparison.reference.assign(question.receivers.size(), std::numeric_limits<float>::quiet_NaN());
-    for (std::size_t i = 0; i < question.judged.size(); ++i)
-        comparison.reference[question.judged[i]] = question.reference[i].occlusion;
-    comparison.judged = question.judged.size();
-    comparison.reference_rays = settings.reference_rays;
-    comparison.reference_noise = reference.noise;
-    comparison.reference_from_cache = reference.from_cache;
-    return question;
+    return worst;
+}
+
+/// The engine's own answers at the surface points: in one list with the receivers, so that they
+/// are answered in groups as these are. Rays have no groups.
+std::vector<Occlusion> answers_at_points(const Question& question, const Prepared& prepared,
+                                         const CompareRow& row, const Progress& progress)
+{
+    if (is_opponent(row))
+        return solve(prepared, question.truth.receivers, row.settings, progress).occlusion;
+    const std::span<const Receiver> all = question.target.receivers();
+    std::vector<Receiver> asked(all.begin(), all.end());
+    asked.insert(asked.end(), question.truth.receivers.begin(), question.truth.receivers.end());
+    std::vector<Occlusion> answers = solve(prepared, asked, row.settings, progress).occlusion;
+    answers.erase(answers.begin(), answers.begin() + static_cast<std::ptrdiff_t>(all.size()));
+    return answers;
 }
 
 /// Fills in everything about errors. They are the same in every round.
-void judge(const Question& question, const Scene& scene, const std::vector<Occlusion>& answer,
-           CompareRow& row)
+void judge(const Question& question, const Mesh& mesh, const Prepared& prepared,
+           std::span<const Occlusion> values, CompareRow& row, const Progress& progress)
 {
-    std::vector<Occlusion> judged;
-    judged.reserve(question.judged.size());
-    for (const std::uint32_t i : question.judged)
-        judged.push_back(answer[i]);
-    row.error = error_statistics(judged, question.reference);
-
-    const auto error_at = [&](std::size_t i) {
-        return std::fabs(judged[i].occlusion - question.reference[i].occlusion);
-    };
-    std::vector<std::uint32_t> order(judged.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-        order[i] = static_cast<std::uint32_t>(i);
-    const std::size_t worst = std::min(kWorstCount, order.size());
-    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(worst),
-                      order.end(), [&](std::uint32_t a, std::uint32_t b) {
-                          return error_at(a) != error_at(b) ? error_at(a) > error_at(b) : a < b;
-                      });
-    for (std::size_t i = 0; i < worst; ++i) {
-        const std::uint32_t vertex = question.judged[order[i]];
-        row.worst.push_back({vertex, scene.positions[0], judged[order[i]].occlusion,
-                             question.reference[order[i]].occlusion});
-    }
-    if (row.settings.engine == Engine::rays)
+    const SurfaceTruth& truth = question.truth;
+    const std::vector<Occlusion> shown = displayed_at(mesh.geometry, values, truth.points);
+    row.seen = error_against(truth, shown);
+    row.beyond = error_beyond(shown, question.floor);
+    row.worst = worst_of(mesh, truth, shown);
+    row.solve = error_against(truth, answers_at_points(question, prepared, row, progress));
+    if (is_opponent(row))
         return;
-    row.errors.assign(answer.size(), std::numeric_limits<float>::quiet_NaN());
-    for (std::size_t i = 0; i < judged.size(); ++i)
-        row.errors[question.judged[i]] = judged[i].occlusion - question.reference[i].occlusion;
+    for (std::size_t v = 0; v < values.size(); ++v)
+        row.errors.push_back(values[v].occlusion - question.floor.values[v].occlusion);
 }
 
-CompareRow row_of_rays(const Definition& definition, std::uint32_t rays, bool smoothed)
+CompareRow row_of_rays(const CompareSettings& settings, const Definition& definition,
+                       std::uint32_t rays)
 {
     CompareRow row;
     row.settings.engine = Engine::rays;
     row.settings.definition = definition;
     row.settings.rays = rays;
-    row.smoothed = smoothed;
+    row.settings.instructions = settings.instructions;
     return row;
 }
 
-/// Candidates, then the opponent, then smoothed rays.
+/// Candidates, then the opponent.
 std::vector<CompareRow> rows_of(const CompareSettings& settings, const Definition& definition)
 {
     std::vector<CompareRow> rows;
     for (const EngineSettings& candidate : settings.candidates) {
-        rows.emplace_back().settings = candidate;
-        rows.back().settings.definition = definition;
+        EngineSettings& own = rows.emplace_back().settings = candidate;
+        own.definition = definition;
+        own.instructions = settings.instructions;
     }
     for (const std::uint32_t rays : settings.rays)
-        rows.push_back(row_of_rays(definition, rays, false));
-    for (const std::uint32_t rays : settings.smoothed_rays)
-        rows.push_back(row_of_rays(definition, rays, true));
-    for (CompareRow& row : rows)
-        row.settings.instructions = settings.instructions;
+        rows.push_back(row_of_rays(settings, definition, rays));
     return rows;
 }
 
 /// Seconds of one row, one of each round.
 struct Times {
-    std::vector<double> builds, solves;
+    std::vector<double> builds, solves, fits;
 };
 
-/// One round of one row; its first answer is judged.
+/// One round of one row; the first answer of all is judged.
 void run_round(const Comparison& comparison, const Question& question, const EngineChoice& choice,
                CompareRow& row, Times& times, const Progress& progress)
 {
     Times repeats;
     double spent = 0.0;
+    bool judged = !times.solves.empty();
     do {
         const Prepared prepared = prepare(comparison.mesh->geometry, choice);
-        Solution solution = solve(prepared, question.receivers, row.settings, progress);
-        if (row.smoothed) {
-            Stopwatch smoothing;
-            solution.occlusion = solution.occlusion;
-            solution.seconds += smoothing.lap();
-        }
+        const Solution solution =
+            solve(prepared, question.target.receivers(), row.settings, progress);
+        Stopwatch fitting;
+        const std::vector<Occlusion> values = question.target.values(solution.occlusion);
+        repeats.fits.push_back(fitting.lap());
         repeats.builds.push_back(prepared.seconds().surfels + prepared.seconds().tree);
         repeats.solves.push_back(solution.seconds);
-        spent += repeats.builds.back() + repeats.solves.back();
-        if (row.worst.empty())
-            judge(question, comparison.mesh->scene, solution.occlusion, row);
+        spent += repeats.builds.back() + repeats.solves.back() + repeats.fits.back();
+        if (!judged)
+            judge(question, *comparison.mesh, prepared, values, row, progress);
+        judged = true;
     } while (spent < kLeastRound && repeats.solves.size() < kMostRepeats);
     times.builds.push_back(quantile(repeats.builds, 0.5));
     times.solves.push_back(quantile(repeats.solves, 0.5));
+    times.fits.push_back(quantile(repeats.fits, 0.5));
 }
 
 void set_times(CompareRow& row, const Times& times, std::size_t receiver_count)
@@ -165,7 +184,8 @@ void set_times(CompareRow& row, const Times& times, std::size_t receiver_count)
     row.rounds = static_cast<int>(times.solves.size());
     row.build_s = quantile(times.builds, 0.5);
     row.solve_s = quantile(times.solves, 0.5);
-    row.us_per_vertex =
+    row.fit_s = quantile(times.fits, 0.5);
+    row.us_per_receiver =
         row.solve_s * 1e6 / static_cast<double>(std::max<std::size_t>(1, receiver_count));
 }
 
@@ -175,17 +195,21 @@ bool wants_more_rays(const std::vector<CompareRow>& rows)
     double candidates = 1.0, opponent = 1.0;
     for (const CompareRow& row : rows) {
         double& least = is_opponent(row) ? opponent : candidates;
-        if (row.settings.engine != Engine::rays || is_opponent(row))
-            least = std::min(least, row.error.rmse);
+        least = std::min(least, row.beyond);
     }
     return candidates < opponent;
 }
 
-std::optional<EmbreeRatio> ratio_at(const Comparison& comparison, const CompareRow& row,
+std::optional<EmbreeRatio> ratio_of(const Comparison& comparison, const CompareRow& row,
                                     bool with_builds)
 {
-    const double ours = row.solve_s + (with_builds ? row.build_s : 0.0);
-    const auto theirs = time_at(embree_curve(comparison, with_builds), row.error.rmse);
+    std::vector<CurvePoint> family;
+    for (const CompareRow& other : comparison.rows) {
+        if (is_opponent(other))
+            family.push_back({other.beyond, job_seconds(other, with_builds)});
+    }
+    const double ours = job_seconds(row, with_builds);
+    const auto theirs = time_at(family, row.beyond);
     if (!theirs || !(ours > 0.0))
         return std::nullopt;
     return EmbreeRatio{theirs->seconds / ours, theirs->extrapolated};
@@ -202,24 +226,19 @@ const CompareRow& shown_row(const Comparison& comparison)
     return comparison.rows.front();
 }
 
-std::string setting_of(const CompareRow& row)
-{
-    return setting_of(row.settings) + (row.smoothed ? ", smoothed" : "");
-}
-
 bool is_opponent(const CompareRow& row)
 {
-    return row.settings.engine == Engine::rays && !row.smoothed;
+    return row.settings.engine == Engine::rays;
 }
 
-std::vector<CurvePoint> embree_curve(const Comparison& comparison, bool with_builds)
+double job_seconds(const CompareRow& row, bool with_build)
 {
-    std::vector<CurvePoint> curve;
-    for (const CompareRow& row : comparison.rows) {
-        if (is_opponent(row))
-            curve.push_back({row.error.rmse, row.solve_s + (with_builds ? row.build_s : 0.0)});
-    }
-    return curve;
+    return row.solve_s + row.fit_s + (with_build ? row.build_s : 0.0);
+}
+
+double beyond_by_squares(const Comparison& comparison, const CompareRow& row)
+{
+    return without_noise(row.seen.rmse, comparison.floor.rmse);
 }
 
 Comparison compare(const CompareSettings& settings, const StageProgress& progress)
@@ -236,19 +255,26 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     // the scene and the question
     Comparison comparison;
     comparison.input = settings.input;
+    comparison.target = settings.target;
     comparison.threads = thread_count();
     comparison.rounds = settings.rounds;
     static_cast<void>(stage("read"));
     Stopwatch watch;
     comparison.mesh = std::make_shared<const Mesh>(
         make_mesh(read_scene(settings.input), settings.target.normals));
+    VertexTarget target(comparison.mesh, settings.target);
     comparison.read_s = watch.lap();
     comparison.vertices = comparison.mesh->scene.positions.size();
     comparison.triangles = comparison.mesh->scene.triangles.size();
     comparison.dropped_triangles = comparison.mesh->geometry.dropped_triangles;
-    const Definition definition =
-        definition_of(settings.max_distance, settings.kernel, comparison.mesh->geometry.frame);
-    const Question question = ask(settings, definition, comparison, stage("reference"));
+    comparison.receivers = target.receivers().size();
+    const Frame& frame = comparison.mesh->geometry.frame;
+    const Definition definition = definition_of(settings.max_distance, settings.kernel, frame);
+    const TruthSettings truth_settings = truth_settings_of(settings, definition, frame);
+    SurfaceTruth truth = trace_truth(*comparison.mesh, truth_settings, stage("reference"));
+    Floor floor = floor_of(comparison, target, truth, truth_settings, stage("floor"));
+    const Question question{std::move(target), std::move(truth), std::move(floor)};
+    tell(question, settings.reference_rays, comparison);
 
     // rounds: one after the other, so that whatever slows the machine slows all alike
     std::vector<CompareRow>& rows = comparison.rows;
@@ -260,7 +286,7 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
         if (choice.device == Device::gpu && choice.context == nullptr)
             choice.context = context ? &*context : &context.emplace(GlContext::create());
         run_round(comparison, question, choice, rows[i], times[i],
-                  stage(name_of(rows[i].settings.engine) + " " + setting_of(rows[i])));
+                  stage(name_of(rows[i].settings.engine) + " " + setting_of(rows[i].settings)));
     };
     for (int round = 0; round < settings.rounds; ++round) {
         for (std::size_t i = 0; i < rows.size(); ++i)
@@ -269,18 +295,17 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     // once: by far the longest of all runs, and so the one that other work disturbs least
     if (!settings.rays.empty() && wants_more_rays(rows)) {
         const std::uint32_t most = *std::max_element(settings.rays.begin(), settings.rays.end());
-        rows.push_back(row_of_rays(definition, 4 * most, false));
-        rows.back().settings.instructions = settings.instructions;
+        rows.push_back(row_of_rays(settings, definition, 4 * most));
         times.emplace_back();
         run(rows.size() - 1);
     }
 
     for (std::size_t i = 0; i < rows.size(); ++i)
-        set_times(rows[i], times[i], question.receivers.size());
+        set_times(rows[i], times[i], comparison.receivers);
     for (CompareRow& row : rows) {
         if (!is_opponent(row)) {
-            row.solve_ratio = ratio_at(comparison, row, false);
-            row.total_ratio = ratio_at(comparison, row, true);
+            row.ratio = ratio_of(comparison, row, false);
+            row.ratio_with_builds = ratio_of(comparison, row, true);
         }
     }
     return comparison;

@@ -7,16 +7,41 @@
 #include "surfels/atomic_file.h"
 #include "surfels/number_text.h"
 
-#include <cmath>
+#include <algorithm>
 #include <sstream>
 
 namespace surfelao {
 
+namespace {
+
+/// Columns of one kind of error.
+std::string csv_names(const std::string& kind)
+{
+    std::string names;
+    for (const char* name : {"rmse", "bias", "p95", "max", "bent_mean_deg", "bent_p95_deg"})
+        names += ',' + kind + '_' + name;
+    return names;
+}
+
+std::string csv_number(double value)
+{
+    return ',' + exact(value);
+}
+
+std::string csv_numbers(const ErrorStatistics& error)
+{
+    return csv_number(error.rmse) + csv_number(error.bias) + csv_number(error.p95) +
+           csv_number(error.max) + csv_number(error.bent_mean_deg) + csv_number(error.bent_p95_deg);
+}
+
+}  // namespace
+
 std::string csv_head()
 {
-    return "input,vertices,triangles,engine,setting,build_s,solve_s,us_per_vertex,rmse,bias,p95,"
-           "max,"
-           "bent_mean_deg,bent_p95_deg,embree_ratio,embree_ratio_with_builds,extrapolated\n";
+    return "input,vertices,triangles,receivers,points,ill_defined,floor,engine,setting,build_s,"
+           "solve_s,fit_s,us_per_receiver" +
+           csv_names("seen") + csv_names("solve") +
+           ",beyond,embree_ratio,embree_ratio_with_builds,extrapolated\n";
 }
 
 std::string csv_of(const Comparison& comparison)
@@ -26,19 +51,23 @@ std::string csv_of(const Comparison& comparison)
 
 std::string csv_rows_of(const Comparison& comparison)
 {
+    std::string scene = csv_field(comparison.input.string());
+    for (const std::uint64_t count :
+         {comparison.vertices, comparison.triangles, comparison.receivers, comparison.points,
+          comparison.ill_defined})
+        scene += ',' + std::to_string(count);
+    scene += csv_number(comparison.floor.rmse);
+    const auto ratio = [](const std::optional<EmbreeRatio>& value) {
+        return value ? csv_number(value->ratio) : std::string(",");
+    };
     std::string text;
     for (const CompareRow& row : comparison.rows) {
-        const auto number = [](double value) { return ',' + exact(value); };
-        const auto ratio = [](const std::optional<EmbreeRatio>& value) {
-            return ',' + (value ? exact(value->ratio) : std::string());
-        };
-        text += csv_field(comparison.input.string()) + ',' + std::to_string(comparison.vertices) +
-                ',' + std::to_string(comparison.triangles) + ',' + name_of(row.settings.engine) +
-                ',' + csv_field(setting_of(row)) + number(row.build_s) + number(row.solve_s) +
-                number(row.us_per_vertex) + number(row.error.rmse) + number(row.error.bias) +
-                number(row.error.p95) + number(row.error.max) + number(row.error.bent_mean_deg) +
-                number(row.error.bent_p95_deg) + ratio(row.solve_ratio) + ratio(row.total_ratio) +
-                (row.solve_ratio && row.solve_ratio->extrapolated ? ",1\n" : ",0\n");
+        text += scene + ',' + name_of(row.settings.engine) + ',' +
+                csv_field(setting_of(row.settings)) + csv_number(row.build_s) +
+                csv_number(row.solve_s) + csv_number(row.fit_s) + csv_number(row.us_per_receiver) +
+                csv_numbers(row.seen) + csv_numbers(row.solve) + csv_number(row.beyond) +
+                ratio(row.ratio) + ratio(row.ratio_with_builds) +
+                (row.ratio && row.ratio->extrapolated ? ",1\n" : ",0\n");
     }
     return text;
 }
@@ -55,38 +84,44 @@ std::string rows_run_once(const Comparison& comparison)
     std::string text;
     for (const CompareRow& row : comparison.rows) {
         if (row.rounds == 1 && comparison.rounds != 1)
-            text += name_of(row.settings.engine) + ' ' + setting_of(row) + " ran once\n";
+            text += name_of(row.settings.engine) + ' ' + setting_of(row.settings) + " ran once\n";
     }
     return text;
 }
 
+std::string errors_text(const Comparison& comparison)
+{
+    const std::uint64_t all = comparison.points + comparison.ill_defined;
+    const double share = 100.0 * static_cast<double>(comparison.ill_defined) /
+                         static_cast<double>(std::max<std::uint64_t>(1, all));
+    return "surface error (seen) over " + std::to_string(comparison.points) + " points, floor " +
+           fixed(comparison.floor.rmse, 4) + "; " + std::to_string(comparison.ill_defined) +
+           " ill-defined points left out (" + fixed(share, 2) +
+           " %)\nreference: " + std::to_string(comparison.reference_rays) +
+           " robust rays a point, noise " + fixed(comparison.reference_noise, 4) +
+           "; floor: " + std::to_string(comparison.floor_rays) + " rays a receiver, noise " +
+           fixed(comparison.floor_noise, 4);
+}
+
 std::string table_of(const Comparison& comparison)
 {
-    Table table({"engine", "setting", "build s", "solve s", "us/vertex", "RMSE", "bias", "p95",
-                 "max", "bent deg", "Embree/ours", "with builds"});
+    Table table({"engine", "setting", "build s", "solve s", "fit s", "seen RMSE", "bias", "p95",
+                 "max", "bent deg", "solve RMSE", "beyond", "Embree/ours", "with builds"});
     for (const CompareRow& row : comparison.rows) {
-        table.add({name_of(row.settings.engine), setting_of(row), fixed(row.build_s, 4),
-                   fixed(row.solve_s, 4), fixed(row.us_per_vertex, 3), fixed(row.error.rmse, 4),
-                   signed_fixed(row.error.bias, 4), fixed(row.error.p95, 4),
-                   fixed(row.error.max, 3), fixed(row.error.bent_mean_deg, 2),
-                   text_of(row.solve_ratio), text_of(row.total_ratio)});
+        table.add({name_of(row.settings.engine), setting_of(row.settings), fixed(row.build_s, 4),
+                   fixed(row.solve_s, 4), fixed(row.fit_s, 4), fixed(row.seen.rmse, 4),
+                   signed_fixed(row.seen.bias, 4), fixed(row.seen.p95, 4), fixed(row.seen.max, 3),
+                   fixed(row.seen.bent_mean_deg, 2), fixed(row.solve.rmse, 4), fixed(row.beyond, 4),
+                   text_of(row.ratio), text_of(row.ratio_with_builds)});
     }
     std::string text = comparison.input.string() + ": " + std::to_string(comparison.vertices) +
                        " vertices, " + std::to_string(comparison.triangles) + " triangles, " +
+                       std::to_string(comparison.receivers) + " receivers, " +
                        std::to_string(comparison.threads) + " threads, median of " +
-                       std::to_string(comparison.rounds) +
-                       "\nreference: " + std::to_string(comparison.reference_rays) +
-                       " robust rays at " + std::to_string(comparison.judged) +
-                       " vertices, noise " + fixed(comparison.reference_noise, 4);
-    if (comparison.ill_defined > 0) {
-        text += "; " + std::to_string(comparison.ill_defined) + " ill-defined left out";
-    }
-    if (comparison.without_normal > 0)
-        text += "; " + std::to_string(comparison.without_normal) + " without a normal left out";
-    text += "\n\n" + table.text();
-    text += rows_run_once(comparison);
+                       std::to_string(comparison.rounds) + '\n' + errors_text(comparison) + "\n\n" +
+                       table.text() + rows_run_once(comparison);
     for (const CompareRow& row : comparison.rows) {
-        if (row.solve_ratio && row.solve_ratio->extrapolated) {
+        if (row.ratio && row.ratio->extrapolated) {
             text += "* extrapolated beyond the rows of rays\n";
             break;
         }
@@ -98,15 +133,15 @@ void write_difference(const std::filesystem::path& path, const Comparison& compa
                       const CompareRow& row)
 {
     std::ostringstream what;
-    what << "error of " << name_of(row.settings.engine) << ' ' << setting_of(row)
-         << " against rays; full colour at " << kFullColorError
-         << ": red = too dark, blue = too bright, grey = not judged";
+    what << "error of " << name_of(row.settings.engine) << ' ' << setting_of(row.settings)
+         << " against fitted rays; full colour at " << kFullColorError
+         << ": red = too dark, blue = too bright";
     const PlyValues values{
         {"uchar red", "uchar green", "uchar blue", "float error"},
         [&](std::string& bytes, std::size_t v) {
             for (const std::uint8_t channel : error_color(row.errors[v], kFullColorError))
                 append_bytes(bytes, channel);
-            append_bytes(bytes, std::isnan(row.errors[v]) ? 0.0f : row.errors[v]);
+            append_bytes(bytes, row.errors[v]);
         }};
     write_atomically(path, new_ply(comparison.mesh->scene, values, make_mark("compare", what.str()),
                                    PlyCoordinates::exact));

@@ -15,6 +15,9 @@ namespace surfelao {
 /// "4.81"; "4.81*" where extrapolated, "-" where there is none.
 [[nodiscard]] std::string text_of(const std::optional<EmbreeRatio>& ratio);
 
+/// Two lines without the last end: points, floor, what is left out; rays and noise of references.
+[[nodiscard]] std::string errors_text(const Comparison& comparison);
+
 /// A line per row that ran once where the others ran in every round; mostly empty.
 [[nodiscard]] std::string rows_run_once(const Comparison& comparison);
 

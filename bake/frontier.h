@@ -1,9 +1,10 @@
 /// frontier.h: the whole speed-against-error curve of every engine and of Embree, over many scenes.
 ///
-/// Ratios are Embree's time over ours at equal RMSE, each side interpolated inside its own family
-/// (statistics.h: time_at). Where a family does not reach an RMSE the ratio is extrapolated:
-/// marked, and left out of the summary. Where our coarsest setting is already more exact than
-/// asked, its time counts as it is: the ratio is then a lower bound, not an extrapolation.
+/// Ratios are Embree's time over ours for the same job at equal error beyond the floor
+/// (surface_error.h), each side interpolated inside its own family (statistics.h: time_at). Where a
+/// family does not reach an error the ratio is extrapolated: marked, and left out of the summary.
+/// Where the coarsest setting of either side is already more exact than asked, its time counts as
+/// it is: nobody has anything cheaper, ours by its qualities, Embree with one ray a receiver.
 #pragma once
 
 #include "bake/compare.h"
@@ -24,12 +25,12 @@ struct FrontierSettings {
 
 /// What is counted on both sides.
 enum class Cost {
-    solve,  ///< solving
+    solve,  ///< solving and fitting
     build,  ///< and the engine's own structures
-    file,   ///< and reading the file and cleaning its geometry, the same for both
+    file,  ///< and reading the file, cleaning its geometry and making the target, the same for both
 };
 
-/// RMSE at which ratios are stated.
+/// Errors beyond the floor at which ratios are stated.
 inline constexpr double kTargets[] = {0.010, 0.005};
 
 /// One scene: its comparison, or why there is none.
@@ -60,10 +61,10 @@ struct Frontier {
 
 /// Empty where either side has no curve.
 [[nodiscard]] std::optional<EmbreeRatio> ratio_at(const Comparison& comparison, Engine engine,
-                                                  double rmse, Cost cost);
+                                                  double beyond, Cost cost);
 
 /// scenes = 0 and zeros where no ratio counts.
-[[nodiscard]] RatioSummary summary_of(const Frontier& frontier, Engine engine, double rmse,
+[[nodiscard]] RatioSummary summary_of(const Frontier& frontier, Engine engine, double beyond,
                                       Cost cost);
 
 /// Keys summary{at_010{median_ratio, worst_ratio, best_ratio, quartiles, scenes, left_out}, at_005,
@@ -72,7 +73,8 @@ struct Frontier {
 [[nodiscard]] std::string csv_of(const Frontier& frontier);
 [[nodiscard]] std::string table_of(const Frontier& frontier);
 
-/// A page of its own: plot of RMSE against time, pictures, worst vertices, settings, summary.
+/// A page of its own: plot of the error beyond the floor against time, pictures, worst
+/// points, settings, summary.
 /// Marked as a result of `compare` (files/maker_mark.h).
 [[nodiscard]] std::string html_of(const Frontier& frontier);
 

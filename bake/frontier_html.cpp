@@ -54,23 +54,20 @@ struct Series {
 
 std::vector<Series> series_of(const Comparison& comparison)
 {
-    std::vector<Series> series = {{"masks", "#c0392b", {}},
-                                  {"disks", "#2471a3", {}},
-                                  {"Embree", "#1e8449", {}},
-                                  {"Embree, smoothed", "#b7950b", {}}};
+    std::vector<Series> series = {
+        {"masks", "#c0392b", {}}, {"disks", "#2471a3", {}}, {"Embree", "#1e8449", {}}};
     for (const CompareRow& row : comparison.rows) {
-        std::string name = name_of(row.settings.engine);
-        if (row.settings.engine == Engine::rays)
-            name = row.smoothed ? "Embree, smoothed" : "Embree";
+        const std::string name = is_opponent(row) ? "Embree" : name_of(row.settings.engine);
         for (Series& one : series) {
-            if (one.name == name && row.error.rmse > 0.0 && row.solve_s > 0.0)
+            if (one.name == name && row.beyond > 0.0 && row.solve_s > 0.0)
                 one.rows.push_back(&row);
         }
     }
     std::erase_if(series, [](const Series& one) { return one.rows.empty(); });
     for (Series& one : series) {
-        std::stable_sort(one.rows.begin(), one.rows.end(),
-                         [](const auto* a, const auto* b) { return a->solve_s < b->solve_s; });
+        std::stable_sort(one.rows.begin(), one.rows.end(), [](const auto* a, const auto* b) {
+            return job_seconds(*a, false) < job_seconds(*b, false);
+        });
     }
     return series;
 }
@@ -97,17 +94,17 @@ struct Axis {
     }
 };
 
-/// RMSE against seconds of solving, log-log. Lower left is better.
+/// Error beyond the floor against seconds of solving and fitting, log-log. Lower left is better.
 std::string plot_of(const Comparison& comparison)
 {
     const std::vector<Series> series = series_of(comparison);
     if (series.empty())
-        return "<p>No errors to plot: everything is open.</p>\n";
+        return "<p>No errors to plot: nobody has any beyond the floor.</p>\n";
     Axis x, y;
     for (const Series& one : series) {
         for (const CompareRow* row : one.rows) {
-            x.include(row->solve_s);
-            y.include(row->error.rmse);
+            x.include(job_seconds(*row, false));
+            y.include(row->beyond);
         }
     }
     x.to_decades();
@@ -137,21 +134,24 @@ std::string plot_of(const Comparison& comparison)
             line(x.from, y.at(decade * i), x.to, y.at(decade * i), i == 1 ? "#bbb" : "#eee");
         text(x.from - 6, y.at(decade) + 4, "end", exact(decade));
     }
-    text(0.5 * (x.from + x.to), y.from + 38, "middle", "seconds of solving");
-    text(x.from, 12, "start", "RMSE");
+    text(0.5 * (x.from + x.to), y.from + 38, "middle", "seconds of solving and fitting");
+    text(x.from, 12, "start", "beyond the floor, RMS");
     double legend = y.to + 16;
     for (const Series& one : series) {
         std::string points;
         for (const CompareRow* row : one.rows)
-            points += number(x.at(row->solve_s)) + ',' + number(y.at(row->error.rmse)) + ' ';
+            points +=
+                number(x.at(job_seconds(*row, false))) + ',' + number(y.at(row->beyond)) + ' ';
         svg += "<polyline fill=\"none\" stroke-width=\"2\" stroke=\"" + one.color + "\" points=\"" +
                points + "\"/>\n";
         for (const CompareRow* row : one.rows) {
-            svg += "<circle r=\"4\" fill=\"" + one.color + "\" cx=\"" + number(x.at(row->solve_s)) +
-                   "\" cy=\"" + number(y.at(row->error.rmse)) + "\"><title>" +
-                   escaped(one.name + ", " + setting_of(*row) + ": RMSE " +
-                           fixed(row->error.rmse, 4) + ", " + fixed(row->solve_s, 4) + " s") +
-                   "</title></circle>\n";
+            svg +=
+                "<circle r=\"4\" fill=\"" + one.color + "\" cx=\"" +
+                number(x.at(job_seconds(*row, false))) + "\" cy=\"" + number(y.at(row->beyond)) +
+                "\"><title>" +
+                escaped(one.name + ", " + setting_of(row->settings) + ": beyond " +
+                        fixed(row->beyond, 4) + ", " + fixed(job_seconds(*row, false), 4) + " s") +
+                "</title></circle>\n";
         }
         svg += "<circle r=\"4\" fill=\"" + one.color + "\" cx=\"720\" cy=\"" + number(legend - 4) +
                "\"/>\n";
@@ -172,16 +172,18 @@ std::string row_of_cells(const std::vector<std::string>& cells, const char* tag)
 std::string rows_html(const Comparison& comparison)
 {
     std::string html = "<table>\n";
-    html += row_of_cells({"engine", "setting", "build s", "solve s", "µs/vertex", "RMSE", "bias",
-                          "p95", "max", "bent mean °", "bent p95 °", "Embree/ours", "with builds"},
+    html += row_of_cells({"engine", "setting", "build s", "solve s", "fit s", "µs/receiver",
+                          "seen RMSE", "bias", "p95", "max", "bent mean °", "bent p95 °",
+                          "solve RMSE", "solve max", "beyond", "Embree/ours", "with builds"},
                          "th");
     for (const CompareRow& row : comparison.rows) {
         html += row_of_cells(
-            {name_of(row.settings.engine), setting_of(row), fixed(row.build_s, 4),
-             fixed(row.solve_s, 4), fixed(row.us_per_vertex, 3), fixed(row.error.rmse, 4),
-             signed_fixed(row.error.bias, 4), fixed(row.error.p95, 4), fixed(row.error.max, 3),
-             fixed(row.error.bent_mean_deg, 2), fixed(row.error.bent_p95_deg, 2),
-             text_of(row.solve_ratio), text_of(row.total_ratio)},
+            {name_of(row.settings.engine), setting_of(row.settings), fixed(row.build_s, 4),
+             fixed(row.solve_s, 4), fixed(row.fit_s, 4), fixed(row.us_per_receiver, 3),
+             fixed(row.seen.rmse, 4), signed_fixed(row.seen.bias, 4), fixed(row.seen.p95, 4),
+             fixed(row.seen.max, 3), fixed(row.seen.bent_mean_deg, 2),
+             fixed(row.seen.bent_p95_deg, 2), fixed(row.solve.rmse, 4), fixed(row.solve.max, 3),
+             fixed(row.beyond, 4), text_of(row.ratio), text_of(row.ratio_with_builds)},
             "td");
     }
     return html + "</table>\n";
@@ -189,19 +191,19 @@ std::string rows_html(const Comparison& comparison)
 
 std::string worst_html(const Comparison& comparison)
 {
-    std::string html =
-        "<table>\n" +
-        row_of_cells({"engine", "worst vertex", "position", "occlusion", "by rays", "error"}, "th");
+    std::string html = "<table>\n" + row_of_cells({"engine", "worst point, in triangle", "position",
+                                                   "displayed", "by rays", "error"},
+                                                  "th");
     for (const CompareRow& row : comparison.rows) {
-        if (row.settings.engine == Engine::rays || row.settings.quality != kGood)
+        if (is_opponent(row) || row.settings.quality != kGood)
             continue;
-        for (const WorstVertex& vertex : row.worst) {
-            const glm::dvec3 p = vertex.position;
+        for (const WorstPoint& point : row.worst) {
+            const glm::dvec3 p = point.position;
             html += row_of_cells(
-                {name_of(row.settings.engine) + ", " + setting_of(row),
-                 std::to_string(vertex.vertex), exact(p.x) + ", " + exact(p.y) + ", " + exact(p.z),
-                 fixed(vertex.occlusion, 3), fixed(vertex.reference, 3),
-                 signed_fixed(vertex.occlusion - vertex.reference, 3)},
+                {name_of(row.settings.engine) + ", " + setting_of(row.settings),
+                 std::to_string(point.triangle), exact(p.x) + ", " + exact(p.y) + ", " + exact(p.z),
+                 fixed(point.displayed, 3), fixed(point.reference, 3),
+                 signed_fixed(point.displayed - point.reference, 3)},
                 "td");
         }
     }
@@ -216,13 +218,10 @@ std::string scene_html(const FrontierScene& scene)
     const Comparison& comparison = *scene.comparison;
     const Definition& definition = comparison.rows.front().settings.definition;
     html += "<p>" + std::to_string(comparison.vertices) + " vertices, " +
+            std::to_string(comparison.receivers) + " receivers, " +
             std::to_string(comparison.triangles) + " triangles (" +
-            std::to_string(comparison.dropped_triangles) +
-            " without area dropped). Reference: " + std::to_string(comparison.reference_rays) +
-            " robust rays at " + std::to_string(comparison.judged) + " vertices, noise " +
-            fixed(comparison.reference_noise, 4) + "; " + std::to_string(comparison.ill_defined) +
-            " ill-defined and " + std::to_string(comparison.without_normal) +
-            " without a normal left out. " + std::to_string(comparison.threads) +
+            std::to_string(comparison.dropped_triangles) + " without area dropped); " +
+            errors_text(comparison) + ". " + std::to_string(comparison.threads) +
             " threads, medians of " + std::to_string(comparison.rounds) +
             " rounds. Distance limit " +
             (std::isfinite(definition.max_distance) ? exact(definition.max_distance) : "none") +
@@ -241,23 +240,23 @@ std::string scene_html(const FrontierScene& scene)
 std::string summary_html(const Frontier& frontier)
 {
     std::string html =
-        "<h2>Summary</h2>\n<p>Embree's time over ours at equal RMSE, each side interpolated inside "
-        "its own family of settings; scenes where one side had to be extrapolated are left "
-        "out.</p>\n<table>\n";
-    html += row_of_cells({"engine", "at RMSE", "counted", "median", "quartiles", "worst", "best",
+        "<h2>Summary</h2>\n<p>Embree's time over ours for the same job at equal error beyond the "
+        "floor, each side interpolated inside its own family of settings; scenes where one side "
+        "had to be extrapolated are left out.</p>\n<table>\n";
+    html += row_of_cells({"engine", "at beyond", "counted", "median", "quartiles", "worst", "best",
                           "scenes", "left out"},
                          "th");
     for (const Engine engine : frontier.engines) {
         for (const auto& [cost, words] :
-             {std::pair(Cost::solve, "solve"), std::pair(Cost::build, "with builds"),
+             {std::pair(Cost::solve, "solve and fit"), std::pair(Cost::build, "with builds"),
               std::pair(Cost::file, "with builds and file")}) {
-            for (const double rmse : kTargets) {
-                const RatioSummary s = summary_of(frontier, engine, rmse, cost);
+            for (const double beyond : kTargets) {
+                const RatioSummary s = summary_of(frontier, engine, beyond, cost);
                 const auto number = [&](double value) {
                     return s.scenes > 0 ? fixed(value, 2) : std::string("-");
                 };
                 html += row_of_cells(
-                    {name_of(engine), fixed(rmse, 3), words, number(s.median),
+                    {name_of(engine), fixed(beyond, 3), words, number(s.median),
                      number(s.low_quartile) + " to " + number(s.high_quartile), number(s.worst),
                      number(s.best), std::to_string(s.scenes), std::to_string(s.left_out)},
                     "td");
@@ -277,11 +276,17 @@ std::string html_of(const Frontier& frontier)
         make_mark("compare", "speed against error") +
         "\"><title>surfelao: speed against error</title>\n<style>" + std::string(kStyle) +
         "</style></head><body>\n<h1>Speed against error</h1>\n"
-        "<p>Occlusion at every vertex by point-based engines and by Embree in its strongest mode, "
-        "against many robust rays; all in one process on the same threads, in turns. In the "
-        "plots lower left is better. In the pictures red is too dark, blue too bright, full colour "
-        "at an error of " +
-        exact(kFullColorError) + ", grey not judged.</p>\n";
+        "<p>Occlusion fitted to every vertex by point-based engines and by Embree in its strongest "
+        "mode, which do the same job; all in one process on the same threads, in turns. "
+        "<i>Seen</i> "
+        "is the error of what is displayed at points all over the surface against many robust "
+        "rays, "
+        "<i>solve</i> that of the engine's own answers there. The <i>floor</i> is the seen error "
+        "of "
+        "the best values that the vertices can hold, and <i>beyond</i> what an engine adds to it: "
+        "seen² = floor² + beyond². In the plots lower left is better. In the pictures red is "
+        "too dark, blue too bright against the floor's values, full colour at an error of " +
+        fixed(kFullColorError, 1) + ".</p>\n";
     if (frontier.scenes.size() > 1)
         html += summary_html(frontier);
     for (const FrontierScene& scene : frontier.scenes)

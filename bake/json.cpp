@@ -19,14 +19,13 @@ using Json = nlohmann::ordered_json;
 
 /// What this engine was told; settings of other engines are left out. Lengths in diagonals, null =
 /// unlimited.
-Json json_of(const EngineSettings& settings, bool smoothed = false)
+Json json_of(const EngineSettings& settings)
 {
     const Definition& definition = settings.definition;
     Json json;
     json["device"] = settings.device == Device::gpu ? "gpu" : "cpu";
     if (settings.engine == Engine::rays) {
         json["rays"] = settings.rays;
-        json["smoothed"] = smoothed;
     } else {
         json["quality"] = settings.quality;
     }
@@ -95,6 +94,43 @@ Json json_of(const std::optional<EmbreeRatio>& ratio)
     return ratio ? Json(ratio->ratio) : Json();
 }
 
+Json json_of(const ErrorStatistics& error)
+{
+    return {{"rmse", error.rmse},
+            {"bias", error.bias},
+            {"p95", error.p95},
+            {"max", error.max},
+            {"bent_mean_deg", error.bent_mean_deg},
+            {"bent_p95_deg", error.bent_p95_deg}};
+}
+
+Json json_of(const Comparison& comparison, const CompareRow& row)
+{
+    Json worst = Json::array();
+    for (const WorstPoint& point : row.worst) {
+        worst.push_back({{"triangle", point.triangle},
+                         {"position", {point.position.x, point.position.y, point.position.z}},
+                         {"displayed", point.displayed},
+                         {"reference", point.reference}});
+    }
+    return {{"engine", name_of(row.settings.engine)},
+            {"setting", setting_of(row.settings)},
+            {"settings", json_of(row.settings)},
+            {"rounds", row.rounds},
+            {"build_s", row.build_s},
+            {"solve_s", row.solve_s},
+            {"fit_s", row.fit_s},
+            {"us_per_receiver", row.us_per_receiver},
+            {"seen", json_of(row.seen)},
+            {"solve", json_of(row.solve)},
+            {"beyond", row.beyond},
+            {"beyond_by_squares", beyond_by_squares(comparison, row)},
+            {"embree_ratio", json_of(row.ratio)},
+            {"embree_ratio_with_builds", json_of(row.ratio_with_builds)},
+            {"extrapolated", row.ratio && row.ratio->extrapolated},
+            {"worst", worst}};
+}
+
 Json json_object_of(const Comparison& comparison)
 {
     Json json;
@@ -102,43 +138,23 @@ Json json_object_of(const Comparison& comparison)
     json["vertices"] = comparison.vertices;
     json["triangles"] = comparison.triangles;
     json["dropped_triangles"] = comparison.dropped_triangles;
+    json["receivers"] = comparison.receivers;
     json["threads"] = comparison.threads;
     json["rounds"] = comparison.rounds;
     json["read_s"] = comparison.read_s;
+    json["target"] = Json::object();
+    add(json["target"], comparison.target);
     json["reference"] = {{"rays", comparison.reference_rays},
                          {"noise", comparison.reference_noise},
                          {"from_cache", comparison.reference_from_cache},
-                         {"judged", comparison.judged},
-                         {"ill_defined", comparison.ill_defined},
-                         {"without_normal", comparison.without_normal}};
+                         {"points", comparison.points},
+                         {"ill_defined", comparison.ill_defined}};
+    json["floor"] = json_of(comparison.floor);
+    json["floor"]["rays"] = comparison.floor_rays;
+    json["floor"]["noise"] = comparison.floor_noise;
     json["rows"] = Json::array();
-    for (const CompareRow& row : comparison.rows) {
-        Json worst = Json::array();
-        for (const WorstVertex& vertex : row.worst) {
-            worst.push_back(
-                {{"vertex", vertex.vertex},
-                 {"position", {vertex.position.x, vertex.position.y, vertex.position.z}},
-                 {"occlusion", vertex.occlusion},
-                 {"reference", vertex.reference}});
-        }
-        json["rows"].push_back({{"engine", name_of(row.settings.engine)},
-                                {"setting", setting_of(row)},
-                                {"settings", json_of(row.settings, row.smoothed)},
-                                {"rounds", row.rounds},
-                                {"build_s", row.build_s},
-                                {"solve_s", row.solve_s},
-                                {"us_per_vertex", row.us_per_vertex},
-                                {"rmse", row.error.rmse},
-                                {"bias", row.error.bias},
-                                {"p95", row.error.p95},
-                                {"max", row.error.max},
-                                {"bent_mean_deg", row.error.bent_mean_deg},
-                                {"bent_p95_deg", row.error.bent_p95_deg},
-                                {"embree_ratio", json_of(row.solve_ratio)},
-                                {"embree_ratio_with_builds", json_of(row.total_ratio)},
-                                {"extrapolated", row.solve_ratio && row.solve_ratio->extrapolated},
-                                {"worst", worst}});
-    }
+    for (const CompareRow& row : comparison.rows)
+        json["rows"].push_back(json_of(comparison, row));
     return json;
 }
 
@@ -160,7 +176,7 @@ Json json_of(const RatioSummary& summary)
             {"left_out", summary.left_out}};
 }
 
-/// at_010 and at_005, filled by what `value` gives for (rmse, cost), and the same with builds and
+/// at_010 and at_005, filled by what `value` gives for (beyond, cost), and the same with builds and
 /// with files.
 template <class Value>
 Json by_target(const Value& value)
@@ -229,8 +245,8 @@ std::string json_of(const Comparison& comparison)
 std::string json_of(const Frontier& frontier)
 {
     const auto summary = [&](Engine engine) {
-        return by_target([&](double rmse, Cost cost) {
-            return json_of(summary_of(frontier, engine, rmse, cost));
+        return by_target([&](double beyond, Cost cost) {
+            return json_of(summary_of(frontier, engine, beyond, cost));
         });
     };
     Json json;
@@ -246,8 +262,8 @@ std::string json_of(const Frontier& frontier)
         }
         Json entry = json_object_of(*scene.comparison);
         for (const Engine engine : frontier.engines) {
-            entry["ratios"][name_of(engine)] = by_target([&](double rmse, Cost cost) {
-                const auto ratio = ratio_at(*scene.comparison, engine, rmse, cost);
+            entry["ratios"][name_of(engine)] = by_target([&](double beyond, Cost cost) {
+                const auto ratio = ratio_at(*scene.comparison, engine, beyond, cost);
                 return ratio ? Json{{"ratio", ratio->ratio}, {"extrapolated", ratio->extrapolated}}
                              : Json();
             });

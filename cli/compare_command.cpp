@@ -1,5 +1,6 @@
 #include "bake/compare.h"
 #include "bake/frontier.h"
+#include "bake/surface_error.h"
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/output.h"
@@ -19,6 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Each takes some hundred bytes, and thousands of rays.
+constexpr std::uint64_t kMostSample = 10'000'000;
+
 struct CompareOptions {
     std::vector<std::string> inputs;
     std::optional<std::string> output;
@@ -30,7 +34,7 @@ struct CompareOptions {
     MeasureOptions measure;
     SurfaceOptions surface;
     std::uint32_t reference_rays = 4096;
-    std::uint64_t sample = 0;
+    std::uint64_t sample = kSurfacePoints;
     int rounds = 3;
     bool no_cache = false;
     bool avx2 = false;
@@ -57,7 +61,6 @@ CompareSettings compare_settings(const CompareOptions& options)
 {
     CompareSettings settings = common_settings(options);
     settings.input = options.inputs.front();
-    settings.smoothed_rays = {16};
     const std::vector<std::string> qualities =
         options.qualities.value_or(std::vector<std::string>{"draft", "good", "best"});
     for (const std::string& engine : options.engines) {
@@ -222,7 +225,8 @@ void add_compare_command(CLI::App& app, Work& work)
 {
     const auto options = std::make_shared<CompareOptions>();
     CLI::App* command = app.add_subcommand(
-        "compare", "One scene by our engines and by ray tracing: how long, how wrong");
+        "compare",
+        "One scene by our engines and by ray tracing, the same job: how long, how wrong");
     command
         ->add_option("IN", options->inputs,
                      "Mesh file: .obj .ply .off .stl .gltf .glb; several with "
@@ -235,9 +239,10 @@ void add_compare_command(CLI::App& app, Work& work)
                      "--frontier), and report.html; without it no file is written")
         ->type_name("DIR");
     add_overwrite_option(*command, options->overwrite);
-    command->add_flag("--frontier", options->frontier,
-                      "Every engine's whole curve of speed against error, for any number of files, "
-                      "with the ratio to Embree at RMSE 0.010 and 0.005 and a summary");
+    command->add_flag(
+        "--frontier", options->frontier,
+        "Every engine's whole curve of speed against error, for any number of files, "
+        "with the ratio to Embree at errors of 0.010 and 0.005 beyond the floor, and a summary");
     command->add_option("--engines", options->engines, "Engines to compare with rays")
         ->delimiter(',')
         ->allow_extra_args(false)  // the word behind the list may be IN
@@ -263,15 +268,16 @@ void add_compare_command(CLI::App& app, Work& work)
     add_surface_options(*command, options->surface);
     command
         ->add_option("--reference-rays", options->reference_rays,
-                     "Rays per vertex of the reference, an even number")
+                     "Rays per surface point of the reference, an even number")
         ->check(CLI::Range(2u, kMostRays))
         ->type_name("N")
         ->capture_default_str();
     command
         ->add_option("--sample", options->sample,
-                     "Take errors at N vertices only (times are of all)")
-        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
-        ->type_name("N");
+                     "Take errors at N points of the surface (times are of all receivers)")
+        ->check(CLI::Range(std::uint64_t{1}, kMostSample))
+        ->type_name("N")
+        ->capture_default_str();
     command
         ->add_option("--rounds", options->rounds, "Runs of every engine, in turns; medians count")
         ->check(CLI::Range(1, 99))

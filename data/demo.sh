@@ -10,7 +10,7 @@ mkdir -p "$out"
 echo "1. bake: occlusion and bent normals at every vertex"
 "$surfelao" bake "$model" -o "$out/bunny.ply"
 echo
-echo "2. compare: the same model by ray tracing, error at 5000 of its vertices"
+echo "2. compare: the same model by ray tracing, error at 5000 points of its surface"
 "$surfelao" compare "$model" --engines masks --qualities draft,good --sample 5000 --rounds 1 \
     -o "$out" --overwrite
 echo

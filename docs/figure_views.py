@@ -11,7 +11,7 @@ import re
 
 VIEWS = {}
 
-TARGETS = {"010": "at_010", "005": "at_005"}  # RMSE at which the frontier compares
+TARGETS = {"010": "at_010", "005": "at_005"}  # errors beyond the floor at which the frontier compares
 QUALITIES = ("quality -1", "draft", "quality 0.5", "good", "quality 1.5", "best", "quality 3")
 ASKED = ("command", "commit", "version", "processor", "threads")
 
@@ -132,7 +132,8 @@ def row_of(scene, engine, setting):
 
 
 def ratio_of(scene, engine, target, cost="solve"):
-    """Embree's time over ours at an RMSE of .010 or .005; (ratio, extrapolated) or None.
+    """Embree's time over ours at an error beyond the floor of .010 or .005; (ratio, extrapolated)
+    or None.
     cost: solve, builds (with_builds) or files (with_files)."""
     ratios = scene["ratios"].get(engine, {})
     if cost != "solve":
@@ -231,13 +232,36 @@ def largest(figures, engine, setting, key, digits="4", group="all"):
     return f"{fixed(value, int(digits))} ({name})"
 
 
+@view
+def floor(figures, scene, digits="4"):
+    """floor SCENE [DIGITS]: the seen error of the best values of its vertices"""
+    return fixed(scene_of(figures, scene)["floor"]["rmse"], int(digits))
+
+
+@view
+def points_left_out(figures, group="all"):
+    """points_left_out [GROUP]: the largest share of ill-defined surface points, and of which scene"""
+    def share(scene):
+        points = scene["reference"]
+        return 100 * points["ill_defined"] / max(1, points["points"] + points["ill_defined"])
+    worst = max(scenes_of(figures, group), key=share)
+    return f"{fixed(share(worst), 2)} % ({worst['name']})"
+
+
+def three_errors(row):
+    """Seen, solve and beyond."""
+    return " / ".join(short(row[key], 4) for key in ("seen_rmse", "solve_rmse", "beyond"))
+
+
 def row_cell(row):
-    """Microseconds a vertex, RMSE and, of our engines, bias, 95th percentile, maximum; ratio."""
+    """Microseconds a receiver; three errors; of our engines, bias, 95th percentile and maximum of
+    what is seen; ratio."""
     if row is None:
         return None
-    text = f"{fixed(row['us_per_vertex'], 2)} us, {fixed(row['rmse'], 4)}"
+    text = f"{fixed(row['us_per_receiver'], 2)} us; {three_errors(row)}"
     if row["engine"] != "rays":
-        text += f", {row['bias']:+.4f}, {fixed(row['p95'], 3)}, {fixed(row['max'], 2)}"
+        text += (f"; {short(row['seen_bias'], 4, '+')}, {short(row['seen_p95'], 3)}, "
+                 f"{short(row['seen_max'], 2)}")
     if row.get("embree_ratio") is not None:
         text += f"; x{fixed(row['embree_ratio'], 1)}" + ("*" if row["extrapolated"] else "")
     return text
@@ -245,38 +269,45 @@ def row_cell(row):
 
 @view
 def every_model(figures):
-    """Every scene, masks, disks and rays: time, RMSE, bias, percentile, maximum, ratio"""
+    """Every scene, masks, disks and rays: points left out, floor; time, seen / solve / beyond, ..."""
     columns = (("masks", "draft"), ("masks", "good"), ("disks", "good"),
                ("rays", "64 rays"), ("rays", "256 rays"))
-    return table(["scene", *(" ".join((engine, setting.split()[0])) for engine, setting in columns)],
-                 [[scene["name"], *(row_cell(row_of(scene, *column)) for column in columns)]
+    return table(["scene", "left out", "floor",
+                  *(" ".join((engine, setting.split()[0])) for engine, setting in columns)],
+                 [[scene["name"], scene["reference"]["ill_defined"],
+                   short(scene["floor"]["rmse"], 4),
+                   *(row_cell(row_of(scene, *column)) for column in columns)]
                   for scene in scenes_of(figures, "models")])
 
 
 @view
 def how_fast(figures):
-    """README: error at good and Embree's time at that error over ours, masks and disks"""
+    """README: floor; seen, solve and beyond at good and Embree's time at that error over ours"""
     rows = []
     for scene in scenes_of(figures, "models"):
         masks, disks = row_of(scene, "masks", "good"), row_of(scene, "disks", "good")
         rows.append([
-            scene["name"], thousands(scene["triangles"]),
-            f"{fixed(masks['rmse'], 4)}, {fixed(masks['max'], 2)}", cell(masks, "embree_ratio", 1),
-            cell(disks, "rmse", 4), cell(disks, "embree_ratio", 1)])
-    return table(["model", "triangles", "masks, good: RMSE, maximum",
-                  "Embree's time at that RMSE over ours", "disks, good: RMSE", "Embree over ours"],
-                 rows)
+            scene["name"], thousands(scene["triangles"]), short(scene["floor"]["rmse"], 4),
+            *(short(masks[key], 4) for key in ("seen_rmse", "solve_rmse", "beyond")),
+            cell(masks, "embree_ratio", 1), disks and short(disks["seen_rmse"], 4),
+            cell(disks, "embree_ratio", 1)])
+    return table(["model", "triangles", "floor", "masks, good: seen", "solve", "beyond the floor",
+                  "Embree's time over ours", "disks, good: seen", "Embree over ours"], rows)
 
 
 @view
 def bent_normals(figures):
-    """Angle of bent normals to the reference's, mean and 95th percentile"""
+    """Angle of displayed bent normals to the reference's, mean and 95th percentile, and the floor"""
     columns = (("masks", "draft"), ("masks", "good"), ("masks", "best"), ("rays", "4 rays"))
 
-    def angles(row):
-        return row and f"{fixed(row['bent_mean_deg'], 2)}, {fixed(row['bent_p95_deg'], 1)}"
-    return table(["scene", "draft", "good", "best", "4 rays"],
-                 [[scene["name"], *(angles(row_of(scene, *column)) for column in columns)]
+    def angles(found, kind=""):
+        return found and (f"{fixed(found[kind + 'bent_mean_deg'], 2)}, "
+                          f"{fixed(found[kind + 'bent_p95_deg'], 1)}")
+    return table(["scene", "floor", "draft", "good", "solve at good", "best", "4 rays"],
+                 [[scene["name"], angles(scene["floor"]),
+                   *(angles(row_of(scene, *column), "seen_") for column in columns[:2]),
+                   angles(row_of(scene, *columns[1]), "solve_"),
+                   *(angles(row_of(scene, *column), "seen_") for column in columns[2:])]
                   for scene in scenes_of(figures, "models")])
 
 
@@ -290,13 +321,13 @@ def build_times(figures):
 
 @view
 def frontier_table(figures):
-    """Every scene: ratio at RMSE .010 and .005, with builds, by AVX2; errors at good and best"""
+    """Every scene: ratio at .010 and .005 beyond the floor, with builds, by AVX2; errors"""
     avx2 = figures["frontier_avx2"] if "frontier_avx2" in figures else {"scenes": []}
     by_avx2 = {scene["name"]: scene for scene in avx2["scenes"]}
 
     def errors(row):
-        return row and (f"{short(row['rmse'], 4)} {short(row['bias'], 4, '+')} "
-                        f"{short(row['max'], 2)}")
+        return row and (f"{three_errors(row)}; {short(row['seen_bias'], 4, '+')} "
+                        f"{short(row['seen_max'], 2)}")
     rows = []
     for scene in scenes_of(figures):
         other = by_avx2.get(scene["name"])
@@ -305,9 +336,11 @@ def frontier_table(figures):
             *(ratio_text(ratio_of(scene, "masks", target, cost))
               for cost in ("solve", "builds") for target in TARGETS),
             *(other and ratio_text(ratio_of(other, "masks", target)) for target in TARGETS),
+            scene["reference"]["ill_defined"], short(scene["floor"]["rmse"], 4),
             errors(row_of(scene, "masks", "good")), errors(row_of(scene, "masks", "best"))])
-    return table(["scene", "at RMSE .010", "at .005", ".010 with builds", ".005 with builds",
-                  "AVX2, .010", "AVX2, .005", "good: RMSE, bias, max", "best: RMSE, bias, max"], rows)
+    return table(["scene", "at .010", "at .005", ".010 with builds", ".005 with builds",
+                  "AVX2, .010", "AVX2, .005", "left out", "floor",
+                  "good: seen / solve / beyond; bias, max", "best: the same"], rows)
 
 
 @view
@@ -378,11 +411,11 @@ def gpu_disks(figures):
 
 @view
 def gpu_masks(figures):
-    """Masks on the GPU against the CPU: difference, both errors, speed"""
+    """Masks on the GPU against the CPU: difference, both seen and solve errors, speed"""
     def error(found):
-        return found and f"{fixed(found['rmse'], 4)} ({fixed(found['max'], 3)})"
-    return table(["scene", "vertices", "GPU - CPU, RMS", "largest", "error CPU", "error GPU",
-                  "speed of GPU / CPU"],
+        return found and f"{short(found['seen'], 4)} / {short(found['solve'], 4)}"
+    return table(["scene", "vertices", "GPU - CPU, RMS", "largest", "seen / solve, CPU",
+                  "seen / solve, GPU", "speed of GPU / CPU"],
                  [[row["scene"], thousands(row["vertices"]),
                    significant(row["masks"]["RMS difference"]), significant(row["masks"]["largest"]),
                    error(row.get("cpu")), error(row.get("gpu")),

@@ -81,12 +81,12 @@ def mask_counts(figures):
     for row in figures["mask_counts"]["rows"]:
         scene = next((s for s in figures["frontier"]["scenes"] if s["name"] == row["scene"]), None)
         timed = [r for r in scene["rows"] if r["engine"] == "masks" and r["setting"] == row["setting"]
-                 and "us_per_vertex" in r] if scene else []
+                 and "us_per_receiver" in r] if scene else []
         rows.append([f"{row['scene']}, {row['setting']}", fixed(row["visits"], 0),
                      fixed(row["listed"], 0), fixed(row["drawn"], 0), fixed(row["shared"], 1),
                      fixed(row["faces"], 2), fixed(row["filled"], 2), fixed(row["closed"], 2),
                      f"{instructions(row):,.0f}",
-                     fixed(instructions(row) / timed[0]["us_per_vertex"], 0) if timed else ""])
+                     fixed(instructions(row) / timed[0]["us_per_receiver"], 0) if timed else ""])
     return table(["", "V", "P", "Q", "S", "F", "filled", "closed", "instructions",
                   "over measured us, two threads"], rows)
 

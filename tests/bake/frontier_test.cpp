@@ -11,12 +11,14 @@ namespace {
 
 using Json = nlohmann::json;
 
-CompareRow row(Engine engine, double rmse, double seconds)
+CompareRow row(Engine engine, double beyond, double seconds)
 {
     CompareRow result;
     result.settings.engine = engine;
-    result.error.rmse = rmse;
-    result.solve_s = seconds;
+    result.beyond = beyond;
+    result.seen.rmse = 0.5;  // which does not tell who is faster
+    result.solve_s = 0.75 * seconds;
+    result.fit_s = 0.25 * seconds;
     result.build_s = 1.0;
     return result;
 }
@@ -26,18 +28,18 @@ FrontierScene made_up_scene(double faster, double coarse, double fine)
 {
     FrontierScene scene;
     Comparison& c = scene.comparison.emplace();
-    for (const double rmse : {0.1, 0.01, 0.001})
-        c.rows.push_back(row(Engine::rays, rmse, 0.1 / rmse));
-    for (const double rmse : {coarse, fine})
-        c.rows.push_back(row(Engine::disks, rmse, 0.1 / rmse / faster));
+    for (const double beyond : {0.1, 0.01, 0.001})
+        c.rows.push_back(row(Engine::rays, beyond, 0.1 / beyond));
+    for (const double beyond : {coarse, fine})
+        c.rows.push_back(row(Engine::disks, beyond, 0.1 / beyond / faster));
     return scene;
 }
 
 TEST(Frontier, RatioIsTheirTimeOverOursAtEqualError)
 {
     const FrontierScene scene = made_up_scene(4.0, 0.05, 0.002);
-    for (const double rmse : kTargets) {
-        const auto ratio = ratio_at(*scene.comparison, Engine::disks, rmse, Cost::solve);
+    for (const double beyond : kTargets) {
+        const auto ratio = ratio_at(*scene.comparison, Engine::disks, beyond, Cost::solve);
         ASSERT_TRUE(ratio);
         EXPECT_NEAR(ratio->ratio, 4.0, 1e-9);
         EXPECT_FALSE(ratio->extrapolated);
@@ -75,6 +77,19 @@ TEST(Frontier, AFamilyBeyondTheTargetCountsAtItsCheapest)
     EXPECT_NEAR(ratio->ratio, 10.0 / (0.1 / 0.005 / 4.0), 1e-9);
 }
 
+// The same for the opponent: one ray a receiver, fitted on a coarse mesh, may be exact enough.
+TEST(Frontier, AnOpponentBeyondTheTargetCountsAtItsCheapest)
+{
+    FrontierScene scene = made_up_scene(4.0, 0.05, 0.002);
+    std::erase_if(scene.comparison->rows, [](const CompareRow& r) {
+        return r.settings.engine == Engine::rays && r.beyond > 0.005;
+    });
+    const auto ratio = ratio_at(*scene.comparison, Engine::disks, 0.010, Cost::solve);
+    ASSERT_TRUE(ratio);
+    EXPECT_FALSE(ratio->extrapolated);
+    EXPECT_NEAR(ratio->ratio, (0.1 / 0.001) / (0.1 / 0.010 / 4.0), 1e-9);
+}
+
 TEST(Frontier, NoScenesGiveNullsAndNoCrash)
 {
     Frontier frontier;
@@ -94,6 +109,7 @@ TEST(FrontierSlow, RealScenesGiveAllReportsAndBadOnesDoNotStopThem)
     settings.engines = {Engine::disks};
     settings.compare.rounds = 1;
     settings.compare.reference_rays = 1024;
+    settings.compare.sample = 1000;
     settings.compare.use_cache = false;
     const Frontier result = frontier(settings);
     ASSERT_EQ(result.scenes.size(), 3u);
@@ -106,12 +122,14 @@ TEST(FrontierSlow, RealScenesGiveAllReportsAndBadOnesDoNotStopThem)
         EXPECT_TRUE(json["summary"]["with_builds"]["at_005"].contains(key)) << key;
     }
     ASSERT_EQ(json["scenes"].size(), 3u);
+    EXPECT_EQ(json["scenes"][0]["reference"]["points"], 1000);
     EXPECT_TRUE(json["scenes"][0]["ratios"]["disks"].contains("at_010"));
+    EXPECT_EQ(result.scenes[0].comparison->rows[5].settings.rays, 1u);
     EXPECT_TRUE(json["scenes"][1].contains("error"));
 
     const std::string html = html_of(result);
     for (const char* part :
-         {"<svg", "data:image/png;base64,", "worst vertex", "Summary", "none.obj", "</html>"})
+         {"<svg", "data:image/png;base64,", "worst point", "Summary", "none.obj", "</html>"})
         EXPECT_NE(html.find(part), std::string::npos) << part;
     EXPECT_EQ(html.find("http"), std::string::npos);  // nothing is fetched from anywhere
     EXPECT_EQ(result.scenes[0].comparison->rows[0].errors.size(), 0u);  // memory is given back

@@ -22,8 +22,29 @@ TEST(ErrorStatistics, MatchesAHandCount)
     EXPECT_NEAR(s.bias, 0.1, 1e-7);
     EXPECT_NEAR(s.max, 0.2, 1e-7);
     EXPECT_NEAR(s.p95, 0.2, 1e-7);
-    EXPECT_NEAR(s.bent_mean_deg, 30.0, 1e-6);
+    EXPECT_NEAR(s.bent_mean_deg, 90.0 * 0.3 / 1.8, 1e-5);
     EXPECT_NEAR(s.bent_p95_deg, 90.0, 1e-4);
+}
+
+// Nearly closed, a bent normal is nobody's: its angle weighs a tenth.
+TEST(ErrorStatistics, AnglesWeighAsMuchAsTheReferenceIsOpen)
+{
+    const std::vector<Occlusion> answer = {{0.1f, kUp}, {0.9f, {1, 0, 0}}, {1.0f, {0, 1, 0}}};
+    std::vector<Occlusion> truth = {{0.1f, kUp}, {0.9f, kUp}, {1.0f, kUp}};
+    const ErrorStatistics s = error_statistics(answer, truth);
+    EXPECT_NEAR(s.bent_mean_deg, 9.0, 1e-4);
+    EXPECT_NEAR(s.bent_p95_deg, 90.0, 1e-4);
+    truth[1].occlusion = 0.97f;  // below a twentieth of the weight
+    EXPECT_NEAR(error_statistics(answer, truth).bent_p95_deg, 0.0, 1e-4);
+}
+
+TEST(ErrorStatistics, NoiseOfTheReferenceIsTakenOut)
+{
+    const std::vector<Occlusion> answer = {{0.5f, kUp}, {0.5f, kUp}};
+    const std::vector<Occlusion> truth = {{0.0f, kUp}, {0.0f, kUp}};
+    EXPECT_NEAR(error_statistics(answer, truth, 0.3).rmse, 0.4, 1e-7);
+    EXPECT_NEAR(error_statistics(answer, truth, 0.3).max, 0.5, 1e-7);
+    EXPECT_EQ(error_statistics(answer, truth, 0.6).rmse, 0.0);
 }
 
 // Nearest rank: of 100 errors 0.00 to 0.99 the 95th is 0.94.
@@ -46,7 +67,7 @@ TEST(ErrorStatistics, NothingGivesZeros)
 }
 
 // Error = 1 / seconds: a straight line in log-log.
-TEST(TimeAt, IsExactOnAPowerLawInsideAndMarkedOutside)
+TEST(TimeAt, IsExactOnAPowerLawInsideAndMarkedBeyondIt)
 {
     const std::vector<CurvePoint> family = {{1.0, 1.0}, {0.1, 10.0}, {0.01, 100.0}};
     EXPECT_NEAR(time_at(family, 0.1)->seconds, 10.0, 1e-9);
@@ -56,8 +77,16 @@ TEST(TimeAt, IsExactOnAPowerLawInsideAndMarkedOutside)
     EXPECT_FALSE(time_at(family, 1.0)->extrapolated);
     EXPECT_NEAR(time_at(family, 0.001)->seconds, 1000.0, 1e-6);
     EXPECT_TRUE(time_at(family, 0.001)->extrapolated);
-    EXPECT_NEAR(time_at(family, 10.0)->seconds, 0.1, 1e-9);
-    EXPECT_TRUE(time_at(family, 10.0)->extrapolated);
+}
+
+// All points are more exact than asked: nothing in the family costs less than its cheapest.
+TEST(TimeAt, AFamilyThatIsMoreExactThanAskedCountsAtItsCheapest)
+{
+    const std::vector<CurvePoint> family = {{0.3, 2.0}, {1.0, 3.0}, {0.1, 10.0}};
+    EXPECT_EQ(time_at(family, 10.0)->seconds, 2.0);
+    EXPECT_EQ(time_at(family, 0.5)->seconds, 2.0);  // the coarsest is beaten
+    EXPECT_FALSE(time_at(family, 10.0)->extrapolated);
+    EXPECT_EQ(time_at({{0.1, 2.0}}, 0.1)->seconds, 2.0);  // one is enough
 }
 
 // An error that hardly falls with time: any answer would be a guess.
@@ -78,8 +107,8 @@ TEST(TimeAt, BeatenPointsDoNotCount)
 TEST(TimeAt, NeedsTwoPointsWithLogarithms)
 {
     EXPECT_FALSE(time_at({}, 0.1));
-    EXPECT_FALSE(time_at({{0.1, 1.0}}, 0.1));
-    EXPECT_FALSE(time_at({{0.1, 1.0}, {0.0, 2.0}}, 0.1));
+    EXPECT_FALSE(time_at({{0.1, 1.0}}, 0.05));
+    EXPECT_FALSE(time_at({{0.1, 1.0}, {0.0, 2.0}}, 0.05));
     EXPECT_FALSE(time_at({{0.1, 1.0}, {0.01, 2.0}}, 0.0));
 }
 

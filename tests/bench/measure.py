@@ -36,7 +36,7 @@ PACKAGE_MODELS = ("bunny.obj", "engine.glb")
 DATA_MODELS = ("blob.off", "blocks.ply", "bracket.obj", "leaves.glb", "room.obj", "shells.stl")
 
 LARGEST_ON_GPU = 60_000  # vertices of a model: software takes up to 0.7 ms for each by masks
-SAMPLE = 300 if TRIAL else 4000
+SAMPLE = 300 if TRIAL else 20_000  # points of the surface
 ROUNDS = 3
 
 
@@ -172,13 +172,24 @@ def compare(build, path, *options):
         return json.loads(file.read_text()), shown
 
 
+def flat(row):
+    """A row without what a page never shows; row["seen"]["rmse"] is flat["seen_rmse"]."""
+    result = {}
+    for key, value in row.items():
+        if key in ("seen", "solve"):
+            result.update({f"{key}_{name}": error for name, error in value.items()})
+        elif key not in ("settings", "worst", "rounds"):
+            result[key] = value
+    return result
+
+
 def condensed(scene, name, group):
     """A scene of the frontier without what a page never shows."""
-    rows = [{key: value for key, value in row.items() if key not in ("settings", "worst", "rounds")}
-            for row in scene["rows"]]
+    rows = [flat(row) for row in scene["rows"]]
     build_s = {row["engine"]: row["build_s"] for row in rows if row["setting"] in ("good", "64 rays")}
     return {"name": name, "group": group, "vertices": scene["vertices"],
-            "triangles": scene["triangles"], "reference": scene["reference"],
+            "triangles": scene["triangles"], "receivers": scene["receivers"],
+            "reference": scene["reference"], "floor": scene["floor"],
             "build_over_embree": build_s["masks"] / build_s["rays"] if build_s.get("rays") else None,
             "ratios": scene["ratios"], "rows": rows}
 
@@ -239,7 +250,7 @@ def part_gpu(build):
         row = {"scene": name, "vertices": scene["vertices"]}
         for line in scene["rows"]:
             if line["engine"] == "masks":
-                row[line["settings"]["device"]] = {key: line[key] for key in ("rmse", "max")}
+                row[line["settings"]["device"]] = {key: line[key]["rmse"] for key in ("seen", "solve")}
         text = run(build / "bin/gpu_tables", "--backend", "egl", "--largest-masks", LARGEST_ON_GPU, path)
         for line in tables_of(text)[0]:
             row[line["engine"]] = {key: line[key] for key in

@@ -25,7 +25,7 @@ BAKES = [
     ("disks", "draft", []), ("disks", "good", []), ("disks", "best", []),
     ("rays", None, ["--rays", "16"]),
 ]
-TIMES = ("build_s", "solve_s", "read_s", "us_per_vertex", "seconds", "embree_ratio",
+TIMES = ("build_s", "solve_s", "read_s", "fit_s", "us_per_receiver", "seconds", "embree_ratio",
          "embree_ratio_with_builds", "extrapolated", "rounds", "from_cache")
 
 

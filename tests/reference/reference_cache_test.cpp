@@ -47,7 +47,8 @@ protected:
 
 bool same_bytes(const Reference& a, const Reference& b)
 {
-    return same_bytes(a.occlusion, b.occlusion) && a.noise == b.noise && a.change == b.change;
+    return same_bytes(a.occlusion, b.occlusion) && a.noise == b.noise && a.change == b.change &&
+           a.half_difference == b.half_difference;
 }
 
 TEST_F(ReferenceCache, SecondTimeComesFromTheFileWithTheSameBytes)
@@ -147,6 +148,34 @@ TEST_F(ReferenceCache, StatedNoiseIsTheRealOne)
         EXPECT_LT(reference.noise, 1.5 * real) << rays;
         EXPECT_GT(reference.noise, real / 1.5) << rays;
     }
+}
+
+// As noisy as their mean, receiver by receiver.
+TEST_F(ReferenceCache, HalvesDifferAsMuchAsTheNoiseSays)
+{
+    const Reference reference = trace(64);
+    ASSERT_EQ(reference.half_difference.size(), receivers_.size());
+    double squares = 0.0;
+    for (const float difference : reference.half_difference)
+        squares += difference * difference;
+    EXPECT_GT(reference.noise, 0.0);
+    EXPECT_NEAR(std::sqrt(squares / static_cast<double>(receivers_.size())), reference.noise, 1e-7);
+}
+
+TEST_F(ReferenceCache, IllDefinedReceiversNeedNotBeFound)
+{
+    ReferenceOptions options;
+    options.rays = 64;
+    options.find_ill_defined = false;
+    const auto without = [&] { return trace_reference(geometry_, receivers_, options); };
+    const Reference first = without();
+    EXPECT_TRUE(first.change.empty());
+    EXPECT_TRUE(first.well_defined(0));
+    EXPECT_TRUE(same_bytes(first.occlusion, trace(64).occlusion));
+    const Reference second = without();
+    EXPECT_TRUE(second.from_cache);
+    EXPECT_TRUE(same_bytes(first, second));
+    EXPECT_EQ(files().size(), 2u);
 }
 
 TEST_F(ReferenceCache, CancelledLeavesNothing)

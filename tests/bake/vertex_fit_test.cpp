@@ -1,0 +1,171 @@
+#include "bake/vertex_fit.h"
+
+#include "differences.h"
+#include "engines/threads.h"
+#include "scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace surfelao {
+namespace {
+
+using scenes::operator+;
+
+constexpr glm::vec3 kSheetNormal{0, 0, 1};
+
+/// A mesh with its fit, answered by a function of the place in the scene.
+struct Fitted {
+    explicit Fitted(Scene scene)
+        : mesh(make_mesh(std::move(scene))), fit(mesh.geometry, mesh.surface, {})
+    {
+    }
+    std::vector<Occlusion> solve(const std::function<double(glm::dvec3)>& occlusion) const
+    {
+        std::vector<Occlusion> answers;
+        for (const SurfacePoint& point : fit.samples().points) {
+            const glm::uvec3 t = mesh.geometry.triangles[point.triangle];
+            const std::vector<glm::dvec3>& p = mesh.scene.positions;
+            const glm::dvec2 at(point.at);
+            answers.push_back({static_cast<float>(occlusion((1.0 - at.x - at.y) * p[t.x] +
+                                                            at.x * p[t.y] + at.y * p[t.z])),
+                               kSheetNormal});
+        }
+        return fit.solve(answers);
+    }
+
+    Mesh mesh;
+    VertexFit fit;
+};
+
+TEST(VertexFit, ConstantIsKept)
+{
+    const Fitted sphere(scenes::bumpy_sphere(12));
+    for (const Occlusion& value : sphere.solve([](glm::dvec3) { return 0.3; }))
+        ASSERT_NEAR(value.occlusion, 0.3, 1e-6);
+}
+
+// What vertices can hold is found again, but for the smoothness, which flattens it at the rim.
+TEST(VertexFit, LinearIsFoundAgain)
+{
+    const auto linear = [](glm::dvec3 p) { return 0.2 + 0.3 * p.x + 0.4 * p.y; };
+    const Fitted sheet(scenes::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 8));
+    const std::vector<Occlusion> values = sheet.solve(linear);
+    for (std::size_t v = 0; v < values.size(); ++v)
+        ASSERT_NEAR(values[v].occlusion, linear(sheet.mesh.scene.positions[v]), 2e-2) << v;
+}
+
+/// Values at the vertices of two sheets that meet at y = 0 without sharing vertices there: the
+/// first is closed, the second open.
+std::vector<Occlusion> values_of_two_sheets(glm::dvec3 second_side)
+{
+    const Fitted sheets(scenes::sheet({0, -1, 0}, {1, 0, 0}, {0, 1, 0}, 2) +
+                        scenes::sheet({0, 0, 0}, {1, 0, 0}, second_side, 2));
+    return sheets.solve([](glm::dvec3 p) { return p.y < 0.0 ? 1.0 : 0.0; });
+}
+
+// Vertices 6 to 8 of the first sheet stand where 0 to 2 of the second one do.
+TEST(VertexFit, UnknownsAreMergedOverSeams)
+{
+    const std::vector<Occlusion> values = values_of_two_sheets({0, 1, 0});
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(values[6 + i].occlusion, values[9 + i].occlusion);
+        EXPECT_NEAR(values[6 + i].occlusion, 0.5, 0.2);
+    }
+}
+
+TEST(VertexFit, UnknownsAreNotMergedOverCreases)
+{
+    const std::vector<Occlusion> values = values_of_two_sheets({0, 1e-9, 1});
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(values[6 + i].occlusion, 1.0, 1e-6);
+        EXPECT_NEAR(values[9 + i].occlusion, 0.0, 1e-6);
+    }
+}
+
+TEST(VertexFit, BentNormalsWeighByVisibility)
+{
+    const Fitted triangle(scenes::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
+    std::vector<Occlusion> answers(triangle.fit.samples().points.size(), {0.0f, {1, 0, 0}});
+    for (std::size_t i = 0; i < answers.size(); i += 2)
+        answers[i] = {1.0f, {0, 1, 0}};  // closed: their bent normals are nobody's
+    for (const Occlusion& value : triangle.fit.solve(answers))
+        EXPECT_NEAR(value.bent_normal.x, 1.0f, 1e-6f);
+    for (Occlusion& answer : answers)
+        answer.occlusion = 1.0f;
+    for (const Occlusion& value : triangle.fit.solve(answers))
+        EXPECT_EQ(value.bent_normal, kSheetNormal);  // nothing is open: the vertex's own normal
+}
+
+TEST(VertexFit, UnusedVerticesAreNamed)
+{
+    Scene scene = scenes::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    scene.positions.push_back({1, 1, 0});
+    const Fitted fitted(scene);
+    EXPECT_EQ(fitted.fit.unused_vertices(), std::vector<std::uint32_t>{3});
+    EXPECT_EQ(fitted.solve([](glm::dvec3) { return 1.0; })[3].occlusion, 0.0f);
+}
+
+TEST(VertexFit, SameBytesForAnyNumberOfThreads)
+{
+    const auto wavy = [](glm::dvec3 p) { return 0.5 + 0.4 * std::sin(9.0 * p.x + 5.0 * p.z); };
+    const Scene scene = scenes::bumpy_sphere(40);  // several blocks of unknowns
+    const auto solve = [&](int threads) {
+        const ThreadLimit limit(threads);
+        return Fitted(scene).solve(wavy);
+    };
+    const std::vector<Occlusion> one = solve(1);
+    EXPECT_TRUE(same_bytes(one, solve(2)));
+    EXPECT_TRUE(same_bytes(one, solve(5)));
+}
+
+/// A sheet of 3 * 3 quads, each cut along its first or its second diagonal.
+Scene cut_sheet(bool along_second)
+{
+    Scene scene = scenes::sheet({0, 0, 0}, {1, 0, 0}, {0, 1.2, 0}, 3);
+    for (std::size_t t = 0; along_second && t < scene.triangles.size(); t += 2) {
+        const std::uint32_t row = static_cast<std::uint32_t>(t) / 6, column = t / 2 % 3;
+        const std::uint32_t a = 4 * row + column, b = a + 1, c = a + 5, d = a + 4;
+        const glm::uvec3 first = scene.triangles[t];
+        const bool has_ac = first == glm::uvec3(a, b, c);
+        scene.triangles[t] = has_ac ? glm::uvec3(a, b, d) : glm::uvec3(a, b, c);
+        scene.triangles[t + 1] = has_ac ? glm::uvec3(b, c, d) : glm::uvec3(a, c, d);
+    }
+    return scene;
+}
+
+TEST(VertexFit, QuadsDoNotDependOnTheirCut)
+{
+    const auto curved = [](glm::dvec3 p) { return p.x * p.x + 0.3 * p.y * (1.0 - p.x); };
+    const Fitted one(cut_sheet(false)), other(cut_sheet(true));
+    ASSERT_NE(one.mesh.scene.triangles, other.mesh.scene.triangles);
+    const std::vector<Occlusion> values = one.solve(curved), others = other.solve(curved);
+    for (std::size_t v = 0; v < values.size(); ++v)
+        EXPECT_NEAR(values[v].occlusion, others[v].occlusion, 1e-3) << v;  // where it stops
+}
+
+TEST(FitSamples, StandForTheWholeAreaAndAreAtLeastOneATriangle)
+{
+    const Mesh mesh = make_mesh(scenes::sheet({0, 0, 0}, {3, 0, 0}, {0, 3, 0}, 4) +
+                                scenes::triangle({0, 0, 1}, {.01, 0, 1}, {0, .01, 1}));
+    const VertexFit fit(mesh.geometry, mesh.surface, {});
+    const SurfaceSamples& samples = fit.samples();
+    ASSERT_EQ(samples.areas.size(), samples.points.size());
+    std::vector<double> areas(mesh.geometry.triangles.size(), 0.0);
+    for (std::size_t s = 0; s < samples.points.size(); ++s) {
+        const glm::vec2 at = samples.points[s].at;
+        EXPECT_GE(at.x, 0.0f);
+        EXPECT_GE(at.y, 0.0f);
+        EXPECT_LE(at.x + at.y, 1.0f + 1e-6f);
+        areas[samples.points[s].triangle] += samples.areas[s];
+    }
+    const double diagonal = mesh.geometry.frame.diagonal;
+    for (std::size_t t = 0; t < 32; t += 2)  // two triangles are a quad
+        EXPECT_NEAR((areas[t] + areas[t + 1]) * diagonal * diagonal, 9.0 / 16.0, 1e-5) << t;
+    EXPECT_NEAR(areas[32] * diagonal * diagonal, 5e-5, 1e-8);
+}
+
+}  // namespace
+}  // namespace surfelao
