@@ -4,6 +4,7 @@
 #include "reference/rays.h"
 #include "scenes.h"
 #include "surfels/errors.h"
+#include "tests/vertex_receivers.h"
 
 #include <gtest/gtest.h>
 
@@ -38,7 +39,7 @@ TEST(Smoothing, SpreadsOneVertexOverItsRing)
 TEST(Smoothing, TakesNoiseOfFewRaysAwayOnASmoothMesh)
 {
     const Geometry geometry = make_geometry(scenes::bumpy_sphere(24));
-    const std::vector<Receiver> receivers = receivers_at_vertices(geometry, 1e-4f);
+    const std::vector<Receiver> receivers = vertex_receivers(geometry);
     const RayScene scene(geometry, RayScene::Build::fast);
     RayOptions options;
     options.rays = 1024;
