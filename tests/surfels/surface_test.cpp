@@ -8,10 +8,12 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
+#include <vector>
 
 namespace surfelao {
 namespace {
@@ -19,6 +21,7 @@ namespace {
 using scenes::operator+;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
 constexpr glm::vec3 kUp{0, 0, 1}, kDown{0, 0, -1};
 
 Scene cube(int cells = 1)
@@ -88,15 +91,18 @@ TEST(CornerNormals, ACubeHasAWedgeForEachSideOrOneForEachVertexAsTheCreaseSays)
             1e-6f);
 }
 
-// Weights by area or by count would favour the side on which two triangles meet.
+// Weights by area or by count would favour the side on which two triangles meet. Up to 180 degrees
+// all is smooth at once; at 100 it turns out to be when each pair is looked at.
 TEST(CornerNormals, DoNotDependOnHowQuadsAreCut)
 {
-    const NormalSettings all_smooth{.crease = 180.0f};
-    const Mesh one = make_mesh(cube(2), all_smooth);
-    const Mesh other = make_mesh(cut_otherwise(cube(2)), all_smooth);
-    ASSERT_EQ(one.surface.normals.size(), other.surface.normals.size());
-    for (std::size_t v = 0; v < one.surface.normals.size(); ++v)
-        EXPECT_LT(glm::distance(one.surface.normals[v], other.surface.normals[v]), 1e-6f) << v;
+    for (const float crease : {180.0f, 100.0f}) {
+        const Mesh one = make_mesh(cube(2), {.crease = crease});
+        const Mesh other = make_mesh(cut_otherwise(cube(2)), {.crease = crease});
+        ASSERT_EQ(one.surface.normals.size(), one.scene.positions.size());
+        ASSERT_EQ(one.surface.normals.size(), other.surface.normals.size());
+        for (std::size_t v = 0; v < one.surface.normals.size(); ++v)
+            EXPECT_LT(glm::distance(one.surface.normals[v], other.surface.normals[v]), 1e-6f) << v;
+    }
 }
 
 TEST(CornerNormals, FlatAreThoseOfTheFacesWhateverTheFileSays)
@@ -109,17 +115,21 @@ TEST(CornerNormals, FlatAreThoseOfTheFacesWhateverTheFileSays)
     EXPECT_EQ(mesh.surface.corners_from_file, 0u);
 }
 
-// Of unlike angles on both sides, so that the mean lies beside the middle.
+// Of like and unlike angles on both sides: the mean lies in the middle or beside it.
 TEST(CornerNormals, FacesAreSmoothTogetherUpToTheCreaseExactly)
 {
-    for (const double bend_deg : {39.9, 40.1}) {
-        const double bend = bend_deg / 180.0 * std::numbers::pi;
-        Scene scene;
-        scene.positions = {
-            {0, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0.1 * std::cos(bend), 0.5, 0.1 * std::sin(bend)}};
-        scene.triangles = {{0, 1, 2}, {1, 0, 3}};
-        const Surface surface = make_surface(scene, make_geometry(scene), {.crease = 40.0f});
-        EXPECT_EQ(surface.normals.size(), bend_deg < 40.0 ? 4u : 6u) << bend_deg;
+    for (const double width : {1.0, 0.1}) {
+        for (const double bend_deg : {39.9, 40.1}) {
+            const double bend = bend_deg / 180.0 * std::numbers::pi;
+            Scene scene;
+            scene.positions = {{0, 0, 0},
+                               {0, 1, 0},
+                               {-1, 0.5, 0},
+                               {width * std::cos(bend), 0.5, width * std::sin(bend)}};
+            scene.triangles = {{0, 1, 2}, {1, 0, 3}};
+            const Surface surface = make_surface(scene, make_geometry(scene), {.crease = 40.0f});
+            EXPECT_EQ(surface.normals.size(), bend_deg < 40.0 ? 4u : 6u) << bend_deg;
+        }
     }
 }
 
@@ -141,19 +151,25 @@ TEST(CornerNormals, DoubledFacesBackToBackKeepTheirOwnSides)
 TEST(CornerNormals, AHubOfManyBentFacesCostsNoMore)
 {
     constexpr std::uint32_t kCount = 200'000;
+    std::mt19937 random(1);
+    const auto step = [&] { return random() / 2147483648.0 - 1.0; };
     Scene scene;
     scene.positions.push_back({0, 0, 0});
     for (std::uint32_t i = 0; i < kCount; ++i) {
-        const double angle = 2.0 * std::numbers::pi * i / kCount;
-        scene.positions.emplace_back(std::cos(angle), std::sin(angle), i % 2);
-        scene.triangles.emplace_back(0, 1 + i, 1 + (i + 1) % kCount);
+        for (int corner = 0; corner < 2; ++corner) {
+            const double x = step(), y = step(), z = step();
+            scene.positions.emplace_back(x, y, z);
+        }
+        scene.triangles.emplace_back(0, 1 + 2 * i, 2 + 2 * i);
     }
     const Geometry geometry = make_geometry(scene);
-    Stopwatch watch;
-    const Surface surface = make_surface(scene, geometry, {.crease = 20.0f});
-    EXPECT_LT(watch.lap(), 10.0);
-    for (const glm::vec3 normal : surface.normals)
-        ASSERT_NEAR(glm::length(normal), 1.0f, 1e-5f);
+    for (const NormalSource source : {NormalSource::smooth, NormalSource::flat}) {
+        Stopwatch watch;
+        const Surface surface = make_surface(scene, geometry, {source, 20.0f});
+        EXPECT_LT(watch.lap(), 10.0);
+        for (const glm::vec3 normal : surface.normals)
+            ASSERT_NEAR(glm::length(normal), 1.0f, 1e-5f);
+    }
 }
 
 TEST(CornerNormals, CreasesOutOfRangeAreRefused)
@@ -191,8 +207,7 @@ TEST(FileNormals, ThatCannotBeAreReplacedAndCounted)
 {
     Scene scene = square();  // vertices 0 and 3 have two corners each
     for (const glm::vec3 odd :
-         {glm::vec3(kNan, 0, 1), glm::vec3(0, std::numeric_limits<float>::infinity(), 0),
-          glm::vec3(0.5f, 0, -1)}) {
+         {glm::vec3(kNan, 0, 1), glm::vec3(0, kInfinite, 0), glm::vec3(0.5f, 0, -1)}) {
         scene.normals.values = {kUp, kUp, kUp, kUp};
         scene.normals.values[scene.triangles[0].y] = odd;
         const Mesh mesh = make_mesh(scene);
@@ -211,9 +226,10 @@ TEST(FileNormals, OnTheOtherSideAreKeptWhereTheFileIsBelieved)
     Scene scene = square();
     scene.normals.values.assign(4, kDown);
     scene.normals.values[scene.triangles[0].y] = glm::vec3(kNan);
+    scene.normals.values[scene.triangles[1].z] = glm::vec3(kInfinite);
     const Mesh mesh = make_mesh(scene, {.source = NormalSource::file});
-    EXPECT_EQ(mesh.surface.corners_from_file, 5u);
-    EXPECT_EQ(mesh.surface.replaced_corners, 1u);
+    EXPECT_EQ(mesh.surface.corners_from_file, 4u);
+    EXPECT_EQ(mesh.surface.replaced_corners, 2u);
     EXPECT_LT(glm::distance(corner_normal(mesh.surface, 0, 0), kDown), 1e-6f);
 }
 
@@ -330,6 +346,17 @@ TEST(ReceiversAtWedges, InACornerStandInsideTheirOwnFace)
     }
 }
 
+// Not where the little way into the triangle has taken them.
+TEST(ReceiversAtWedges, FaceAlongTheWedgesNormalsAtBordersToo)
+{
+    const Mesh mesh =
+        make_mesh(scenes::height_field(4, [](double x, double) { return 0.3 * x * x; }));
+    const std::vector<Receiver> receivers = receivers_at_wedges(mesh.geometry, mesh.surface);
+    ASSERT_EQ(receivers.size(), mesh.surface.normals.size());
+    for (std::size_t w = 0; w < receivers.size(); ++w)
+        EXPECT_EQ(receivers[w].normal, mesh.surface.normals[w]);
+}
+
 TEST(AnglesOfWedges, AreThoseOfTheSurfaceAroundTheVertex)
 {
     constexpr float kQuarter = 0.5f * std::numbers::pi_v<float>;
@@ -362,6 +389,37 @@ TEST(MakeMesh, SplitsFreeVerticesAtCreases)
     EXPECT_EQ(mesh.scene.parts[0].vertex_count, 24u);
     EXPECT_EQ(mesh.geometry.welded[23], make_geometry(mesh.scene).welded[23]);
     EXPECT_LT(mesh.geometry.welded[23], 8u);
+}
+
+// Three faces bent by 31 degrees each: the middle one is smooth with both others, which are not
+// with each other. So their corners at the hub have three normals, of which two are nearly alike.
+TEST(MakeMesh, KeepsOneVertexForWedgesThatAreNearlyAlike)
+{
+    glm::dvec3 n[3];
+    for (int face = 0; face < 3; ++face) {
+        const double angle = (face - 1) * 35.0 / 180.0 * std::numbers::pi;
+        n[face] = glm::normalize(glm::dvec3(std::sin(angle), 0.5, std::cos(angle)));
+    }
+    const glm::dvec3 left = glm::normalize(glm::cross(n[0], n[1]));
+    const glm::dvec3 right = glm::normalize(glm::cross(n[1], n[2]));
+    Scene scene;
+    scene.positions = {{0, 0, 0},
+                       3.0 * left + glm::cross(left, n[0]),
+                       left,
+                       right,
+                       3.0 * right + glm::cross(n[2], right)};
+    scene.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}};
+    scene.parts.resize(1);
+    scene.parts[0].vertex_count = 5;
+    scene.parts[0].triangle_count = 3;
+    scene.free_vertices = true;
+    const Geometry geometry = make_geometry(scene);
+    EXPECT_EQ(make_surface(scene, geometry).normals.size(), 7u);
+    const Scene split = make_mesh(scene).scene;
+    ASSERT_EQ(split.positions.size(), 6u);
+    EXPECT_EQ(split.positions[5], scene.positions[0]);
+    EXPECT_EQ(split.triangles[0].x, split.triangles[1].x);
+    EXPECT_NE(split.triangles[0].x, split.triangles[2].x);
 }
 
 TEST(MakeMesh, LeavesSmoothFreeVerticesWhole)

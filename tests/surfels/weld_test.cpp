@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <random>
 #include <set>
+#include <utility>
 #include <vector>
 
 namespace surfelao {
@@ -132,6 +133,31 @@ TEST(Weld, JoinsWithinItsDistanceAndNotBeyond)
             EXPECT_EQ(count_places(weld(scene, 1.0)), places) << gap << " at " << at;
         }
     }
+}
+
+/// Its corner 0 at (x, 0, 0), the others `size` away.
+Scene corner_at(double x, double size, double direction)
+{
+    return scenes::triangle({x, 0, 0}, {x, size, 0}, {x + direction * size, 0, size});
+}
+
+TEST(Weld, TheSmallerOfTwoTrianglesSaysWhatIsNoise)
+{
+    const Scene large = corner_at(0.0, 0.1, -1.0), small = corner_at(1.5e-6, 4e-6, 1.0);
+    EXPECT_EQ(count_places(weld(large + small, 1.0)), 6u);
+    EXPECT_EQ(count_places(weld(small + large, 1.0)), 6u);
+}
+
+TEST(Weld, CornersJoinTheirOwnPlaceOfSeveralNearby)
+{
+    // 0 and 3 too far apart; 6 beside 0; 9 at exactly 6
+    const std::vector<std::uint32_t> welded =
+        weld(corner_at(2e-7, 0.1, 1.0) + corner_at(3.4e-6, 0.11, 1.0) + corner_at(4e-7, 0.12, 1.0) +
+                 corner_at(4e-7, 0.13, 1.0),
+             1.0);
+    EXPECT_EQ(welded[3], 3u);
+    EXPECT_EQ(welded[6], 0u);
+    EXPECT_EQ(welded[9], 0u);
 }
 
 TEST(Weld, EqualPositionsAreOnePlaceWhereverTheyStand)
