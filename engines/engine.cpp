@@ -1,6 +1,5 @@
 #include "engines/engine.h"
 
-#include "engines/device_solution.h"
 #include "gpu/answers.h"
 #include "gpu/context.h"
 #include "gpu/gpu_disks.h"
@@ -225,33 +224,24 @@ void check_receivers(std::span<const Receiver> receivers)
 }
 
 /// The context must be current.
-DeviceSolution solve_on_gpu(const Prepared::Impl& impl, std::span<const Receiver> receivers,
-                            const SolveSettings& settings, const Progress& progress)
+Solution solve_on_gpu(const Prepared::Impl& impl, std::span<const Receiver> receivers,
+                      const SolveSettings& settings, const Progress& progress)
 {
-    Stopwatch watch;
+    Solution solution;
     if (impl.gpu_masks) {
-        TextureBuffer answers =
-            impl.gpu_masks->solve(receivers, mask_options(impl.choice, settings), progress);
-        return {std::move(answers), receivers.size(), watch.lap(), std::nullopt};
+        solution.occlusion = read_answers(
+            impl.gpu_masks->solve(receivers, mask_options(impl.choice, settings), progress),
+            receivers.size());
+    } else {
+        const GpuDiskResult solved =
+            impl.gpu_disks->solve(receivers, disk_options(settings), progress);
+        solution.occlusion = read_answers(solved.answers, receivers.size());
+        solution.residual = residual_of(solved.residuals);
     }
-    GpuDiskResult solved = impl.gpu_disks->solve(receivers, disk_options(settings), progress);
-    return {std::move(solved.answers), receivers.size(), watch.lap(),
-            residual_of(solved.residuals)};
+    return solution;
 }
 
 }  // namespace
-
-DeviceSolution solve_on_device(const Prepared& prepared, std::span<const Receiver> receivers,
-                               const SolveSettings& settings, const Progress& progress)
-{
-    const Prepared::Impl& impl = prepared.impl();
-    require(impl.choice.device == Device::gpu && impl.choice.context != nullptr,
-            "device must be gpu and context given for answers that stay on it");
-    check_settings(impl.choice, settings);
-    check_receivers(receivers);
-    const Current current(impl);
-    return solve_on_gpu(impl, receivers, settings, progress);
-}
 
 Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
                const SolveSettings& settings, const Progress& progress)
@@ -259,18 +249,14 @@ Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
     const Prepared::Impl& impl = prepared.impl();
     check_settings(impl.choice, settings);
     check_receivers(receivers);
+    std::optional<Current> current;
+    if (impl.choice.device == Device::gpu)
+        current.emplace(impl);
     Solution solution;
-    if (impl.choice.device == Device::gpu) {
-        const Current current(impl);
-        const DeviceSolution solved = solve_on_gpu(impl, receivers, settings, progress);
-        Stopwatch watch;
-        solution.occlusion = read_answers(solved.answers, solved.count);
-        solution.residual = solved.residual;
-        solution.seconds = solved.seconds + watch.lap();
-        return solution;
-    }
     Stopwatch watch;
-    if (impl.masks) {
+    if (current) {
+        solution = solve_on_gpu(impl, receivers, settings, progress);
+    } else if (impl.masks) {
         solution.occlusion =
             solve_masks(*impl.masks, receivers, mask_options(impl.choice, settings), progress);
     } else if (impl.disks) {

@@ -23,11 +23,6 @@ public:
         return true;
     }
     void release() const override { foreign_.release(); }
-    std::unique_ptr<GlPlatform> share(std::string& reasons) const override
-    {
-        add_reason(reasons, "window: only its owner can make another");
-        return nullptr;
-    }
 
 private:
     ForeignContext foreign_;
@@ -185,16 +180,6 @@ GlContext GlContext::create(GlBackend backend)
         }
     }
     throw std::runtime_error("no OpenGL context can be had: " + reasons);
-}
-
-GlContext GlContext::create_shared(const GlContext& with)
-{
-    std::string reasons;
-    auto impl = std::make_unique<Impl>();
-    impl->platform = with.impl_->platform->share(reasons);
-    if (impl->platform == nullptr)
-        throw std::runtime_error("no OpenGL context can be shared: " + reasons);
-    return GlContext(std::move(impl));
 }
 
 GlContext GlContext::adopt(ForeignContext foreign)

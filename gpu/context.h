@@ -53,11 +53,6 @@ public:
     /// failed when there is none of at least OpenGL 3.3.
     [[nodiscard]] static GlContext create(GlBackend backend = GlBackend::automatic);
 
-    /// Another one on the same device that shares objects with `with` (objects.h says which), for
-    /// work in a second thread, and makes it current in this one. Not of a context that was
-    /// adopted: who made that can make another. Same errors.
-    [[nodiscard]] static GlContext create_shared(const GlContext& with);
-
     /// Takes part in somebody else's context, and makes it current. Same errors.
     [[nodiscard]] static GlContext adopt(ForeignContext foreign);
 

@@ -2,12 +2,6 @@
 /// context it was made with (context.h), which must be current where it is used or destroyed, and
 /// must outlive it. Constructors throw std::runtime_error when the device refuses (out of memory,
 /// beyond a limit) and for sizes of zero, naming the object.
-///
-/// Among contexts that share objects (GlContext::create_shared, or a window made to share) Buffer,
-/// TextureBuffer and Texture2D belong to all: they may be bound, read and destroyed where any of
-/// them is current, as long as the one they were made with lives. What one context has written
-/// another sees once GlContext::finish has returned in the first. Framebuffer and VertexArray are
-/// never shared.
 #pragma once
 
 #include "gpu/context.h"

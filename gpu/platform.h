@@ -14,8 +14,6 @@ public:
     virtual void* get_proc(const char* name) const = 0;
     virtual bool make_current() const = 0;  ///< false: the driver refuses
     virtual void release() const = 0;
-    /// Another context that shares objects with this one; null on failure.
-    virtual std::unique_ptr<GlPlatform> share(std::string& reasons) const = 0;
 };
 
 // On failure all of these append the reason to `reasons`, which is a list for people to read.

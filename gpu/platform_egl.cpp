@@ -106,15 +106,11 @@ public:
     {
         egl().MakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     }
-    std::unique_ptr<GlPlatform> share(std::string& reasons) const override
-    {
-        return make(name_, display_, context_, reasons);
-    }
 
     /// A 3.3 core context without a surface on the display, told of a device reset where that can
-    /// be had, which shares objects with the other (EGL_NO_CONTEXT: with none).
+    /// be had.
     static std::unique_ptr<GlPlatform> make(const std::string& name, EGLDisplay display,
-                                            EGLContext with, std::string& reasons)
+                                            std::string& reasons)
     {
         if (egl().BindAPI(EGL_OPENGL_API) != EGL_TRUE) {
             add_reason(reasons, name + ": has no OpenGL, " + last_error());
@@ -130,10 +126,11 @@ public:
                                             EGL_LOSE_CONTEXT_ON_RESET,
                                             EGL_NONE};
         EGLContext context =
-            egl().CreateContext(display, EGL_NO_CONFIG_KHR, with, attributes.data());
+            egl().CreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
         if (context == EGL_NO_CONTEXT) {
             attributes[6] = EGL_NONE;
-            context = egl().CreateContext(display, EGL_NO_CONFIG_KHR, with, attributes.data());
+            context =
+                egl().CreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
         }
         if (context == EGL_NO_CONTEXT) {
             add_reason(reasons, name + ": makes no OpenGL 3.3 core context, " + last_error());
@@ -165,7 +162,7 @@ std::unique_ptr<GlPlatform> make_on_display(const std::string& name, EGLDisplay 
     if (!has_word(extensions, "EGL_KHR_no_config_context") ||
         !has_word(extensions, "EGL_KHR_surfaceless_context"))
         return fail("cannot draw without a window");
-    return EglPlatform::make(name, display, EGL_NO_CONTEXT, reasons);
+    return EglPlatform::make(name, display, reasons);
 }
 
 std::vector<EGLDeviceEXT> all_devices()

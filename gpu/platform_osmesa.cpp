@@ -50,13 +50,9 @@ public:
         return osmesa().make_current(context_, pixels_.data(), kGlUnsignedByte, kSide, kSide) != 0;
     }
     void release() const override { osmesa().make_current(nullptr, nullptr, 0, 0, 0); }
-    std::unique_ptr<GlPlatform> share(std::string& reasons) const override
-    {
-        return make(context_, reasons);
-    }
 
-    /// A 3.3 core context that shares objects with the other, which may be null.
-    static std::unique_ptr<GlPlatform> make(OsmesaContext with, std::string& reasons)
+    /// A 3.3 core context.
+    static std::unique_ptr<GlPlatform> make(std::string& reasons)
     {
         const int attributes[] = {kOsmesaFormat,
                                   kGlRgba,
@@ -69,7 +65,7 @@ public:
                                   kOsmesaMinor,
                                   3,
                                   0};
-        OsmesaContext context = osmesa().create(attributes, with);
+        OsmesaContext context = osmesa().create(attributes, nullptr);
         if (context == nullptr) {
             add_reason(reasons, "OSMesa: makes no OpenGL 3.3 core context");
             return nullptr;
@@ -91,7 +87,7 @@ std::unique_ptr<GlPlatform> make_osmesa_platform(std::string& reasons)
         add_reason(reasons, "OSMesa: " + osmesa().error);
         return nullptr;
     }
-    return OsmesaPlatform::make(nullptr, reasons);
+    return OsmesaPlatform::make(reasons);
 }
 
 }  // namespace surfelao

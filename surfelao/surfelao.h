@@ -8,18 +8,20 @@
 ///
 ///     Scene                  triangles in world space: read_scene("mesh.ply"), or from arrays:
 ///                            make_scene(positions, triangles)
-///     Geometry               the same clean and welded, in the unit frame: make_geometry(scene)
-///     Prepared               what an engine builds of it, once: prepare(geometry, choice)
+///     Mesh                   the same clean and welded, in the unit frame (mesh.geometry), with
+///                            corner normals (mesh.surface): make_mesh(scene)
+///     Prepared               what an engine builds of it, once: prepare(mesh.geometry, choice)
 ///     std::vector<Receiver>  where occlusion is asked for, each a point and a normal in the unit
-///                            frame: receivers_at_vertices(geometry, offset), or your own
+///                            frame: receivers_at_wedges(mesh.geometry, mesh.surface), the
+///                            vertices first, receivers_at() anywhere on the surface, or your own
 ///     Solution               an Occlusion for each receiver, in their order, as often as you like:
 ///                            solve(prepared, receivers, settings)
 ///     file                   write_scene("out.ply", scene, solution.occlusion), if you want one
 ///
 /// What is measured. surfels/occlusion.h is the definition: 0 is open, 1 is closed; the bent normal
-/// points to the middle of what is open. Lengths (positions of receivers, offset, max_distance) are
-/// in diagonals of the scene's bounding box: geometry.frame turns world space into the unit frame,
-/// unit = (world - centre) / diagonal, and definition_of() a user's distance into one.
+/// points to the middle of what is open. Lengths (positions of receivers, offsets, max_distance)
+/// are in diagonals of the scene's bounding box: geometry.frame turns world space into the unit
+/// frame, unit = (world - centre) / diagonal, and definition_of() a user's distance into one.
 ///
 /// Choices and settings. EngineChoice says who answers: masks (the default), disks (a preview) or
 /// rays (any exactness), on the CPU or the GPU. SolveSettings say what is asked and how exactly;
@@ -36,7 +38,7 @@
 /// to.
 ///
 /// Threads. Everything runs on all cores, by TBB; ThreadLimit (engines/threads.h) sets a limit.
-/// Geometry and Prepared never change, so any number of threads may solve with one Prepared at once
+/// Mesh and Prepared never change, so any number of threads may solve with one Prepared at once
 /// on the CPU; on the GPU one at a time. Progress is called from any of these threads, one at a
 /// time.
 ///
@@ -44,7 +46,7 @@
 /// same machine. Another processor may have other instructions: single bits of masks then differ
 /// (Instructions::avx2 is what most machines have). GPUs differ in their last digits.
 ///
-/// Costs. n vertices, r receivers. make_geometry O(n), on one core; prepare O(n log n); solve
+/// Costs. n vertices, r receivers. make_mesh O(n), mostly on one core; prepare O(n log n); solve
 /// O(r log n), rays times `rays`. Masks keep at most 128 bytes a triangle, 250 while they build.
 /// Times and errors, measured: docs/ of the source, and `surfelao compare` for your own mesh.
 #pragma once
@@ -58,3 +60,4 @@
 #include "surfels/progress.h"
 #include "surfels/receiver.h"
 #include "surfels/scene.h"
+#include "surfels/surface.h"

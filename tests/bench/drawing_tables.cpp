@@ -79,8 +79,8 @@ void run(GlBackend backend)
     const Framebuffer target = renderer.make_target(kWidth, kHeight);
     for (const ReportRow& row : kRows) {
         const Model model = make_model(
-            make_geometry(scenes::height_field(row.cells, [](double, double) { return 0.0; })),
-            UpAxis::z, 1e-4f, std::numeric_limits<float>::infinity());
+            make_mesh(scenes::height_field(row.cells, [](double, double) { return 0.0; })),
+            UpAxis::z, {}, std::numeric_limits<float>::infinity());
         renderer.set_model(model);
         const float aspect = static_cast<float>(kWidth) / static_cast<float>(kHeight);
         const Camera camera = frame_points(model.seen, UpAxis::z, aspect, {.elevation_deg = 50});

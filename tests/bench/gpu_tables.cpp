@@ -16,6 +16,7 @@
 #include "scenes.h"
 #include "surfels/stopwatch.h"
 #include "surfels/topology.h"
+#include "tests/vertex_receivers.h"
 #include "tree/disks/disks.h"
 #include "tree/masks/masks.h"
 
@@ -41,7 +42,7 @@ struct World {
     explicit World(const Scene& scene)
     {
         const Geometry geometry = make_geometry(scene);
-        receivers = receivers_at_vertices(geometry, Definition{}.offset);
+        receivers = vertex_receivers(geometry);
         const SurfelCloud cloud = surfels_of(geometry);
         octree = build_octree(cloud.surfels, sides_of(cloud, analyse_topology(geometry)));
         masks = build_mask_tree(geometry);

@@ -18,6 +18,7 @@
 #include "surfels/geometry.h"
 #include "surfels/receiver.h"
 #include "surfels/surfel.h"
+#include "tests/vertex_receivers.h"
 #include "tree/disks/brute_force.h"
 #include "tree/disks/disks.h"
 #include "tree/disks/gather.h"
@@ -216,7 +217,7 @@ int main(int argument_count, char** arguments)
     for (const double vertices : wanted) {
         const int cells = static_cast<int>(std::lround(std::sqrt(vertices / 6.0)));
         const Geometry geometry = make_geometry(scenes::bumpy_sphere(cells));
-        const Receivers receivers = receivers_at_vertices(geometry, Definition{}.offset);
+        const Receivers receivers = vertex_receivers(geometry);
         const double n = static_cast<double>(receivers.size());
 
         std::unique_ptr<Engine> engine;

@@ -1,13 +1,11 @@
 #include "engines/engine.h"
 
 #include "differences.h"
-#include "engines/device_solution.h"
 #include "engines/threads.h"
-#include "gpu/answers.h"
-#include "gpu/context.h"
 #include "scenes.h"
 #include "surfels/errors.h"
 #include "tests/gpu/contexts.h"
+#include "tests/vertex_receivers.h"
 
 #include <gtest/gtest.h>
 
@@ -42,13 +40,13 @@ std::string words(const EngineChoice& choice)
 /// Two sets of receivers of one scene.
 struct World {
     Geometry geometry = make_geometry(scenes::nested_shells(2, 0.2, 6));
-    std::array<std::vector<Receiver>, 2> receivers = {receivers_at_vertices(geometry, 1e-4f),
-                                                      receivers_at_vertices(geometry, 1e-2f)};
+    std::array<std::vector<Receiver>, 2> receivers = {vertex_receivers(geometry),
+                                                      vertex_receivers(geometry, 1e-2f)};
     World() { receivers[1].resize(receivers[1].size() / 3); }
 };
 
 const SolveSettings kSettings[] = {{.quality = kDraft, .rays = 16},
-                                   {.definition = {.max_distance = 0.4f, .offset = 2e-4f},
+                                   {.definition = {.max_distance = 0.4f},
                                     .quality = 1.5f,
                                     .passes = 3,
                                     .strength = 0.8f,
@@ -71,32 +69,6 @@ TEST(Engines, PreparedOnceAnswersLikePreparedAnew)
     }
 }
 
-TEST(Engines, AnswersThatStayOnTheDeviceAreTheSame)
-{
-    const World world;
-    const GlContext window = GlContext::create(GlBackend::osmesa);
-    for (const Engine engine : {Engine::masks, Engine::disks}) {
-        // as a window does it: solved in a thread and a context of its own
-        const GlContext worker = GlContext::create_shared(window);
-        worker.release();
-        std::optional<Prepared> prepared;
-        std::optional<DeviceSolution> found;
-        std::vector<Occlusion> expected;
-        std::thread([&] {
-            prepared.emplace(prepare(
-                world.geometry, {.engine = engine, .device = Device::gpu, .context = &worker}));
-            expected = solve(*prepared, world.receivers[0], kSettings[1]).occlusion;
-            found.emplace(solve_on_device(*prepared, world.receivers[0], kSettings[1]));
-            prepared.reset();
-            worker.release();
-        }).join();
-        window.make_current();
-        ASSERT_EQ(found->count, world.receivers[0].size());
-        EXPECT_TRUE(same_bytes(read_answers(found->answers, found->count), expected))
-            << name_of(engine);
-    }
-}
-
 TEST(Engines, ItsOwnContextGoesWhereverItIsAsked)
 {
     const World world;
@@ -107,16 +79,7 @@ TEST(Engines, ItsOwnContextGoesWhereverItIsAsked)
     }).join();
     here = solve(*prepared, world.receivers[1], kSettings[0]).occlusion;
     EXPECT_TRUE(same_bytes(here, there));
-    EXPECT_THROW(static_cast<void>(solve_on_device(*prepared, world.receivers[1])), SettingsError)
-        << "nobody could use the answers";
     std::thread([&] { prepared.reset(); }).join();
-}
-
-TEST(Engines, AnswersStayOnADeviceThatIsTheGpu)
-{
-    const World world;
-    const Prepared prepared = prepare(world.geometry);
-    EXPECT_THROW(static_cast<void>(solve_on_device(prepared, world.receivers[0])), SettingsError);
 }
 
 TEST(Engines, SolvesAtOnceEqualSolvesOneAfterTheOther)
@@ -172,8 +135,6 @@ TEST(Engines, EveryBadSettingIsRefusedByItsName)
         {"max_distance", all, {.definition = {.max_distance = 0.0f}}},
         {"max_distance", all, {.definition = {.max_distance = kNan}}},
         {"falloff", all, {.definition = {.falloff = Falloff::smooth}}},
-        {"offset", all, {.definition = {.offset = -1.0f}}},
-        {"offset", all, {.definition = {.offset = kInfinite}}},
         {"kernel", {masks}, {.definition = {.kernel = Kernel::bunnell}}},
         {"quality", {masks, disks, gpu}, {.quality = 9.0f}},
         {"quality", {masks, disks, gpu}, {.quality = kNan}},

@@ -7,6 +7,7 @@
 #include "surfels/errors.h"
 #include "tests/engines/worlds.h"
 #include "tests/gpu/contexts.h"
+#include "tests/vertex_receivers.h"
 #include "tree/masks/masks.h"
 
 #include <glm/geometric.hpp>
@@ -116,12 +117,12 @@ Definition unit_definition(const ExactWorld& world, const Geometry& geometry)
 std::vector<Receiver> receivers_of(const ExactWorld& world, const Geometry& geometry)
 {
     if (world.places.empty())
-        return receivers_at_vertices(geometry, world.definition.offset);
+        return vertex_receivers(geometry);
     std::vector<Receiver> receivers;
     for (const Place& place : world.places) {
         const glm::vec3 normal(glm::normalize(place.normal));
         const glm::vec3 unit((place.position - geometry.frame.centre) / geometry.frame.diagonal);
-        receivers.push_back({unit + world.definition.offset * normal, normal});
+        receivers.push_back({unit + kVertexOffset * normal, normal, kVertexOffset});
     }
     return receivers;
 }
@@ -172,7 +173,7 @@ TEST(EveryEngine, OpenPlanesAndClosedBoxesHaveTheNormalAsBentNormal)
     const std::vector<Receiver> inside = {{{0, 0, 0}, {0, 0, 1}}, {{-0.28f, 0, 0.28f}, {0, 0, 1}}};
     for (const Row& engine : rows()) {
         const Solver over_plane = engine.prepare(plane);
-        for (const Occlusion& o : over_plane(receivers_at_vertices(plane, 1e-4f), {}, {}))
+        for (const Occlusion& o : over_plane(vertex_receivers(plane), {}, {}))
             EXPECT_GT(o.bent_normal.z, 0.9999f) << engine.name;
         if (engine.tolerance != &Tolerances::rays && engine.tolerance != &Tolerances::exact)
             continue;  // the others leave cracks and sums below 1
@@ -215,7 +216,7 @@ TEST(EveryEngine, OddScenesGiveNumbersInRangeAndUnitBentNormals)
     for (const Scene& scene : {one, needle, twice, one + needle + twice, sliver, box + box, folded,
                                near, scenes::bumpy_sphere(8)}) {
         const Geometry geometry = make_geometry(scene);
-        std::vector<Receiver> receivers = receivers_at_vertices(geometry, 1e-4f);
+        std::vector<Receiver> receivers = vertex_receivers(geometry);
         receivers.push_back({{0.1f, 0.1f, 0.0f}, {0, 0, 1}});  // in the plane of a triangle
         receivers.push_back({{0.1f, 0.1f, 0.0f}, {1, 0, 0}});
         receivers.push_back({geometry.positions[0], {0, 0, 1}});  // at a corner
@@ -237,7 +238,7 @@ TEST(EveryEngine, OddScenesGiveNumbersInRangeAndUnitBentNormals)
 TEST(EveryEngine, SameBytesForAnyNumberOfThreads)
 {
     const Geometry geometry = make_geometry(scenes::bumpy_sphere(12));
-    const std::vector<Receiver> receivers = receivers_at_vertices(geometry, 1e-4f);
+    const std::vector<Receiver> receivers = vertex_receivers(geometry);
     for (const Row& engine : rows()) {
         std::vector<std::vector<Occlusion>> answers;
         for (const std::size_t threads : {1, 4}) {
@@ -251,7 +252,7 @@ TEST(EveryEngine, SameBytesForAnyNumberOfThreads)
 TEST(EveryEngine, ProgressGrowsToTheEndAndFalseCancels)
 {
     const Geometry geometry = make_geometry(scenes::bumpy_sphere(12));
-    const std::vector<Receiver> receivers = receivers_at_vertices(geometry, 1e-4f);
+    const std::vector<Receiver> receivers = vertex_receivers(geometry);
     for (const Row& engine : rows()) {
         const Solver solver = engine.prepare(geometry);
         double last = 0.0;

@@ -142,7 +142,6 @@ stability::Engine engine_of(Bytes& bytes)
 Definition definition_of(Bytes& bytes, bool sums)
 {
     Definition definition;
-    definition.offset = bytes.one_of({1e-4f, 1e-9f, 1e-6f, 1e-2f});
     definition.max_distance =
         bytes.one_of({std::numeric_limits<float>::infinity(), 1.0f, 0.1f, 1e-3f, 1e-7f});
     if (definition.max_distance < 2.0f)
@@ -193,12 +192,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 {
     Bytes bytes(data, size);
     const stability::Engine engine = engine_of(bytes);
+    const float offset = bytes.one_of({1e-4f, 1e-9f, 1e-6f, 1e-2f});
     const Definition definition = definition_of(bytes, !engine.name.starts_with("masks"));
     const Scene scene = scene_of(bytes);
     if (scene.triangles.empty())
         return 0;
     check_geometry(scene);
-    World world = at_vertices(scene, definition);
+    World world = at_vertices(scene, definition, offset);
     world.receivers = receivers_of(bytes, world);
     Built built;
     const std::string fault = solve_twice(world, engine, built).fault;

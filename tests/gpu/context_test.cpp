@@ -12,7 +12,6 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -117,42 +116,6 @@ TEST(GlContext, MovesToAnotherThread)
     worker.join();
     context.make_current();
     draw_half_a_square(context);
-}
-
-/// What one context draws in a thread of its own, another reads once it is finished.
-void read_in_another_context(GlBackend backend)
-{
-    const GlContext owner = GlContext::create(backend);
-    const GlContext worker = GlContext::create_shared(owner);
-    worker.release();
-    std::optional<TextureBuffer> made;
-    std::thread([&] {
-        worker.make_current();
-        const Framebuffer target(worker,
-                                 {.width = 2, .height = 3, .colors = {TexelFormat::rgba32f}});
-        target.clear_color({1.0f, 2.0f, 3.0f, 4.0f});
-        made.emplace(worker, TexelFormat::rgba32f, std::size_t{6});
-        target.copy_color({0, 0, 2, 2}, made->buffer(), 2 * sizeof(glm::vec4));
-        worker.finish("drawing");
-        worker.release();
-    }).join();
-
-    owner.make_current();
-    Program program(owner, "fullscreen.vert", "fetch.frag", {}, fetch_shaders());
-    program.set("u_values", *made);
-    const Framebuffer target(owner, {.width = 6, .height = 1, .colors = {TexelFormat::rgba32f}});
-    draw_fullscreen(target, program, VertexArray(owner));
-    const std::vector<glm::vec4> pixels = target.read_color(target.rect());
-    for (int i = 2; i < 6; ++i)
-        EXPECT_EQ(pixels[static_cast<std::size_t>(i)], glm::vec4(1, 2, 3, 4)) << "texel " << i;
-    made.reset();
-    EXPECT_NO_THROW(owner.finish("taking a buffer of another context away"));
-}
-
-TEST(GlContext, SharedContextsSeeEachOthersBuffers)
-{
-    read_in_another_context(GlBackend::osmesa);
-    read_in_another_context(GlBackend::egl);
 }
 
 TEST(GlContext, AdoptsAContextThatSomebodyElseOwns)

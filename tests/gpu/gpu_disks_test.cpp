@@ -5,6 +5,7 @@
 #include "scenes.h"
 #include "surfels/topology.h"
 #include "tests/gpu/contexts.h"
+#include "tests/vertex_receivers.h"
 #include "tree/disks/disks.h"
 
 #include <glm/geometric.hpp>
@@ -35,8 +36,7 @@ struct World {
     Octree octree;
 
     explicit World(const Scene& scene, bool mixed = false)
-        : geometry(make_geometry(scene)),
-          receivers(receivers_at_vertices(geometry, Definition{}.offset))
+        : geometry(make_geometry(scene)), receivers(vertex_receivers(geometry))
     {
         const std::vector<Surfel> surfels = surfels_at_vertices(geometry);
         std::vector<OccluderSide> sides(surfels.size(), OccluderSide::back);

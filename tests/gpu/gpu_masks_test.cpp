@@ -4,6 +4,7 @@
 #include "gpu/answers.h"
 #include "scenes.h"
 #include "tests/gpu/contexts.h"
+#include "tests/vertex_receivers.h"
 #include "tree/masks/masks.h"
 
 #include <glm/geometric.hpp>
@@ -32,7 +33,7 @@ struct World {
 
     explicit World(const Scene& scene)
         : geometry(make_geometry(scene)),
-          receivers(receivers_at_vertices(geometry, Definition{}.offset)),
+          receivers(vertex_receivers(geometry)),
           tree(build_mask_tree(geometry))
     {
     }

@@ -11,12 +11,13 @@ try {
     if (argument_count < 3)
         throw InputError("usage: example IN OUT [QUALITY]");
     const float quality = argument_count > 3 ? std::strtof(arguments[3], nullptr) : kGood;
-    check_settings({}, {.quality = quality});      // throws before any work is done
-    const Scene scene = read_scene(arguments[1]);  // or make_scene(positions, triangles)
-    const Geometry geometry = make_geometry(scene);
-    const Prepared prepared = prepare(geometry);
+    check_settings({}, {.quality = quality});               // throws before any work is done
+    const Mesh mesh = make_mesh(read_scene(arguments[1]));  // or make_scene(positions, triangles)
+    const Prepared prepared = prepare(mesh.geometry);
 
-    const auto vertices = receivers_at_vertices(geometry, Definition{}.offset);
+    // one per vertex, then one for each further side of hard edges
+    auto vertices = receivers_at_wedges(mesh.geometry, mesh.surface);
+    vertices.resize(mesh.surface.vertex_count());
     auto above = vertices;
     for (Receiver& receiver : above)
         receiver.position += 0.05f * receiver.normal;  // a twentieth of the scene's diagonal
@@ -28,7 +29,7 @@ try {
                         solution.occlusion[0].occlusion, solution.seconds);
         }
     }
-    write_scene(arguments[2], scene, solution.occlusion);
+    write_scene(arguments[2], mesh.scene, solution.occlusion);
 } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

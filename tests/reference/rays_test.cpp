@@ -2,6 +2,7 @@
 
 #include "differences.h"
 #include "surfels/errors.h"
+#include "tests/vertex_receivers.h"
 
 #include <glm/geometric.hpp>
 
@@ -80,8 +81,8 @@ Occlusion look(const Scene& scene, glm::dvec3 position, glm::vec3 normal,
 std::vector<Occlusion> at_vertices(const Scene& scene, const RayOptions& options = {})
 {
     const Geometry geometry = make_geometry(scene);
-    return trace_occlusion(RayScene(geometry, RayScene::Build::robust),
-                           receivers_at_vertices(geometry, options.definition.offset), options);
+    return trace_occlusion(RayScene(geometry, RayScene::Build::robust), vertex_receivers(geometry),
+                           options);
 }
 
 /// A bumpy sheet: every vertex is partly occluded.
@@ -168,7 +169,7 @@ TEST(Rays, SameBytesForAnyNumberOfThreads)
 TEST(Rays, FastAndRobustAndAvx2AgreeWithinAFewRays)
 {
     const Geometry geometry = make_geometry(hills());
-    const std::vector<Receiver> receivers = receivers_at_vertices(geometry, 1e-4f);
+    const std::vector<Receiver> receivers = vertex_receivers(geometry);
     const auto trace = [&](RayScene::Build build, RayScene::Isa isa) {
         return trace_occlusion(RayScene(geometry, build, isa), receivers, {});
     };

@@ -5,6 +5,7 @@
 #include "scenes.h"
 #include "surfels/errors.h"
 #include "temporary_folder.h"
+#include "tests/vertex_receivers.h"
 
 #include <gtest/gtest.h>
 
@@ -42,7 +43,7 @@ protected:
 
     TemporaryFolder folder_;
     Geometry geometry_ = make_geometry(scenes::bumpy_sphere(8));
-    std::vector<Receiver> receivers_ = receivers_at_vertices(geometry_, Definition{}.offset);
+    std::vector<Receiver> receivers_ = vertex_receivers(geometry_);
 };
 
 bool same_bytes(const Reference& a, const Reference& b)

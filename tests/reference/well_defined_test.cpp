@@ -1,4 +1,5 @@
 #include "reference/well_defined.h"
+#include "tests/vertex_receivers.h"
 
 #include <gtest/gtest.h>
 
@@ -25,14 +26,13 @@ Scene floor_scene()
 }
 
 /// placement_change of a receiver on the floor at (x, y, 0).
-float change_at(const Scene& scene, double x, double y, const Definition& definition = {})
+float change_at(const Scene& scene, double x, double y, float offset = kVertexOffset)
 {
     const Geometry geometry = make_geometry(scene);
     const glm::dvec3 unit = (glm::dvec3(x, y, 0) - geometry.frame.centre) / geometry.frame.diagonal;
     const glm::vec3 up(0, 0, 1);
-    const Receiver receiver{glm::vec3(unit) + definition.offset * up, up};
-    return placement_change(RayScene(geometry, RayScene::Build::robust), {&receiver, 1},
-                            definition)[0];
+    const Receiver receiver{glm::vec3(unit) + offset * up, up, offset};
+    return placement_change(RayScene(geometry, RayScene::Build::robust), {&receiver, 1}, {})[0];
 }
 
 TEST(PlacementChange, IsNothingOnALoneSheetAndUnderAFarOne)
@@ -49,9 +49,8 @@ TEST(PlacementChange, FindsASheetAsNearAsTheOffset)
     const double diagonal = std::sqrt(8.0);
     add_sheet(scene, {-1, -1, 1e-4 * diagonal}, {2, 0, 0}, {0, 2, 0});
     EXPECT_GT(change_at(scene, 0.3, 0.2), 0.9f);
-    Definition finer;
-    finer.offset = 1e-5f;  // the sheet is ten offsets away: the question has an answer
-    EXPECT_LT(change_at(scene, 0.3, 0.2, finer), 0.01f);
+    // the sheet is ten offsets away: the question has an answer
+    EXPECT_LT(change_at(scene, 0.3, 0.2, 1e-5f), 0.01f);
 }
 
 TEST(PlacementChange, FindsTheFootOfAWallInWhosePlaneTheReceiverStands)
@@ -95,7 +94,7 @@ TEST(PlacementChange, ReceiversWithoutANormalHaveNone)
 TEST(PlacementChange, CanBeCancelled)
 {
     const Geometry geometry = make_geometry(floor_scene());
-    const std::vector<Receiver> receivers = receivers_at_vertices(geometry, 1e-4f);
+    const std::vector<Receiver> receivers = vertex_receivers(geometry);
     EXPECT_THROW((void)placement_change(RayScene(geometry, RayScene::Build::robust), receivers, {},
                                         [](double) { return false; }),
                  Cancelled);

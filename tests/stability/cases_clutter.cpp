@@ -71,9 +71,7 @@ World model_on_vast_ground()
     scene += sheet({-500, -500, 0}, {1000, 0, 0}, {0, 1000, 0}, 1);
     scene += sphere({0.1, 0.2, 0.7}, 0.5, 8);
     scene += box({-0.9, -0.6, 0.05}, {-0.3, 0.2, 0.9}, 4);
-    Definition definition;
-    definition.offset = 1e-6f;
-    return at_vertices(scene, definition);
+    return at_vertices(scene, {}, 1e-6f);
 }
 
 /// Specks of a hundred-thousandth of a wall's width before it.

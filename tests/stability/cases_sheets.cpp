@@ -24,9 +24,7 @@ World facing_sheets(double gap, float offset)
     Scene scene;
     scene += sheet({0, 0, 0}, kX, kY, 12);
     scene += sheet({0, 0, height}, kY, kX, 12);
-    Definition definition;
-    definition.offset = offset;
-    return with_polygons(at_vertices(scene, definition),
+    return with_polygons(at_vertices(scene, {}, offset),
                          {parallelogram({0, 0, 0}, kX, kY), parallelogram({0, 0, height}, kX, kY)});
 }
 
@@ -129,7 +127,7 @@ void add_sheet_cases(std::vector<Case>& cases)
                      }});
     for (const double gap : {1e-1, 1e-2, 1e-3, 2e-4, 1e-4, 5e-5, 1e-5, 1e-6, 1e-7})
         cases.push_back({"sheets", label("facing, %g diagonals apart", gap),
-                         [gap] { return facing_sheets(gap, 1e-4f); }, kOpenMesh});
+                         [gap] { return facing_sheets(gap, kVertexOffset); }, kOpenMesh});
     cases.push_back({"sheets", "facing, 1e-05 apart, offset 1e-06",
                      [] { return facing_sheets(1e-5, 1e-6f); }, kOpenMesh});
 

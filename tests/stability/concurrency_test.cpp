@@ -13,6 +13,7 @@
 #include "tests/scenes.h"
 #include "tests/stability/engines.h"
 #include "tests/temporary_folder.h"
+#include "tests/vertex_receivers.h"
 #include "tree/disks/disks.h"
 #include "tree/masks/masks.h"
 
@@ -87,7 +88,7 @@ TEST(Concurrency, ThreadsOnScenesOfTheirOwnGetTheirOwnAnswers)
 TEST(Concurrency, ThreadsMayReadOneTree)
 {
     const Geometry geometry = make_geometry(scenes::bumpy_sphere(8));
-    const std::vector<Receiver> receivers = receivers_at_vertices(geometry, 1e-4f);
+    const std::vector<Receiver> receivers = vertex_receivers(geometry);
     const RayScene rays(geometry, RayScene::Build::fast);
     const std::shared_ptr<const MaskTree> masks = build_mask_tree(geometry);
     const Octree octree = build_octree(surfels_at_vertices(geometry));

@@ -20,24 +20,22 @@ Polygon World::to_unit(Polygon polygon) const
     return polygon;
 }
 
-World at_vertices(const Scene& scene, const Definition& definition)
+World at_vertices(const Scene& scene, const Definition& definition, float offset)
 {
     World world;
     world.geometry = make_geometry(scene);
-    world.receivers = receivers_at_vertices(world.geometry, definition.offset);
+    world.receivers = vertex_receivers(world.geometry, offset);
     world.definition = definition;
     return world;
 }
 
-World at_points(const Scene& scene, const std::vector<glm::dvec3>& positions, glm::vec3 normal,
-                const Definition& definition)
+World at_points(const Scene& scene, const std::vector<glm::dvec3>& positions, glm::vec3 normal)
 {
     World world;
     world.geometry = make_geometry(scene);
-    world.definition = definition;
     for (const glm::dvec3 position : positions) {
         world.receivers.push_back(
-            {glm::vec3(world.to_unit(position)) + definition.offset * normal, normal});
+            {glm::vec3(world.to_unit(position)) + kVertexOffset * normal, normal, kVertexOffset});
     }
     return world;
 }

@@ -6,6 +6,7 @@
 #include "surfels/receiver.h"
 #include "surfels/scene.h"
 #include "tests/stability/form_factor.h"
+#include "tests/vertex_receivers.h"
 
 #include <cstdint>
 #include <functional>
@@ -32,12 +33,13 @@ struct World {
     [[nodiscard]] glm::dvec3 to_unit(glm::dvec3 point) const;
 };
 
-/// Receivers at the vertices, no answer yet.
-[[nodiscard]] World at_vertices(const Scene& scene, const Definition& definition = {});
+/// Receivers off the vertices by the offset (diagonals), no answer yet.
+[[nodiscard]] World at_vertices(const Scene& scene, const Definition& definition = {},
+                                float offset = kVertexOffset);
 
-/// Receivers on the surface at world positions, moved off it by the offset.
+/// Receivers on the surface at world positions, moved off it by kVertexOffset.
 [[nodiscard]] World at_points(const Scene& scene, const std::vector<glm::dvec3>& positions,
-                              glm::vec3 normal, const Definition& definition = {});
+                              glm::vec3 normal);
 
 /// Keeps the receivers for which `keep` holds (world space).
 [[nodiscard]] World where(World world, const std::function<bool(glm::dvec3 position)>& keep);

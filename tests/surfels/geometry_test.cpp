@@ -211,13 +211,5 @@ TEST(BentNormal, NeverPointsBelowTheHorizon)
     EXPECT_EQ(bent_normal_of({0, 0, 0}, {0, 0, 0}), glm::vec3(0.0f));
 }
 
-TEST(Receiver, StandsAboveTheSurfaceByTheOffset)
-{
-    const Geometry geometry = make_geometry(unit_square());
-    const std::vector<Receiver> receivers = receivers_at_vertices(geometry, 1e-3f);
-    ASSERT_EQ(receivers.size(), 4u);
-    EXPECT_NEAR(receivers[1].position.z, 1e-3f, 1e-9f);
-}
-
 }  // namespace
 }  // namespace surfelao

@@ -2,6 +2,7 @@
 
 #include "differences.h"
 #include "scenes.h"
+#include "tests/vertex_receivers.h"
 #include "tree/disks/brute_force.h"
 #include "tree/disks/form_factor.h"
 
@@ -29,8 +30,7 @@ struct World {
     Octree octree;
 
     explicit World(const Scene& scene, OccluderSide side = OccluderSide::back)
-        : geometry(make_geometry(scene)),
-          receivers(receivers_at_vertices(geometry, Definition{}.offset))
+        : geometry(make_geometry(scene)), receivers(vertex_receivers(geometry))
     {
         const std::vector<Surfel> surfels = surfels_at_vertices(geometry);
         octree = build_octree(surfels, std::vector<OccluderSide>(surfels.size(), side));

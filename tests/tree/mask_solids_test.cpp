@@ -3,6 +3,7 @@
 #include "scenes.h"
 #include "surfels/geometry.h"
 #include "surfels/receiver.h"
+#include "tests/vertex_receivers.h"
 #include "tree/masks/kernel.h"
 #include "tree/masks/masks.h"
 #include "tree/masks/tree.h"
@@ -64,7 +65,7 @@ TEST(MaskSolids, FarSidesCoverWhatAllSidesCover)
         scene += scenes::box({x, y, z}, {x + 0.9, y + 0.6, z + 0.8}, 1);
     }
     const Geometry geometry = make_geometry(scene);
-    const std::vector<Receiver> receivers = receivers_at_vertices(geometry, Definition{}.offset);
+    const std::vector<Receiver> receivers = vertex_receivers(geometry);
     const auto tree = build_mask_tree(geometry);
     const auto one_sided = solve_masks(*tree, receivers, {.quality = 4.0f});
     const auto all_sides = solve_masks(*tree, receivers, {.exact = true});

@@ -3,6 +3,7 @@
 #include "differences.h"
 #include "scenes.h"
 #include "surfels/errors.h"
+#include "tests/vertex_receivers.h"
 
 #include <glm/geometric.hpp>
 
@@ -16,8 +17,6 @@ namespace surfelao {
 namespace {
 
 using scenes::operator+;
-
-constexpr float kOffset = Definition{}.offset;
 
 struct Setting {
     const char* name;
@@ -42,8 +41,9 @@ std::vector<Occlusion> solve(const Geometry& geometry, std::span<const Receiver>
 Receiver receiver_at(const Geometry& geometry, glm::dvec3 position, glm::dvec3 normal)
 {
     const glm::vec3 n(glm::normalize(normal));
-    return {glm::vec3((position - geometry.frame.centre) / geometry.frame.diagonal) + kOffset * n,
-            n};
+    return {
+        glm::vec3((position - geometry.frame.centre) / geometry.frame.diagonal) + kVertexOffset * n,
+        n};
 }
 
 // A body of 1/100,000 of its scene: its triangles are 1e-7 diagonals wide, and their second moments
@@ -62,9 +62,9 @@ TEST(MaskWorlds, ATinyPartOfAHugeSceneIsAsGoodAsAlone)
     const Geometry alone = make_geometry(body);
     const Geometry together = make_geometry(body + specks);
     const float share = static_cast<float>(alone.frame.diagonal / together.frame.diagonal);
-    const std::vector<Occlusion> expected = solve(alone, receivers_at_vertices(alone, kOffset), {});
+    const std::vector<Occlusion> expected = solve(alone, vertex_receivers(alone), {});
     const std::vector<Occlusion> answer =
-        solve(together, receivers_at_vertices(together, kOffset * share), {});
+        solve(together, vertex_receivers(together, kVertexOffset * share), {});
     // another frame rounds otherwise: single bits at edges, and splits where extents are equal
     EXPECT_LT(rms_difference(expected, answer), 0.01);
 }
@@ -74,7 +74,7 @@ TEST(MaskWorlds, RotationScaleAndOrderDoNotMatter)
     const Scene scene = scenes::bumpy_sphere(12) + scenes::box({0.9, 0.9, 0.9}, {1.6, 1.5, 1.4}, 6);
     const auto answers_of = [](const Scene& s) {
         const Geometry geometry = make_geometry(s);
-        return solve(geometry, receivers_at_vertices(geometry, kOffset), {});
+        return solve(geometry, vertex_receivers(geometry), {});
     };
     const std::vector<Occlusion> expected = answers_of(scene);
     const auto change = [&](const Scene& other) {
@@ -117,7 +117,7 @@ TEST(MaskWorlds, TheSameAnswerFromEveryKernel)
 {
     const Geometry geometry =
         make_geometry(scenes::bumpy_sphere(8) + scenes::box({0.9, 0.9, 0.9}, {1.6, 1.5, 1.4}, 6));
-    const std::vector<Receiver> receivers = receivers_at_vertices(geometry, kOffset);
+    const std::vector<Receiver> receivers = vertex_receivers(geometry);
     for (Setting setting : settings()) {
         setting.options.kernel = MaskKernelSet::portable;
         const std::vector<Occlusion> expected = solve(geometry, receivers, setting.options);
@@ -134,7 +134,7 @@ TEST(MaskWorlds, TheSameAnswerFromEveryKernel)
 TEST(MaskWorlds, ErrorAgainstTheOracleFallsWithQuality)
 {
     const Geometry geometry = make_geometry(scenes::bumpy_sphere(16));
-    const std::vector<Receiver> receivers = receivers_at_vertices(geometry, kOffset);
+    const std::vector<Receiver> receivers = vertex_receivers(geometry);
     const std::vector<Occlusion> truth = solve(geometry, receivers, {.exact = true});
     double last = 0.03;
     for (const float quality : {MaskOptions::kDraft, MaskOptions::kGood, MaskOptions::kBest}) {

@@ -2,6 +2,7 @@
 
 #include "scenes.h"
 #include "surfels/geometry.h"
+#include "tests/vertex_receivers.h"
 #include "tree/masks/tree.h"
 
 #include <glm/geometric.hpp>
@@ -18,7 +19,7 @@ namespace {
 
 std::vector<Receiver> receivers_of(const Scene& scene)
 {
-    return receivers_at_vertices(make_geometry(scene), 1e-4f);
+    return vertex_receivers(make_geometry(scene));
 }
 
 void expect_grouped(const std::vector<Receiver>& receivers)
