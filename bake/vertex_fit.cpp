@@ -256,6 +256,11 @@ VertexFit::~VertexFit() = default;
 VertexFit::VertexFit(VertexFit&&) noexcept = default;
 VertexFit& VertexFit::operator=(VertexFit&&) noexcept = default;
 
+const SurfaceSamples& VertexFit::samples() const
+{
+    return impl_->samples;
+}
+
 std::vector<std::uint32_t> VertexFit::unused_vertices() const
 {
     std::vector<std::uint32_t> unused;
