@@ -92,12 +92,12 @@ void look_at(const Mesh& mesh, Info& info)
 }
 
 /// What a bake with default settings would have to say.
-void bake_draft(const std::shared_ptr<const Mesh>& mesh, const VertexTarget& target,
-                const Progress& progress, Info& info)
+void bake_for_notes(const std::shared_ptr<const Mesh>& mesh, const VertexTarget& target,
+                    const Progress& progress, Info& info)
 {
     const Definition definition;
-    const Solution solution = solve(prepare(mesh->geometry), target.receivers(),
-                                    {.definition = definition, .quality = kDraft}, progress);
+    const Solution solution =
+        solve(prepare(mesh->geometry), target.receivers(), {.definition = definition}, progress);
     const std::vector<Occlusion> values = target.values(solution.occlusion);
     info.mean_occlusion = mean_occlusion_of(mesh->surface, values);
     info.misfit = target.misfit(solution.occlusion, values);
@@ -122,12 +122,12 @@ Info inspect(const std::filesystem::path& input, const Progress& progress)
     Info info;
     info.input = input;
     look_at(*mesh, info);
-    // the draft is the first half of the work, the rays are the second
+    // the bake is the first half of the work, the rays are the second
     const auto half = [&](double begin) {
         return Progress(
             [&progress, begin](double done) { return !progress || progress(begin + 0.5 * done); });
     };
-    bake_draft(mesh, target, half(0.0), info);
+    bake_for_notes(mesh, target, half(0.0), info);
 
     const std::span<const Receiver> receivers = target.receivers();
     info.receivers = receivers.size();

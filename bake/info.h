@@ -37,13 +37,13 @@ struct Info {
     glm::dvec3 low{0.0}, high{0.0};  ///< box of the triangles' corners, the file's units
     double diagonal = 0.0;
     double area = 0.0;            ///< the file's units squared
-    double mean_occlusion = 0.0;  ///< this and the next two: of a draft
+    double mean_occlusion = 0.0;  ///< this and the next two: of a default bake
     std::optional<Misfit> misfit;
     std::vector<std::string> notes;  ///< bake/notes.h
 };
 
-/// Reads, bakes a draft with default settings that is thrown away, and looks, with rays at up to
-/// kExaminedReceivers places. Throws InputError; Cancelled when progress, told of draft and rays,
+/// Reads, bakes with default settings, keeping only what is to be said of it, and looks, with rays
+/// at up to kExaminedReceivers places. Throws InputError; Cancelled when progress, told of both,
 /// returns false.
 [[nodiscard]] Info inspect(const std::filesystem::path& input, const Progress& progress = {});
 

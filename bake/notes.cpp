@@ -34,11 +34,12 @@ std::string facing_note(const Geometry& geometry, const Topology& topology)
            percent(area / whole) + " of the surface: what is baked there is the inside";
 }
 
-/// Empty where little of the surface is inside.
-std::string closed_note(std::span<const Occlusion> values)
+/// Empty where few vertices are inside; pieces that face inward have a note of their own.
+std::string closed_note(std::span<const Occlusion> values, const Topology& topology)
 {
-    const auto closed = static_cast<std::uint64_t>(
-        std::ranges::count_if(values, [](const Occlusion& v) { return v.occlusion > kClosed; }));
+    std::uint64_t closed = 0;
+    for (std::size_t v = 0; v < values.size(); ++v)
+        closed += values[v].occlusion > kClosed && topology.sides[v] != OccluderSide::front;
     if (closed == 0 || static_cast<double>(closed) < kNotableClosed * double(values.size()))
         return {};
     return of_all(closed, values.size(), "vertex|vertices") + (closed == 1 ? " is" : " are") +
@@ -96,7 +97,7 @@ std::vector<std::string> notes_of(const Baked& baked)
         if (baked.definition.max_distance > kInteriorDistance)
             add("an interior: try --max-distance 10%");
     } else {
-        add(closed_note(baked.values));
+        add(closed_note(baked.values, baked.topology));
     }
     return notes;
 }
