@@ -119,7 +119,7 @@ TEST_F(Notes, VerticesInsideOfOtherParts)
 
 TEST_F(Notes, InteriorsNeedAMaximumDistance)
 {
-    write(scenes::room({0, 0, 0}, {4, 3, 2}, 8));
+    write(scenes::room({0, 0, 0}, {4, 3, 0.1}, 8));
     expect({"1 of 1 closed piece faces inward, 100 %", "an interior: try --max-distance 10%"});
     settings_.max_distance = {90.0, true, Falloff::none};
     expect_in(baked(), {"faces inward", "an interior"}, "90 %");
