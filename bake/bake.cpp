@@ -1,5 +1,6 @@
 #include "bake/bake.h"
 
+#include "bake/notes.h"
 #include "bake/peak_memory.h"
 #include "engines/threads.h"
 #include "files/file_type.h"
@@ -9,7 +10,9 @@
 #include "surfels/errors.h"
 #include "surfels/number_text.h"
 #include "surfels/stopwatch.h"
+#include "surfels/topology.h"
 
+#include <tbb/parallel_invoke.h>
 #include <glm/vec3.hpp>
 
 #include <algorithm>
@@ -27,17 +30,19 @@ void enter(const StageProgress& progress, std::string_view stage)
         throw Cancelled();
 }
 
-double mean_occlusion_of(const Surface& surface, std::span<const Occlusion> values)
+/// What the engine built is gone afterwards: what follows needs the memory.
+Solution solve_once(const Geometry& geometry, std::span<const Receiver> receivers,
+                    const StageProgress& progress, BakeReport& report)
 {
-    double sum = 0.0;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        if (surface.normals[i] != glm::vec3(0.0f)) {
-            sum += values[i].occlusion;
-            ++count;
-        }
-    }
-    return count > 0 ? sum / static_cast<double>(count) : 0.0;
+    const EngineSettings& engine = report.settings.engine;
+    const Prepared prepared = prepare(geometry, engine);
+    Solution solution = solve(prepared, receivers, engine,
+                              [&](double done) { return !progress || progress("solve", done); });
+    report.surfels = prepared.surfel_count();
+    report.seconds.surfels = prepared.seconds().surfels;
+    report.seconds.tree = prepared.seconds().tree;
+    report.seconds.solve = solution.seconds;
+    return solution;
 }
 
 }  // namespace
@@ -61,9 +66,7 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     report.seconds.read = stage.lap();
 
     enter(progress, "build");
-    const Progress solving = [&](double done) { return !progress || progress("solve", done); };
-    const Prepared prepared = prepare(geometry, engine);
-    const Solution solution = solve(prepared, target.receivers(), engine, solving);
+    const Solution solution = solve_once(geometry, target.receivers(), progress, report);
 
     enter(progress, "fit");
     stage.lap();
@@ -71,8 +74,16 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     report.seconds.fit = stage.lap();
 
     enter(progress, "write");
-    write_scene(settings.output, scene, values,
-                {.colors = settings.colors, .mark = mark_of(settings)});
+    tbb::parallel_invoke(
+        [&] {
+            write_scene(settings.output, scene, values,
+                        {.colors = settings.colors, .mark = mark_of(settings)});
+        },
+        [&] {  // a writer leaves cores idle
+            report.misfit = target.misfit(solution.occlusion, values);
+            report.notes = notes_of(
+                {*mesh, analyse_topology(geometry), engine.definition, values, report.misfit});
+        });
     report.seconds.write = stage.lap();
 
     report.vertices = scene.positions.size();
@@ -80,15 +91,11 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     report.dropped_triangles = geometry.dropped_triangles;
     report.vertices_without_normal = static_cast<std::uint64_t>(
         std::count(mesh->surface.normals.begin(), mesh->surface.normals.end(), glm::vec3(0.0f)));
-    report.surfels = prepared.surfel_count();
     report.receivers = target.receivers().size();
     report.corners_from_file = mesh->surface.corners_from_file;
     report.replaced_corners = mesh->surface.replaced_corners;
     report.residual = solution.residual;
     report.mean_occlusion = mean_occlusion_of(mesh->surface, values);
-    report.seconds.surfels = prepared.seconds().surfels;
-    report.seconds.tree = prepared.seconds().tree;
-    report.seconds.solve = solution.seconds;
     report.seconds.total = whole.lap();
     report.peak_rss_bytes = peak_rss_bytes();
     return report;

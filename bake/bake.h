@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace surfelao {
 
@@ -30,8 +31,8 @@ struct BakeSeconds {
     double surfels = 0.0;  ///< what the engine makes of it first
     double tree = 0.0;
     double solve = 0.0;
-    double fit = 0.0;  ///< from the answers to the values at vertices
-    double write = 0.0;
+    double fit = 0.0;    ///< from the answers to the values at vertices
+    double write = 0.0;  ///< the file, and the notes meanwhile
     double total = 0.0;
 };
 
@@ -50,6 +51,8 @@ struct BakeReport {
     std::uint64_t receivers = 0;          ///< where occlusion was asked
     std::uint64_t corners_from_file = 0;  ///< corners shaded with the file's normals
     std::uint64_t replaced_corners = 0;   ///< the file's were not usable there
+    std::optional<Misfit> misfit;         ///< of the values at vertices, as displayed
+    std::vector<std::string> notes;       ///< bake/notes.h
 };
 
 /// Told the stage at hand ("read", "solve", ...) and how much of it is done; false stops the job.
@@ -69,10 +72,10 @@ struct BatchEntry {
 };
 
 /// Keys input, output, vertices, triangles, dropped_triangles, vertices_without_normal, surfels,
-/// engine, settings, seconds{read, surfels, tree, solve,
-/// fit, write, total}, receivers, corners_from_file, replaced_corners, peak_rss_bytes, residual,
-/// mean_occlusion. What an engine does not have is null. Failed: input, output, error. Skipped:
-/// input, output, skipped. A list of such objects for several files.
+/// engine, settings, seconds{read, surfels, tree, solve, fit, write, total}, receivers,
+/// corners_from_file, replaced_corners, peak_rss_bytes, residual, mean_occlusion, misfit{rms,
+/// share}, notes. What an engine or a target does not have is null. Failed: input, output, error.
+/// Skipped: input, output, skipped. A list of such objects for several files.
 [[nodiscard]] std::string json_of(std::span<const BatchEntry> batch);
 
 /// Where a batch puts the result for `input`: the folder and the input's name; formats that cannot

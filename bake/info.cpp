@@ -1,31 +1,26 @@
 #include "bake/info.h"
 
+#include "bake/notes.h"
 #include "bake/sample.h"
 #include "bake/table.h"
+#include "engines/engine.h"
 #include "files/scene_io.h"
 #include "reference/well_defined.h"
 #include "surfels/geometry.h"
 #include "surfels/number_text.h"
 #include "surfels/receiver.h"
+#include "surfels/surface.h"
 
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <memory>
+#include <span>
 
 namespace surfelao {
 namespace {
 
 constexpr std::size_t kPartsShown = 20;
-
-/// "3 triangles", "1 triangle"; an irregular noun gives both forms: "vertex|vertices".
-std::string count_text(std::uint64_t count, const std::string& noun)
-{
-    const std::size_t bar = noun.find('|');
-    std::string text = std::to_string(count) + ' ';
-    if (bar == std::string::npos)
-        return text + noun + (count == 1 ? "" : "s");
-    return text + (count == 1 ? noun.substr(0, bar) : noun.substr(bar + 1));
-}
 
 std::string point_text(glm::dvec3 p)
 {
@@ -53,26 +48,28 @@ std::vector<std::string> oddities(const Info& info)
     add(topology.boundary_edge_count, "edge",
         "at a border, around " + count_text(info.half_edges.hole_count, "hole") + " of up to " +
             count_text(info.half_edges.largest_hole_edges, "edge"));
-    add(info.ill_defined, "vertex|vertices",
-        "of " + std::to_string(info.examined) +
-            " examined without an answer of their own: in another surface's plane, or between "
-            "surfaces nearer than the receivers' offset");
+    if (info.ill_defined > 0)
+        odd.push_back(std::to_string(info.ill_defined) + " of " +
+                      count_text(info.examined, "place") +
+                      " where occlusion is asked have no answer of their own: in another "
+                      "surface's plane, or between surfaces nearer than the receivers' offset");
+    odd.insert(odd.end(), info.notes.begin(), info.notes.end());
     return odd;
 }
 
-}  // namespace
-
-Info inspect(const std::filesystem::path& input, const Progress& progress)
+/// What the file holds, without an engine.
+void look_at(const Mesh& mesh, Info& info)
 {
-    const Scene scene = read_scene(input);
-    const Geometry geometry = make_geometry(scene);
-    Info info;
-    info.input = input;
+    const Scene& scene = mesh.scene;
+    const Geometry& geometry = mesh.geometry;
     info.parts = scene.parts;
     info.vertices = scene.positions.size();
     info.triangles = scene.triangles.size();
     info.dropped_triangles = geometry.dropped_triangles;
     info.diagonal = geometry.frame.diagonal;
+    info.normals_in_file = !scene.normals.empty();
+    info.corners_from_file = mesh.surface.corners_from_file;
+    info.replaced_corners = mesh.surface.replaced_corners;
     info.topology = analyse_topology(geometry);
     info.half_edges = examine_half_edges(geometry);
 
@@ -88,22 +85,58 @@ Info inspect(const std::filesystem::path& input, const Progress& progress)
     for (std::size_t v = 0; v < used.size(); ++v) {
         info.unused_vertices += !used[v];
         info.positions += geometry.welded[v] == v;
-        info.vertices_without_normal += geometry.normals[v] == glm::vec3(0.0f);
+        info.vertices_without_normal += mesh.surface.normals[v] == glm::vec3(0.0f);
         info.area += geometry.areas[v];
     }
     info.area *= info.diagonal * info.diagonal;
+}
 
+/// What a bake with default settings would have to say.
+void bake_for_notes(const std::shared_ptr<const Mesh>& mesh, const VertexTarget& target,
+                    const Progress& progress, Info& info)
+{
     const Definition definition;
-    const std::vector<Receiver> receivers =
-        receivers_at_wedges(geometry, make_surface(scene, geometry));
+    const Solution solution =
+        solve(prepare(mesh->geometry), target.receivers(), {.definition = definition}, progress);
+    const std::vector<Occlusion> values = target.values(solution.occlusion);
+    info.mean_occlusion = mean_occlusion_of(mesh->surface, values);
+    info.misfit = target.misfit(solution.occlusion, values);
+    info.notes = notes_of({*mesh, info.topology, definition, values, info.misfit});
+}
+
+std::string normals_text(const Info& info)
+{
+    if (!info.normals_in_file)
+        return "no normals in the file: smooth within " + exact(NormalSettings{}.crease) +
+               " degrees";
+    return "normals in the file, used at " + std::to_string(info.corners_from_file) + " of " +
+           count_text(3 * (info.triangles - info.dropped_triangles), "corner");
+}
+
+}  // namespace
+
+Info inspect(const std::filesystem::path& input, const Progress& progress)
+{
+    const auto mesh = std::make_shared<const Mesh>(make_mesh(read_scene(input)));
+    const VertexTarget target(mesh, {});
+    Info info;
+    info.input = input;
+    look_at(*mesh, info);
+    // the bake is the first half of the work, the rays are the second
+    const auto half = [&](double begin) {
+        return Progress(
+            [&progress, begin](double done) { return !progress || progress(begin + 0.5 * done); });
+    };
+    bake_for_notes(mesh, target, half(0.0), info);
+
+    const std::span<const Receiver> receivers = target.receivers();
+    info.receivers = receivers.size();
     std::vector<Receiver> examined;
-    for (const std::uint32_t v : sample_of(receivers.size(), kExaminedVertices)) {
-        if (receivers[v].normal != glm::vec3(0.0f))
-            examined.push_back(receivers[v]);
-    }
+    for (const std::uint32_t i : sample_of(receivers.size(), kExaminedReceivers))
+        examined.push_back(receivers[i]);
     info.examined = examined.size();
-    for (const float change : placement_change(RayScene(geometry, RayScene::Build::robust),
-                                               examined, definition, progress))
+    for (const float change : placement_change(RayScene(mesh->geometry, RayScene::Build::robust),
+                                               examined, Definition{}, half(0.5)))
         info.ill_defined += change > kIllDefined;
     return info;
 }
@@ -119,6 +152,7 @@ std::string text_of(const Info& info)
         exact(info.area) + "\n  " + count_text(topology.component_count, "connected piece") + ", " +
         std::to_string(topology.closed_component_count) + " of them closed, " +
         count_text(info.half_edges.handle_count, "handle") + "\n";
+    text += "  " + normals_text(info) + "\n";
     if (info.parts.size() > 1) {
         Table table({"  part", "name", "vertices", "triangles"});
         for (std::size_t i = 0; i < std::min(kPartsShown, info.parts.size()); ++i) {

@@ -1,6 +1,7 @@
 /// info.h: what a mesh file holds, and what is odd about it.
 #pragma once
 
+#include "bake/vertex_target.h"
 #include "surfels/half_edges.h"
 #include "surfels/progress.h"
 #include "surfels/scene.h"
@@ -10,6 +11,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,20 +26,28 @@ struct Info {
     std::uint64_t dropped_triangles = 0;        ///< without area
     std::uint64_t unused_vertices = 0;          ///< in no triangle
     std::uint64_t vertices_without_normal = 0;  ///< they get occlusion 0
-    std::uint64_t ill_defined = 0;              ///< of `examined`: reference/well_defined.h
-    std::uint64_t examined = 0;                 ///< vertices with a normal that were looked at
+    bool normals_in_file = false;
+    std::uint64_t corners_from_file = 0;  ///< corners of triangles that a bake shades so
+    std::uint64_t replaced_corners = 0;   ///< the file's were not usable there
+    std::uint64_t receivers = 0;          ///< places where a bake asks for occlusion
+    std::uint64_t ill_defined = 0;        ///< of `examined`: reference/well_defined.h
+    std::uint64_t examined = 0;           ///< receivers that were looked at
     Topology topology;
     HalfEdgeReport half_edges;
     glm::dvec3 low{0.0}, high{0.0};  ///< box of the triangles' corners, the file's units
     double diagonal = 0.0;
-    double area = 0.0;  ///< the file's units squared
+    double area = 0.0;            ///< the file's units squared
+    double mean_occlusion = 0.0;  ///< this and the next two: of a default bake
+    std::optional<Misfit> misfit;
+    std::vector<std::string> notes;  ///< bake/notes.h
 };
 
-/// Reads and looks, with rays at up to kExaminedVertices vertices. Throws InputError; Cancelled
-/// when progress, told of the rays, returns false.
+/// Reads, bakes with default settings, keeping only what is to be said of it, and looks, with rays
+/// at up to kExaminedReceivers places. Throws InputError; Cancelled when progress, told of both,
+/// returns false.
 [[nodiscard]] Info inspect(const std::filesystem::path& input, const Progress& progress = {});
 
-inline constexpr std::uint64_t kExaminedVertices = 20'000;
+inline constexpr std::uint64_t kExaminedReceivers = 20'000;
 
 /// The facts, then a list of what is odd in sentences.
 [[nodiscard]] std::string text_of(const Info& info);

@@ -52,6 +52,11 @@ void add(Json& json, const TargetSettings& target)
         json["offset"] = exact(target.offset->value) + (target.offset->percent ? "%" : "");
 }
 
+Json json_of(const std::optional<Misfit>& misfit)
+{
+    return misfit ? Json{{"rms", misfit->rms}, {"share", misfit->share}} : Json();
+}
+
 Json json_of(const BatchEntry& entry)
 {
     Json json;
@@ -86,6 +91,8 @@ Json json_of(const BatchEntry& entry)
     json["peak_rss_bytes"] = report.peak_rss_bytes;
     json["residual"] = report.residual ? Json(*report.residual) : Json();
     json["mean_occlusion"] = report.mean_occlusion;
+    json["misfit"] = json_of(report.misfit);
+    json["notes"] = report.notes;
     return json;
 }
 
@@ -218,6 +225,10 @@ std::string json_of(const Info& info)
                        {"duplicate_triangles", topology.duplicate_triangle_count},
                        {"unused_vertices", info.unused_vertices},
                        {"vertices_without_normal", info.vertices_without_normal},
+                       {"normals_in_file", info.normals_in_file},
+                       {"corners_from_file", info.corners_from_file},
+                       {"replaced_corners", info.replaced_corners},
+                       {"receivers", info.receivers},
                        {"ill_defined", info.ill_defined},
                        {"examined", info.examined},
                        {"components", topology.component_count},
@@ -233,6 +244,10 @@ std::string json_of(const Info& info)
                        {"high", point(info.high)},
                        {"diagonal", info.diagonal},
                        {"area", info.area},
+                       {"inward_pieces", topology.inward_count},
+                       {"mean_occlusion", info.mean_occlusion},
+                       {"misfit", json_of(info.misfit)},
+                       {"notes", info.notes},
                        {"parts", parts}};
     return json.dump(2) + '\n';
 }

@@ -5,8 +5,8 @@
 
 #include <glm/geometric.hpp>
 
+#include <cmath>
 #include <string>
-
 #include <utility>
 
 namespace surfelao {
@@ -88,6 +88,38 @@ std::vector<Occlusion> VertexTarget::values(std::span<const Occlusion> answers) 
     for (std::size_t i = 0; i < lone_.size(); ++i)
         values[lone_[i]] = answers[samples + i];
     return values;
+}
+
+std::optional<Misfit> VertexTarget::misfit(std::span<const Occlusion> answers,
+                                           std::span<const Occlusion> values) const
+{
+    if (!fit_)
+        return {};
+    const Geometry& geometry = mesh_->geometry;
+    const std::vector<SurfacePoint>& points = fit_->samples().points;
+    std::vector<double> squares(geometry.triangles.size(), 0.0);
+    std::vector<std::uint32_t> counts(squares.size(), 0);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double error = answers[i].occlusion - displayed(geometry, values, points[i]);
+        squares[points[i].triangle] += error * error;
+        ++counts[points[i].triangle];
+    }
+    double sum = 0.0, coarse = 0.0, whole = 0.0;
+    for (std::size_t t = 0; t < squares.size(); ++t) {
+        if (counts[t] == 0)
+            continue;
+        const glm::uvec3 v = geometry.triangles[t];
+        const glm::vec3 a = geometry.positions[v.x];
+        const double area =
+            glm::length(glm::cross(geometry.positions[v.y] - a, geometry.positions[v.z] - a));
+        const double square = squares[t] / counts[t];
+        sum += area * square;
+        coarse += counts[t] > 1 && square > kCoarse * kCoarse ? area : 0.0;
+        whole += area;
+    }
+    if (!(whole > 0.0))
+        return {};
+    return Misfit{std::sqrt(sum / whole), coarse / whole};
 }
 
 std::vector<Occlusion> VertexTarget::mean_of_wedges(std::span<const Occlusion> answers) const

@@ -52,6 +52,17 @@ struct TargetSettings {
 [[nodiscard]] std::string name_of(NormalSource source);
 [[nodiscard]] std::string name_of(VertexValues values);
 
+/// What values at vertices cannot hold: answers at samples of the surface less what is displayed
+/// there. Near the floor, the least error that values at these vertices can have as they are seen.
+struct Misfit {
+    double rms = 0.0;    ///< over the surface, by area
+    double share = 0.0;  ///< of the area: triangles of several samples whose own RMS is above
+                         ///< kCoarse; one sample does not show that it is the triangle's size
+};
+
+/// In occlusion: what is seen as a wrong shade.
+inline constexpr double kCoarse = 0.05;
+
 class VertexTarget {
 public:
     /// mesh: made with settings.normals. O(n).
@@ -62,6 +73,11 @@ public:
     /// One per scene vertex. answers: one per receiver. Vertices that no triangle uses and that
     /// have no normal get occlusion 0 and no bent normal. O(n).
     [[nodiscard]] std::vector<Occlusion> values(std::span<const Occlusion> answers) const;
+
+    /// Empty for VertexValues::point, which asks nothing between the vertices. answers and values:
+    /// as in values(). O(n), no rays.
+    [[nodiscard]] std::optional<Misfit> misfit(std::span<const Occlusion> answers,
+                                               std::span<const Occlusion> values) const;
 
 private:
     std::vector<Occlusion> mean_of_wedges(std::span<const Occlusion> answers) const;

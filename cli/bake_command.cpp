@@ -65,6 +65,19 @@ std::vector<Job> jobs_of(const BakeOptions& options)
     return jobs;
 }
 
+/// "masks, good, at 8192 places fitted to the vertices, normals of the file at 960 corners"
+std::string question_of(const BakeReport& report)
+{
+    const bool fitted = report.settings.target.values == VertexValues::fit;
+    std::string text = name_of(report.settings.engine.engine) + ", " +
+                       setting_of(report.settings.engine) + ", at " +
+                       std::to_string(report.receivers) +
+                       (fitted ? " places fitted to the vertices" : " places");
+    if (report.corners_from_file > 0)
+        text += ", normals of the file at " + std::to_string(report.corners_from_file) + " corners";
+    return text;
+}
+
 void print(const BakeReport& report)
 {
     const BakeSeconds& seconds = report.seconds;
@@ -75,8 +88,7 @@ void print(const BakeReport& report)
         std::cout << " (" << report.dropped_triangles << " without area dropped)";
     if (report.vertices_without_normal > 0)
         std::cout << ", " << report.vertices_without_normal << " vertices without a normal";
-    std::cout << "\n  " << name_of(report.settings.engine.engine) << ", "
-              << setting_of(report.settings.engine) << ": mean occlusion "
+    std::cout << "\n  " << question_of(report) << ": mean occlusion "
               << fixed(report.mean_occlusion, 4);
     if (report.residual)
         std::cout << ", residual " << fixed(*report.residual, 4);
@@ -86,6 +98,8 @@ void print(const BakeReport& report)
               << time(seconds.total) << "; " << report.threads
               << (report.threads == 1 ? " thread, " : " threads, ")
               << report.peak_rss_bytes / (1024 * 1024) << " MiB\n";
+    for (const std::string& note : report.notes)
+        std::cout << "  note: " << note << '\n';
 }
 
 BakeSettings settings_for(const BakeOptions& options, const Job& job)

@@ -38,7 +38,9 @@ void add_info_command(CLI::App& app, Work& work)
 {
     const auto options = std::make_shared<InfoOptions>();
     CLI::App* command =
-        app.add_subcommand("info", "What a mesh file holds, and what is odd about it");
+        app.add_subcommand("info",
+                           "What a mesh file holds, what is odd about it, and where a bake of it "
+                           "will disappoint");
     command->add_option("IN", options->input, "Mesh file: .obj .ply .off .stl .gltf .glb")
         ->required()
         ->type_name("");

@@ -242,6 +242,10 @@ Topology analyse_topology(const Geometry& geometry)
     Bodies bodies = find_bodies(geometry, left_out, topology);
     const std::vector<OccluderSide> sides = sides_of_bodies(geometry, triangles, left_out, bodies);
     count_components(triangles, vertex_count, left_out, bodies, topology);
+    for (const OccluderSide side : sides) {
+        topology.solid_count += side != OccluderSide::both ? 1 : 0;
+        topology.inward_count += side == OccluderSide::front ? 1 : 0;
+    }
 
     // a vertex has the side that all its bodies agree on
     std::vector<bool> has_body(vertex_count, false);

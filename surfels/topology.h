@@ -40,6 +40,8 @@ struct Topology {
     std::uint64_t nonmanifold_edge_count = 0;    ///< more than two faces
     std::uint64_t misoriented_edge_count = 0;    ///< two faces in the same direction
     std::uint64_t duplicate_triangle_count = 0;  ///< same three positions as an earlier triangle
+    std::uint64_t solid_count = 0;               ///< bodies with a side, `back` or `front`
+    std::uint64_t inward_count = 0;              ///< of those, `front`: they face inward
     /// One per scene vertex: what all bodies at its position agree on, else `both`.
     std::vector<OccluderSide> sides;
 };

@@ -16,6 +16,8 @@
 namespace surfelao {
 namespace {
 
+using scenes::operator+;
+
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
@@ -48,8 +50,12 @@ TEST(Bake, WritesTheFileAndReportsEveryStage)
         EXPECT_EQ(report.triangles, 12u * 64);
         EXPECT_GT(report.mean_occlusion, 0.01);
         EXPECT_LT(report.mean_occlusion, 0.3);
-        EXPECT_EQ(stages, (std::vector<std::string>{"read", "build", "solve", "write"}));
+        EXPECT_EQ(stages, (std::vector<std::string>{"read", "build", "solve", "fit", "write"}));
         EXPECT_GE(report.seconds.total, report.seconds.read + report.seconds.solve);
+        EXPECT_GT(report.seconds.fit, 0.0);
+        EXPECT_GT(report.receivers, report.triangles);
+        ASSERT_TRUE(report.misfit.has_value());
+        EXPECT_GT(report.misfit->rms, 0.0);
         EXPECT_GT(report.peak_rss_bytes, 1u << 20);
         EXPECT_EQ(report.residual.has_value(), engine == Engine::disks);
     }
@@ -60,7 +66,7 @@ TEST(Bake, CancelledAtAnyStageLeavesTheOldFile)
     const TemporaryFolder folder;
     write_obj(folder / "in.obj", scenes::bumpy_sphere(8));
     std::ofstream(folder / "out.ply") << "old";
-    for (const std::string stop : {"read", "build", "solve", "write"}) {
+    for (const std::string stop : {"read", "build", "solve", "fit", "write"}) {
         EXPECT_THROW(
             static_cast<void>(bake(settings_for(folder / "in.obj", folder / "out.ply"),
                                    [&](std::string_view stage, double) { return stage != stop; })),
@@ -98,14 +104,21 @@ TEST(Bake, JsonHasAllKeysAndNullForWhatIsNotThere)
     const Json json = Json::parse(json_of({&done, 1}));
     for (const char* key : {"input", "output", "vertices", "triangles", "dropped_triangles",
                             "vertices_without_normal", "surfels", "engine", "settings", "seconds",
-                            "peak_rss_bytes", "residual", "mean_occlusion"})
+                            "peak_rss_bytes", "residual", "mean_occlusion", "receivers",
+                            "corners_from_file", "replaced_corners", "misfit", "notes"})
         EXPECT_TRUE(json.contains(key)) << key;
-    for (const char* key : {"read", "surfels", "tree", "solve", "write", "total"})
+    for (const char* key : {"read", "surfels", "tree", "solve", "fit", "write", "total"})
         EXPECT_TRUE(json["seconds"].contains(key)) << key;
     EXPECT_EQ(json["engine"], "rays");
     EXPECT_EQ(json["settings"]["rays"], 16);
     EXPECT_TRUE(json["residual"].is_null());
     EXPECT_TRUE(json["settings"]["max_distance"].is_null());
+    EXPECT_EQ(json["settings"]["normals"], "auto");
+    EXPECT_EQ(json["settings"]["crease"], 40);
+    EXPECT_EQ(json["settings"]["values"], "fit");
+    EXPECT_TRUE(json["settings"]["offset"].is_null());
+    EXPECT_TRUE(json["misfit"].contains("share"));
+    EXPECT_TRUE(json["notes"].is_array());
 
     const BatchEntry entries[] = {done, {"a.obj", "a.ply", {}, "a.obj: bad"}, {"b", "c", {}, ""}};
     const Json list = Json::parse(json_of(entries));
@@ -155,6 +168,16 @@ TEST(Batch, FinishedMeansThereNotOlderAndMadeWithTheSameSettings)
         other = settings;
         other.max_distance = {10.0, true, Falloff::smooth};
         EXPECT_FALSE(is_finished(other)) << name;
+        TargetSettings flat, creased, point, lifted;
+        flat.normals.source = NormalSource::flat;
+        creased.normals.crease = 41.0f;
+        point.values = VertexValues::point;
+        lifted.offset = Length{0.1, true};
+        for (const TargetSettings& target : {flat, creased, point, lifted}) {
+            other = settings;
+            other.target = target;
+            EXPECT_FALSE(is_finished(other)) << name << ' ' << text_of(target);
+        }
 
         const auto made = fs::last_write_time(folder / name);
         fs::last_write_time(folder / "in.obj", made + std::chrono::seconds(10));
@@ -168,7 +191,8 @@ TEST(Batch, MarksNameTheSettingsOfTheEngineAtHand)
 {
     BakeSettings settings = settings_for("in.obj", "out.obj");
     EXPECT_NE(mark_of(settings).find(" bake: engine=masks device=cpu quality=1 kernel=cosine "
-                                     "max_distance=none falloff=none colors=no"),
+                                     "max_distance=none falloff=none normals=auto crease=40 "
+                                     "values=fit colors=no"),
               std::string::npos)
         << mark_of(settings);
     settings.engine.engine = Engine::disks;
@@ -176,10 +200,15 @@ TEST(Batch, MarksNameTheSettingsOfTheEngineAtHand)
     settings.engine.quality = 0.1f;
     settings.kernel = Kernel::bunnell;
     settings.max_distance = {12.5, true, Falloff::smooth};
+    settings.target = {.normals = {NormalSource::smooth, 30},
+                       .values = VertexValues::point,
+                       .offset = Length{0.5, true}};
     settings.colors = true;
-    EXPECT_NE(mark_of(settings).find("engine=disks device=gpu quality=0.1 passes=2 strength=1 "
-                                     "kernel=bunnell max_distance=12.5% falloff=smooth colors=yes"),
-              std::string::npos)
+    EXPECT_NE(
+        mark_of(settings).find("engine=disks device=gpu quality=0.1 passes=2 strength=1 "
+                               "kernel=bunnell max_distance=12.5% falloff=smooth "
+                               "normals=smooth crease=30 values=point offset=0.5% colors=yes"),
+        std::string::npos)
         << mark_of(settings);
     settings.engine.engine = Engine::rays;
     EXPECT_NE(mark_of(settings).find("engine=rays device=gpu rays=16 kernel"), std::string::npos);
@@ -221,6 +250,10 @@ TEST(Info, CountsWhatIsThereAndWhatIsOdd)
     const Json json = Json::parse(json_of(info));
     EXPECT_EQ(json["dropped_triangles"], 1);
     EXPECT_EQ(json["parts"].size(), info.parts.size());
+    EXPECT_EQ(json["normals_in_file"], false);
+    EXPECT_EQ(json["receivers"], info.receivers);
+    EXPECT_EQ(json["inward_pieces"], 0);
+    EXPECT_TRUE(json["notes"].is_array());
 }
 
 TEST(Info, ACleanBoxHasNothingOdd)
@@ -230,6 +263,22 @@ TEST(Info, ACleanBoxHasNothingOdd)
     const std::string text = text_of(inspect(folder / "in.obj"));
     EXPECT_NE(text.find("nothing odd"), std::string::npos) << text;
     EXPECT_NE(text.find("1 connected piece, 1 of them closed"), std::string::npos) << text;
+}
+
+TEST(Info, CountsThePlacesWithoutAnAnswerAmongThoseWhereABakeAsks)
+{
+    const TemporaryFolder folder;
+    // over half of the floor a lid, above the receivers, but below those at twice their offset
+    const double height = 1.5 * kMostOffset * std::sqrt(5.0);
+    write_obj(folder / "in.obj", scenes::sheet({0, 0, 0}, {2, 0, 0}, {0, 1, 0}, 8) +
+                                     scenes::sheet({0, 0, height}, {1, 0, 0}, {0, 1, 0}, 4));
+    const Info info = inspect(folder / "in.obj");
+    EXPECT_EQ(info.examined, info.receivers);
+    EXPECT_GT(info.receivers, info.vertices);
+    EXPECT_NEAR(static_cast<double>(info.ill_defined), static_cast<double>(info.examined) / 3,
+                0.1 * static_cast<double>(info.examined));
+    EXPECT_NE(text_of(info).find("places where occlusion is asked have no answer of their own"),
+              std::string::npos);
 }
 
 }  // namespace

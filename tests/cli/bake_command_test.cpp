@@ -79,6 +79,14 @@ TEST_F(BakeCommand, OptionsReachTheReport)
                                  "25%",
                                  "--falloff",
                                  "smooth",
+                                 "--normals",
+                                 "smooth",
+                                 "--crease",
+                                 "30",
+                                 "--values",
+                                 "point",
+                                 "--offset",
+                                 "0.5%",
                                  "--threads",
                                  "1",
                                  "--json",
@@ -93,6 +101,10 @@ TEST_F(BakeCommand, OptionsReachTheReport)
     EXPECT_EQ(settings["kernel"], "bunnell");
     EXPECT_EQ(settings["max_distance"], 0.25);
     EXPECT_EQ(settings["falloff"], "smooth");
+    EXPECT_EQ(settings["normals"], "smooth");
+    EXPECT_EQ(settings["crease"], 30);
+    EXPECT_EQ(settings["values"], "point");
+    EXPECT_EQ(settings["offset"], "0.5%");
     EXPECT_EQ(settings["threads"], 1);
     for (const char* key : {"input", "vertices", "triangles", "dropped_triangles", "surfels",
                             "engine", "settings", "seconds", "peak_rss_bytes", "residual"})
@@ -127,6 +139,26 @@ TEST_F(BakeCommand, JsonToStandardOutputIsAllThatStandsThere)
     EXPECT_EQ(Json::parse(outcome.out)["engine"], "masks");
 }
 
+TEST_F(BakeCommand, NotesStandBehindTheFactsAndInTheJsonOnly)
+{
+    write_obj(folder_ / "in.obj", scenes::flipped(scenes::sphere({0, 0, 0}, 1, 8)));
+    const std::string sentence = "1 of 1 closed piece faces inward";
+    const Outcome text = run({"bake", folder_ / "in.obj", "-o", folder_ / "x.ply"});
+    EXPECT_GT(text.out.find("  note: " + sentence), text.out.find("solve")) << text.out;
+    EXPECT_NE(text.out.find("places fitted to the vertices"), std::string::npos) << text.out;
+    EXPECT_EQ(text.err, "");
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"bake", folder_ / "in.obj", "-o", folder_ / "x.ply"},
+          std::vector<std::string>{"info", folder_ / "in.obj"}}) {
+        std::vector<std::string> arguments = command;
+        arguments.insert(arguments.end(), {"--json", "-"});
+        const Outcome outcome = run(arguments);
+        const Json notes = Json::parse(outcome.out)["notes"];
+        ASSERT_FALSE(notes.empty());
+        EXPECT_EQ(notes[0].get<std::string>().rfind(sentence, 0), 0u) << notes;
+    }
+}
+
 TEST_F(BakeCommand, OneFailingFileDoesNotStopTheBatch)
 {
     std::ofstream(folder_ / "bad.obj") << "v 1 2\n";
@@ -154,7 +186,8 @@ TEST_F(BakeCommand, ResumeSkipsWhatIsFinishedAndRedoesWhatIsOlderOrHasOtherSetti
     // as "good" left it, and recognisable
     std::string finished =
         "# surfelao 0.1.0 bake: engine=masks device=cpu quality=1 "
-        "kernel=cosine max_distance=none falloff=none colors=no\nfinished";
+        "kernel=cosine max_distance=none falloff=none normals=auto crease=40 values=fit "
+        "colors=no\nfinished";
     std::ofstream(result) << finished;
     Outcome outcome = resume("good");
     EXPECT_EQ(outcome.code, 0) << outcome.err;

@@ -39,7 +39,8 @@ TEST_F(ProgramTest, HelpAndVersionAreResultsAndExitZero)
     EXPECT_EQ(bake.code, 0);
     for (const char* word :
          {"--engine", "--quality", "--rays", "--passes", "--strength", "--max-distance",
-          "--falloff", "--kernel", "--colors", "--threads", "--json", "--resume", "--output"})
+          "--falloff", "--kernel", "--colors", "--threads", "--json", "--resume", "--output",
+          "--normals", "--crease", "--values", "--offset"})
         EXPECT_NE(bake.out.find(word), std::string::npos) << word;
     const Outcome compare = run({"compare", "--help"});
     EXPECT_EQ(compare.code, 0);
@@ -81,6 +82,12 @@ TEST_F(ProgramTest, WrongUsageIsRefusedBeforeAnyWorkWithExitTwo)
         {"bake", in(), "-o", out(), "--max-distance", "5%%"},
         {"bake", in(), "-o", out(), "--max-distance", "%"},
         {"bake", in(), "-o", out(), "--max-distance", "1e999"},
+        {"bake", in(), "-o", out(), "--normals", "rough"},
+        {"bake", in(), "-o", out(), "--crease", "181"},
+        {"bake", in(), "-o", out(), "--crease", "nan"},
+        {"bake", in(), "-o", out(), "--values", "mean"},
+        {"bake", in(), "-o", out(), "--offset", "0"},
+        {"bake", in(), "-o", out(), "--offset", "-1%"},
         {"bake", in(), "-o", out(), "--threads", "0"},
         {"bake", in(), "-o", in()},
         {"bake", in(), in(), "-o", folder_.path()},
@@ -124,6 +131,8 @@ TEST_F(ProgramTest, FailuresAreOneSentenceAndExitOneAndLeaveTheOldFile)
         {"bake", in(), "-o", folder_ / "out.glb"},
         {"bake", in(), "-o", out(), "--json", folder_ / "missing/report.json"},
         {"bake", in(), "-o", out(), "--max-distance", "1e-60"},
+        {"bake", in(), "-o", out(), "--offset", "100%"},
+        {"bake", in(), "-o", out(), "--offset", "1e-60"},
         {"compare", folder_ / "none.obj", "-o", folder_.path()},
         {"compare", in(), "-o", folder_ / "nan.obj/folder"},
         {"info", folder_ / "none.obj"},

@@ -1,0 +1,105 @@
+#include "bake/notes.h"
+
+#include "surfels/number_text.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace surfelao {
+namespace {
+
+std::string of_all(std::uint64_t count, std::uint64_t all, const std::string& noun)
+{
+    return std::to_string(count) + " of " + count_text(all, noun);
+}
+
+std::string percent(double share)
+{
+    const long rounded = std::lround(100.0 * share);
+    return rounded > 0 ? std::to_string(rounded) + " %" : "less than 1 %";
+}
+
+/// Empty where all face outward.
+std::string facing_note(const Geometry& geometry, const Topology& topology)
+{
+    const std::uint64_t inward = topology.inward_count, all = topology.solid_count;
+    if (inward == 0)
+        return {};
+    double area = 0.0, whole = 0.0;
+    for (std::size_t v = 0; v < geometry.areas.size(); ++v) {
+        whole += geometry.areas[v];
+        area += topology.sides[v] == OccluderSide::front ? geometry.areas[v] : 0.0;
+    }
+    return of_all(inward, all, "closed piece") + (inward == 1 ? " faces" : " face") + " inward, " +
+           percent(area / whole) + " of the surface: what is baked there is the inside";
+}
+
+/// Empty where few vertices are inside; pieces that face inward have a note of their own.
+std::string closed_note(std::span<const Occlusion> values, const Topology& topology)
+{
+    std::uint64_t closed = 0;
+    for (std::size_t v = 0; v < values.size(); ++v)
+        closed += values[v].occlusion > kClosed && topology.sides[v] != OccluderSide::front;
+    if (closed == 0 || static_cast<double>(closed) < kNotableClosed * double(values.size()))
+        return {};
+    return of_all(closed, values.size(), "vertex|vertices") + (closed == 1 ? " is" : " are") +
+           " closed on all sides, as inside of other parts or against them";
+}
+
+}  // namespace
+
+std::string count_text(std::uint64_t count, const std::string& noun)
+{
+    const std::size_t bar = noun.find('|');
+    std::string text = std::to_string(count) + ' ';
+    if (bar == std::string::npos)
+        return text + noun + (count == 1 ? "" : "s");
+    return text + (count == 1 ? noun.substr(0, bar) : noun.substr(bar + 1));
+}
+
+double mean_occlusion_of(const Surface& surface, std::span<const Occlusion> values)
+{
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (surface.normals[i] != glm::vec3(0.0f)) {
+            sum += values[i].occlusion;
+            ++count;
+        }
+    }
+    return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+std::vector<std::string> notes_of(const Baked& baked)
+{
+    std::vector<std::string> notes = baked.mesh.scene.notes;
+    const auto add = [&](std::string note) {
+        if (!note.empty())
+            notes.push_back(std::move(note));
+    };
+    const Surface& surface = baked.mesh.surface;
+    if (baked.mesh.geometry.triangles.empty()) {
+        add("no triangle has an area: there is no surface, and nothing occludes");
+        return notes;
+    }
+    if (surface.replaced_corners > 0)
+        add(of_all(surface.replaced_corners, surface.replaced_corners + surface.corners_from_file,
+                   "normal") +
+            " of the file without direction or on the wrong side of the face: replaced by smooth "
+            "ones");
+    add(facing_note(baked.mesh.geometry, baked.topology));
+    if (baked.misfit && baked.misfit->rms > kNotableMisfit && baked.misfit->share >= kNotableShare)
+        add("what is seen errs by about " + fixed(baked.misfit->rms, 2) + ": " +
+            percent(baked.misfit->share) +
+            " of the surface lies in triangles too large for values at vertices; a finer mesh "
+            "helps");
+    if (mean_occlusion_of(surface, baked.values) > kInteriorMean) {
+        if (baked.definition.max_distance > kInteriorDistance)
+            add("an interior: try --max-distance 10%");
+    } else {
+        add(closed_note(baked.values, baked.topology));
+    }
+    return notes;
+}
+
+}  // namespace surfelao

@@ -1,0 +1,52 @@
+/// notes.h: where a bake disappoints, in sentences: lower case, no full stop.
+#pragma once
+
+#include "bake/vertex_target.h"
+#include "surfels/occlusion.h"
+#include "surfels/surface.h"
+#include "surfels/topology.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace surfelao {
+
+/// A mesh and what became of it. Nothing is owned.
+struct Baked {
+    const Mesh& mesh;
+    const Topology& topology;  ///< of the mesh
+    const Definition& definition;
+    std::span<const Occlusion> values;  ///< one per vertex
+    std::optional<Misfit> misfit;
+};
+
+/// What the file holds and nobody honours (Scene::notes), then what the user should know of the
+/// result: normals of the file that were replaced, pieces that face inward, triangles too large for
+/// values at vertices, vertices that lie inside other parts, an interior without a maximum
+/// distance, nothing but triangles without area. Each only where it is notable, by the figures
+/// below. O(n), small beside any solving.
+[[nodiscard]] std::vector<std::string> notes_of(const Baked& baked);
+
+/// Triangles are too large where the misfit is above both. Over shared, package and data models the
+/// share is at most .0003 on scans, and at least .015 where walls or floors are a few triangles.
+inline constexpr double kNotableMisfit = 0.015;
+inline constexpr double kNotableShare = 0.01;  ///< of the area
+/// A vertex above this occlusion is closed on all sides: behind large triangles the masks leave up
+/// to .005 of a closed place open.
+inline constexpr float kClosed = 0.995f;
+inline constexpr double kNotableClosed = 0.01;  ///< of the vertices
+/// Above this mean occlusion a scene is an interior, and shades differ too little to be seen.
+inline constexpr double kInteriorMean = 0.9;
+/// What is recommended for interiors: longer limits still get the hint. In diagonals.
+inline constexpr float kInteriorDistance = 0.1f;
+
+/// Over the vertices with a normal; 0 where there are none.
+[[nodiscard]] double mean_occlusion_of(const Surface& surface, std::span<const Occlusion> values);
+
+/// "3 triangles", "1 triangle"; an irregular noun gives both forms: "vertex|vertices".
+[[nodiscard]] std::string count_text(std::uint64_t count, const std::string& noun);
+
+}  // namespace surfelao
