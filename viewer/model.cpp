@@ -194,6 +194,7 @@ Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings, float lar
 {
     Model model;
     model.mesh = std::make_shared<const Mesh>(std::move(mesh));
+    model.settings = settings;
     model.target = std::make_shared<const VertexTarget>(model.mesh, settings);
     model.up = up;
     const Geometry& g = model.geometry();

@@ -45,6 +45,7 @@ inline constexpr float kLargestSplat = 0.01f;
 
 struct Model {
     std::shared_ptr<const Mesh> mesh;
+    TargetSettings settings;                     ///< that it was made with
     std::shared_ptr<const VertexTarget> target;  ///< of the mesh's vertices
     std::vector<glm::vec3> seen;         ///< positions that triangles use: what a camera frames
     std::vector<std::uint32_t> surfels;  ///< vertices that are: surfels_at_vertices' order

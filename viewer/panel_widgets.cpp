@@ -93,6 +93,25 @@ bool edit_distance(DistanceLimit& limit, Falloff& falloff)
     return apply;
 }
 
+bool edit_target(TargetSettings& target)
+{
+    bool apply = false;
+    int source = static_cast<int>(target.normals.source);
+    if (ImGui::Combo("normals", &source, "auto\0file\0smooth\0flat\0")) {
+        target.normals.source = static_cast<NormalSource>(source);
+        apply = true;
+    }
+    ImGui::SliderFloat("crease", &target.normals.crease, 0.0f, 180.0f, "%.0f deg",
+                       ImGuiSliderFlags_AlwaysClamp);
+    apply |= was_set();
+    int values = static_cast<int>(target.values);
+    if (ImGui::Combo("values", &values, "fit\0point\0")) {
+        target.values = static_cast<VertexValues>(values);
+        apply = true;
+    }
+    return apply;
+}
+
 bool view_widgets(PanelState& state)
 {
     ViewOptions& view = state.view;

@@ -2,7 +2,6 @@
 
 #include "bake/bake.h"
 #include "files/scene_io.h"
-#include "gpu/answers.h"
 #include "reference/reference_cache.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
@@ -30,10 +29,10 @@ EngineSettings draft_of(EngineSettings settings)
 
 }  // namespace
 
-struct Session::Read {
+struct Session::Made {
     std::uint64_t number = 0;
     std::string failure;  ///< if not empty, the rest is
-    std::filesystem::path path;
+    std::shared_ptr<const Scene> scene;
     std::shared_ptr<const Model> model;
     double seconds = 0.0;
 };
@@ -55,8 +54,7 @@ struct Session::Traced {
 
 /// The engine at hand and what it was prepared for.
 struct Session::Engines {
-    const GlContext* lent = nullptr;
-    std::optional<GlContext> own;
+    std::optional<GlContext> own_context;
     std::shared_ptr<const Model> model;
     std::optional<Prepared> prepared;
     std::optional<double> untold_s;  ///< seconds of preparing, until a whole answer has come of it
@@ -64,11 +62,9 @@ struct Session::Engines {
     /// Where the GPU's engines compute.
     const GlContext* context()
     {
-        if (lent != nullptr)
-            return lent;
-        if (!own)
-            own.emplace(GlContext::create());
-        return &*own;
+        if (!own_context)
+            own_context.emplace(GlContext::create());
+        return &*own_context;
     }
 
     void prepare_for(const std::shared_ptr<const Model>& wanted, const EngineChoice& choice)
@@ -93,38 +89,44 @@ struct Session::Engines {
     void end()
     {
         prepared.reset();
-        own.reset();
-        if (lent != nullptr)
-            lent->release();
+        own_context.reset();
     }
 };
 
-Session::Session(const GlContext* device)
-    : engines_(std::make_unique<Engines>()), solver_([this] { engines_->end(); })
+Session::Session() : engines_(std::make_unique<Engines>()), solver_([this] { engines_->end(); })
 {
-    engines_->lent = device;
 }
 Session::~Session() = default;
 
 void Session::open(const std::filesystem::path& path, UpAxis up)
 {
     state_.message.clear();
-    opening_ = true;
+    start_making({path, up, nullptr, settings_.target});
+}
+
+void Session::start_making(Making making)
+{
+    making_ = making;
     const std::uint64_t number = ++solve_number_;
-    solver_.start([this, number, path, up](const Progress&) {
+    solver_.start([this, number, making = std::move(making)](const Progress&) {
         Stopwatch watch;
-        auto read = std::make_unique<Read>();
-        read->number = number;
-        read->path = path;
+        auto made = std::make_unique<Made>();
+        made->number = number;
         try {
-            read->model =
-                std::make_shared<const Model>(make_model(make_mesh(read_scene(path)), up));
+            Scene scene = making.scene ? *making.scene : read_scene(making.path);
+            if (scene.free_vertices)  // make_mesh splits them, for these normals alone
+                made->scene = making.scene ? making.scene : std::make_shared<const Scene>(scene);
+            made->model = std::make_shared<const Model>(make_model(
+                make_mesh(std::move(scene), making.target.normals), making.up, making.target));
+            const std::shared_ptr<const Mesh>& mesh = made->model->mesh;
+            if (!made->scene)
+                made->scene = std::shared_ptr<const Scene>(mesh, &mesh->scene);
         } catch (const std::exception& error) {
-            read->failure = error.what();
+            made->failure = error.what();
         }
-        read->seconds = watch.lap();
+        made->seconds = watch.lap();
         const std::lock_guard lock(mailbox_);
-        read_ = std::move(read);
+        made_ = std::move(made);
     });
 }
 
@@ -134,16 +136,33 @@ void Session::solve(const SessionSettings& settings)
         return;
     const bool other_question = settings.max_distance != settings_.max_distance;
     settings_ = settings;
-    if (!state_.model || opening_)
-        return;  // the next model is solved with them
+    if (making_) {  // its model is solved with them
+        if (making_->target != settings_.target) {
+            Making anew = *making_;
+            anew.target = settings_.target;
+            start_making(std::move(anew));
+        }
+        return;
+    }
+    if (!state_.model)
+        return;
     if (other_question)
         start_reference();
-    start_solve();
+    solve_or_make();
+}
+
+/// The model at hand, where it is the one that the settings ask for.
+void Session::solve_or_make()
+{
+    was_cancelled_ = false;
+    if (state_.model->settings == settings_.target)
+        start_solve();
+    else
+        start_making({state_.path, state_.model->up, scene_, settings_.target});
 }
 
 void Session::start_solve()
 {
-    was_cancelled_ = false;
     const std::uint64_t number = ++solve_number_;
     EngineSettings whole = settings_.engine;
     whole.definition =
@@ -162,7 +181,7 @@ void Session::start_solve()
                 answer->number = number;
                 answer->is_draft = i + 1 < steps.size();
                 answer->build_s = engines_->untold_s;
-                answer->settings = {steps[i], limit};
+                answer->settings = {steps[i], limit, model->settings};
                 engines_->solve(*model, steps[i], progress, *answer);
                 const std::lock_guard lock(mailbox_);
                 answer_ = std::move(answer);
@@ -218,14 +237,14 @@ void Session::start_reference()
 
 void Session::solve_again()
 {
-    if (state_.model && !opening_)
-        start_solve();
+    if (state_.model && !making_)
+        solve_or_make();
 }
 
 void Session::cancel()
 {
     was_cancelled_ = solver_.busy();
-    opening_ = false;
+    making_.reset();
     solver_.cancel();
     tracer_.cancel();
 }
@@ -249,31 +268,34 @@ void Session::measure()
 
 Session::Changes Session::update()
 {
-    std::unique_ptr<Read> read;
+    std::unique_ptr<Made> made;
     std::unique_ptr<Answer> answer;
     std::unique_ptr<Traced> traced;
     std::string failure;
     {
         const std::lock_guard lock(mailbox_);
-        read = std::move(read_);
+        made = std::move(made_);
         answer = std::move(answer_);
         traced = std::move(traced_);
         failure = std::exchange(failure_, {});
     }
     Changes changes;
-    if (read && read->number == solve_number_ && opening_) {
-        opening_ = false;
-        state_.message = read->failure;
-        changes.model = read->failure.empty();
-    }
-    if (changes.model) {
-        state_.path = read->path;
-        state_.model = read->model;
-        state_.read_s = read->seconds;
-        state_.is_solved = false;
-        occlusion_.clear();
-        start_reference();
-        start_solve();
+    if (made && made->number == solve_number_ && making_) {
+        const Making making = *std::exchange(making_, std::nullopt);
+        state_.message = made->failure;
+        changes.model = made->failure.empty();
+        changes.file = changes.model && !making.scene;
+        if (changes.model) {
+            state_.path = making.path;
+            state_.model = made->model;
+            state_.read_s = made->seconds;
+            state_.is_solved = false;
+            scene_ = made->scene;
+            occlusion_.clear();
+            start_reference();
+            was_cancelled_ = false;
+            start_solve();
+        }
     }
     if (answer && answer->number == solve_number_) {
         occlusion_ = std::move(answer->occlusion);
@@ -314,6 +336,7 @@ void Session::save(const std::filesystem::path& path) const
     made.output = path;
     made.engine = solved_with_.engine;
     made.max_distance = solved_with_.max_distance;
+    made.target = solved_with_.target;
     const Scene& scene = state_.model->mesh->scene;
     write_scene(path, scene, std::span(occlusion()).first(scene.positions.size()),
                 {.mark = mark_of(made)});

@@ -27,6 +27,7 @@ struct SessionSettings {
     /// size: whatever stands there does not count.
     EngineSettings engine;
     DistanceLimit max_distance;
+    TargetSettings target;
     bool operator==(const SessionSettings&) const = default;
 };
 
@@ -49,12 +50,11 @@ struct SessionState {
 
 /// For one thread, the window's; update() takes over what the background threads have finished.
 /// An engine is prepared once per model, and solves drafts, whole answers and other settings until
-/// another engine, device or model is wanted.
+/// another engine, device or model is wanted. On the GPU they compute in a context of the session's
+/// own, made when it is first needed.
 class Session {
 public:
-    /// device: where engines compute on the GPU: a context that nobody else uses and that outlives
-    /// the session. Null: a context of the session's own, made when it is first needed.
-    explicit Session(const GlContext* device = nullptr);
+    Session();
     ~Session();
 
     /// Reads a file in the background, then solves it with the last settings. What is shown stays
@@ -62,7 +62,8 @@ public:
     void open(const std::filesystem::path& path, UpAxis up);
 
     /// Solves the model with these settings: a draft first where the engine has one, then the
-    /// whole. What is running is given up. Does nothing when they are the last settings.
+    /// whole. What is running is given up. Other targets need another model: it is made first, of
+    /// the scene that was read. Does nothing when they are the last settings.
     void solve(const SessionSettings& settings);
 
     /// An even number of rays: the reference is traced now and whenever the definition changes.
@@ -77,7 +78,10 @@ public:
 
     /// What changed in state() since the last call.
     struct Changes {
-        bool model = false, occlusion = false, reference = false;
+        bool file = false;   ///< the model is of another file
+        bool model = false;  ///< of another file, or made anew for other targets
+        bool occlusion = false;
+        bool reference = false;
     };
     [[nodiscard]] Changes update();
 
@@ -91,7 +95,7 @@ public:
 
     const SessionState& state() const { return state_; }
     const SessionSettings& settings() const { return settings_; }
-    bool opening() const { return opening_; }
+    bool opening() const { return making_.has_value() && !making_->scene; }
     bool was_cancelled() const { return was_cancelled_; }  ///< the last solving, before its end
     bool solving() const { return solver_.busy(); }
     bool tracing() const { return tracer_.busy(); }
@@ -99,21 +103,31 @@ public:
     double trace_progress() const { return tracer_.progress(); }
 
 private:
-    struct Read;
+    /// A model that is being made.
+    struct Making {
+        std::filesystem::path path;
+        UpAxis up = UpAxis::y;
+        std::shared_ptr<const Scene> scene;  ///< null: the file is read
+        TargetSettings target;
+    };
+    struct Made;
     struct Answer;
     struct Traced;
     struct Engines;
+    void start_making(Making making);
+    void solve_or_make();
     void start_solve();
     void start_reference();
     void measure();
 
     SessionSettings settings_;
     std::uint32_t reference_rays_ = 0;
-    bool opening_ = false;
+    std::optional<Making> making_;
     bool was_cancelled_ = false;
     SessionState state_;
-    std::vector<bool> has_answer_;  ///< per vertex, by the reference
-    SessionSettings solved_with_;   ///< the answer, a draft's where it is one
+    std::shared_ptr<const Scene> scene_;  ///< of the model, as it was read
+    std::vector<bool> has_answer_;        ///< per vertex, by the reference
+    SessionSettings solved_with_;         ///< the answer, a draft's where it is one
     std::vector<Occlusion> occlusion_;
 
     std::unique_ptr<Engines> engines_;  ///< used by the solver's thread alone
@@ -121,7 +135,7 @@ private:
     // written by the background threads, taken by update(); what was started before the last model
     // or settings carries an old number and is dropped
     std::mutex mailbox_;
-    std::unique_ptr<Read> read_;
+    std::unique_ptr<Made> made_;
     std::unique_ptr<Answer> answer_;
     std::unique_ptr<Traced> traced_;
     std::string failure_;
