@@ -78,16 +78,8 @@ std::optional<EmbreeRatio> ratio_at(const Comparison& comparison, Engine engine,
             ours.push_back(point);
     }
     const std::optional<CurveTime> their_time = time_at(theirs, rmse);
-    std::optional<CurveTime> our_time = time_at(ours, rmse);
-    if (!their_time || ours.empty())
-        return std::nullopt;
-
-    // all our settings are more exact than asked: the cheapest one does
-    const auto by_error = [](CurvePoint a, CurvePoint b) { return a.rmse < b.rmse; };
-    const auto by_time = [](CurvePoint a, CurvePoint b) { return a.seconds < b.seconds; };
-    if (std::max_element(ours.begin(), ours.end(), by_error)->rmse <= rmse)
-        our_time = CurveTime{std::min_element(ours.begin(), ours.end(), by_time)->seconds, false};
-    if (!our_time || !(our_time->seconds > 0.0))
+    const std::optional<CurveTime> our_time = time_at(ours, rmse);
+    if (!their_time || !our_time)
         return std::nullopt;
     return EmbreeRatio{their_time->seconds / our_time->seconds,
                        their_time->extrapolated || our_time->extrapolated};

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Counts up whenever rays, layout or rule change: old files are then nobody's answer.
-constexpr std::uint64_t kVersion = 3;
+constexpr std::uint64_t kVersion = 4;
 
 /// Seeds of the two halves. Neither is the opponents' seed 0, so that no error of theirs is hidden
 /// by being ours too.
@@ -72,10 +72,12 @@ ContentHash key_of(const Geometry& geometry, std::span<const Receiver> receivers
     hash.add_word(static_cast<std::uint64_t>(options.definition.falloff));
     hash.add_word(static_cast<std::uint64_t>(options.definition.kernel));
     hash.add_word(options.rays);
+    hash.add_word(options.find_ill_defined);
     return hash;
 }
 
-/// A cache file: header, occlusion, change. Machine's byte order: a cache does not travel.
+/// A cache file: header, occlusion, half_difference, change. Machine's byte order: a cache does not
+/// travel.
 struct Header {
     char magic[8] = {'S', 'U', 'R', 'F', 'R', 'E', 'F', '\n'};
     std::uint64_t version = kVersion;
@@ -85,24 +87,41 @@ struct Header {
     std::uint64_t check_high = 0, check_low = 0;  ///< of noise and all behind the header
 };
 
-std::uint64_t file_size_of(std::uint64_t count)
+std::uint64_t file_size_of(std::uint64_t count, bool with_change)
 {
-    return sizeof(Header) + count * (sizeof(Occlusion) + sizeof(float));
+    return sizeof(Header) + count * (sizeof(Occlusion) + (with_change ? 2 : 1) * sizeof(float));
 }
 
 ContentHash check_of(const Reference& reference)
 {
     ContentHash hash;
     hash.add(std::span<const Occlusion>(reference.occlusion));
+    hash.add(std::span<const float>(reference.half_difference));
     hash.add(std::span<const float>(reference.change));
     hash.add_word(std::bit_cast<std::uint64_t>(reference.noise));
     return hash;
 }
 
-std::optional<Reference> load(const fs::path& path, const ContentHash& key, std::size_t count)
+template <class T>
+void read_list(std::istream& file, std::vector<T>& list, std::size_t count)
+{
+    list.resize(count);
+    file.read(reinterpret_cast<char*>(list.data()),
+              static_cast<std::streamsize>(count * sizeof(T)));
+}
+
+template <class T>
+void write_list(std::ostream& file, const std::vector<T>& list)
+{
+    file.write(reinterpret_cast<const char*>(list.data()),
+               static_cast<std::streamsize>(list.size() * sizeof(T)));
+}
+
+std::optional<Reference> load(const fs::path& path, const ContentHash& key, std::size_t count,
+                              bool with_change)
 {
     std::error_code error;
-    if (fs::file_size(path, error) != file_size_of(count) || error)
+    if (fs::file_size(path, error) != file_size_of(count, with_change) || error)
         return std::nullopt;
     std::ifstream file(path, std::ios::binary);
     Header header;
@@ -114,12 +133,9 @@ std::optional<Reference> load(const fs::path& path, const ContentHash& key, std:
         return std::nullopt;
 
     Reference reference;
-    reference.occlusion.resize(count);
-    reference.change.resize(count);
-    file.read(reinterpret_cast<char*>(reference.occlusion.data()),
-              static_cast<std::streamsize>(count * sizeof(Occlusion)));
-    file.read(reinterpret_cast<char*>(reference.change.data()),
-              static_cast<std::streamsize>(count * sizeof(float)));
+    read_list(file, reference.occlusion, count);
+    read_list(file, reference.half_difference, count);
+    read_list(file, reference.change, with_change ? count : 0);
     reference.noise = header.noise;
     reference.from_cache = true;
     const ContentHash check = check_of(reference);
@@ -155,10 +171,11 @@ void make_room(const fs::path& folder, std::uint64_t coming)
 /// The cache is a convenience: whatever goes wrong with it, the reference is at hand.
 void store(const fs::path& path, const ContentHash& key, const Reference& reference)
 try {
-    if (file_size_of(reference.occlusion.size()) > kCacheBytes)
+    const std::uint64_t size = file_size_of(reference.occlusion.size(), !reference.change.empty());
+    if (size > kCacheBytes)
         return;
     fs::create_directories(path.parent_path());
-    make_room(path.parent_path(), file_size_of(reference.occlusion.size()));
+    make_room(path.parent_path(), size);
     const ContentHash check = check_of(reference);
     Header header;
     header.key_high = key.high();
@@ -170,10 +187,9 @@ try {
     write_atomically(path, [&](const fs::path& temporary) {
         std::ofstream file(temporary, std::ios::binary);
         file.write(reinterpret_cast<const char*>(&header), sizeof header);
-        file.write(reinterpret_cast<const char*>(reference.occlusion.data()),
-                   static_cast<std::streamsize>(reference.occlusion.size() * sizeof(Occlusion)));
-        file.write(reinterpret_cast<const char*>(reference.change.data()),
-                   static_cast<std::streamsize>(reference.change.size() * sizeof(float)));
+        write_list(file, reference.occlusion);
+        write_list(file, reference.half_difference);
+        write_list(file, reference.change);
         file.close();
         if (!file)
             throw std::runtime_error("cannot write " + temporary.string());
@@ -193,7 +209,8 @@ Reference trace(const Geometry& geometry, std::span<const Receiver> receivers,
                 const ReferenceOptions& options, const Progress& progress)
 {
     const RayScene scene(geometry, RayScene::Build::robust);
-    const double half = 0.5 * options.rays / (options.rays + kPlacementRays);
+    const double placement = options.find_ill_defined ? kPlacementRays : 0.0;
+    const double half = 0.5 * options.rays / (options.rays + placement);
 
     // two independent halves; their mean is the reference, their difference tells its noise
     RayOptions rays{options.definition, options.rays / 2, kFirstSeed};
@@ -204,10 +221,12 @@ Reference trace(const Geometry& geometry, std::span<const Receiver> receivers,
         trace_occlusion(scene, receivers, rays, part_of(progress, half, 2.0 * half));
     Reference reference;
     reference.occlusion.resize(receivers.size());
+    reference.half_difference.resize(receivers.size());
     double squares = 0.0;
     for (std::size_t i = 0; i < receivers.size(); ++i) {
-        const float difference = first[i].occlusion - second[i].occlusion;
-        squares += 0.25 * difference * difference;
+        const float difference = 0.5f * (first[i].occlusion - second[i].occlusion);
+        reference.half_difference[i] = difference;
+        squares += static_cast<double>(difference) * difference;
         const glm::vec3 bent = first[i].bent_normal + second[i].bent_normal;
         const float length = glm::length(bent);
         reference.occlusion[i] = {0.5f * (first[i].occlusion + second[i].occlusion),
@@ -216,8 +235,10 @@ Reference trace(const Geometry& geometry, std::span<const Receiver> receivers,
     reference.noise =
         receivers.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(receivers.size()));
 
-    reference.change =
-        placement_change(scene, receivers, options.definition, part_of(progress, 2.0 * half, 1.0));
+    if (options.find_ill_defined) {
+        reference.change = placement_change(scene, receivers, options.definition,
+                                            part_of(progress, 2.0 * half, 1.0));
+    }
     return reference;
 }
 
@@ -249,7 +270,8 @@ Reference trace_reference(const Geometry& geometry, std::span<const Receiver> re
     std::snprintf(name, sizeof name, "%016llx%016llx.reference",
                   static_cast<unsigned long long>(key.high()),
                   static_cast<unsigned long long>(key.low()));
-    if (std::optional<Reference> cached = load(folder / name, key, receivers.size()))
+    if (std::optional<Reference> cached =
+            load(folder / name, key, receivers.size(), options.find_ill_defined))
         return *std::move(cached);
     Reference reference = trace(geometry, receivers, options, progress);
     store(folder / name, key, reference);

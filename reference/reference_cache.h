@@ -22,15 +22,19 @@ struct ReferenceOptions {
     Definition definition = {};
     std::uint32_t rays = 4096;  ///< per receiver, an even number from 2 to kMostRays
     bool use_cache = true;
+    bool find_ill_defined = true;  ///< else no `change`, which costs 1280 rays a receiver
 };
 
 struct Reference {
-    std::vector<Occlusion> occlusion;  ///< one per receiver
-    std::vector<float> change;         ///< one per receiver: placement_change (well_defined.h)
-    double noise = 0.0;  ///< RMS error of `occlusion` by sampling, from two independent halves
+    std::vector<Occlusion> occlusion;    ///< one per receiver: the mean of two independent halves
+    std::vector<float> half_difference;  ///< one per receiver: half of the first half's occlusion
+                                         ///< less the second's. As noisy as `occlusion` is, and
+                                         ///< independent of it
+    std::vector<float> change;  ///< one per receiver: placement_change (well_defined.h); or empty
+    double noise = 0.0;         ///< RMS error of `occlusion` by sampling: RMS of half_difference
     bool from_cache = false;
 
-    bool well_defined(std::size_t i) const { return change[i] <= kIllDefined; }
+    bool well_defined(std::size_t i) const { return change.empty() || change[i] <= kIllDefined; }
 };
 
 /// Traces the reference, or reads it from the user's cache folder when the same geometry, receivers
