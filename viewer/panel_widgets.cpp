@@ -156,9 +156,15 @@ void stage_lines(const SessionState& s)
         ImGui::Text("reference %.3f s", *s.reference_s);
     else if (!s.reference.empty())
         ImGui::TextUnformatted("reference from the cache");
-    if (s.error)
-        ImGui::Text("RMSE %.4f   bias %+.4f\n95 %% %.4f   max %.4f", s.error->rmse, s.error->bias,
-                    s.error->p95, s.error->max);
+    if (!s.error)
+        return;
+    const ErrorStatistics& seen = s.error->seen;
+    ImGui::Text(
+        "seen %.4f (floor %.4f, solve %.4f)\nbias %+.4f   95 %% %.4f   max %.4f\n"
+        "%llu points, %llu left out",
+        seen.rmse, s.error->floor, s.error->solve, seen.bias, seen.p95, seen.max,
+        static_cast<unsigned long long>(seen.count),
+        static_cast<unsigned long long>(s.error->left_out));
 }
 
 void histogram(const Session& session)

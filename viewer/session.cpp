@@ -2,10 +2,8 @@
 
 #include "bake/bake.h"
 #include "files/scene_io.h"
-#include "reference/reference_cache.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
-#include "viewer/solve_model.h"
 
 #include <algorithm>
 #include <exception>
@@ -39,8 +37,7 @@ struct Session::Made {
 
 struct Session::Answer {
     std::uint64_t number = 0;
-    std::vector<Occlusion> occlusion;
-    double seconds = 0.0;
+    ModelAnswer found;
     std::optional<double> build_s;
     SessionSettings settings;
     bool is_draft = false;
@@ -48,7 +45,7 @@ struct Session::Answer {
 
 struct Session::Traced {
     std::uint64_t number = 0;
-    Reference reference;
+    ModelTruth found;
     double seconds = 0.0;
 };
 
@@ -75,14 +72,6 @@ struct Session::Engines {
         model = wanted;
         prepared.emplace(prepare(wanted->geometry(), choice));
         untold_s = prepared->seconds().surfels + prepared->seconds().tree;
-    }
-
-    void solve(const Model& of, const SolveSettings& settings, const Progress& progress,
-               Answer& answer) const
-    {
-        Solution found = solve_model(*prepared, of, settings, true, progress);
-        answer.occlusion = std::move(found.occlusion);
-        answer.seconds = found.seconds;
     }
 
     /// In the thread that has used them.
@@ -182,7 +171,8 @@ void Session::start_solve()
                 answer->is_draft = i + 1 < steps.size();
                 answer->build_s = engines_->untold_s;
                 answer->settings = {steps[i], limit, model->settings};
-                engines_->solve(*model, steps[i], progress, *answer);
+                answer->found = solve_model(*engines_->prepared, *model, steps[i],
+                                            {.ground = true, .points = true}, progress);
                 const std::lock_guard lock(mailbox_);
                 answer_ = std::move(answer);
             }
@@ -214,15 +204,15 @@ void Session::start_reference()
         tracer_.cancel();
         return;
     }
-    const ReferenceOptions options{
-        definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry().frame),
-        reference_rays_};
-    tracer_.start([this, number, options, model = state_.model](const Progress& progress) {
+    const Definition definition =
+        definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry().frame);
+    tracer_.start([this, number, definition, rays = reference_rays_,
+                   model = state_.model](const Progress& progress) {
         try {
             Stopwatch watch;
             auto traced = std::make_unique<Traced>();
             traced->number = number;
-            traced->reference = reference_of(*model, options, progress);
+            traced->found = truth_of(*model, definition, rays, progress);
             traced->seconds = watch.lap();
             const std::lock_guard lock(mailbox_);
             traced_ = std::move(traced);
@@ -249,21 +239,12 @@ void Session::cancel()
     tracer_.cancel();
 }
 
-/// Over the vertices that have a normal and an answer.
 void Session::measure()
 {
     state_.error.reset();
-    if (state_.reference.empty() || !state_.is_solved)
-        return;
-    const std::vector<Occlusion>& own = occlusion();
-    std::vector<Occlusion> answer, reference;
-    for (std::size_t v = 0; v < has_answer_.size(); ++v) {
-        if (has_answer_[v]) {
-            answer.push_back(own[v]);
-            reference.push_back(state_.reference[v]);
-        }
-    }
-    state_.error = error_statistics(answer, reference);
+    if (state_.is_solved && !state_.reference.empty() && !truth_.truth.points.empty() &&
+        solved_with_.max_distance == settings_.max_distance)
+        state_.error = error_of(*state_.model, truth_, occlusion_, at_points_);
 }
 
 Session::Changes Session::update()
@@ -298,26 +279,24 @@ Session::Changes Session::update()
         }
     }
     if (answer && answer->number == solve_number_) {
-        occlusion_ = std::move(answer->occlusion);
+        occlusion_ = std::move(answer->found.values);
+        at_points_ = std::move(answer->found.at_points);
         state_.is_solved = true;
         solved_with_ = answer->settings;
         ++state_.answer_count;
         state_.is_draft = answer->is_draft;
         was_cancelled_ = was_cancelled_ && answer->is_draft;
         state_.build_s = answer->build_s;
-        state_.solve_s = answer->seconds;
+        state_.solve_s = answer->found.seconds;
         state_.message.clear();
         changes.occlusion = true;
     }
     if (traced && traced->number == trace_number_) {
-        const Geometry& geometry = state_.model->geometry();
-        has_answer_.assign(geometry.positions.size(), false);
-        for (std::size_t v = 0; v < has_answer_.size(); ++v)
-            has_answer_[v] = state_.model->mesh->surface.normals[v] != glm::vec3(0.0f);
+        truth_ = std::move(traced->found);
         state_.reference_s.reset();
-        if (!traced->reference.from_cache)
+        if (!truth_.reference.from_cache)
             state_.reference_s = traced->seconds;
-        state_.reference = std::move(traced->reference.occlusion);
+        state_.reference = std::move(truth_.reference.values);
         changes.reference = true;
     }
     if (changes.occlusion || changes.reference)

@@ -2,7 +2,6 @@
 /// answer first, and tracing the reference. Knows no window.
 #pragma once
 
-#include "bake/statistics.h"
 #include "engines/engine.h"
 #include "gpu/context.h"
 #include "surfels/occlusion.h"
@@ -10,6 +9,7 @@
 #include "viewer/background_worker.h"
 #include "viewer/camera.h"
 #include "viewer/model.h"
+#include "viewer/solve_model.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -42,9 +42,8 @@ struct SessionState {
     double read_s = 0.0;
     std::optional<double> build_s;  ///< empty where what was built before has answered again
     double solve_s = 0.0;
-    std::optional<double> reference_s;     ///< empty where it was read from the cache
-    std::optional<ErrorStatistics> error;  ///< of the answer against the reference, over vertices
-                                           ///< whose question has one (well_defined.h)
+    std::optional<double> reference_s;  ///< empty where it was read from the cache
+    std::optional<ModelError> error;    ///< of the answer; empty where there is nothing to judge
     std::string message;  ///< the last thing that went wrong, one sentence; else empty
 };
 
@@ -126,9 +125,9 @@ private:
     bool was_cancelled_ = false;
     SessionState state_;
     std::shared_ptr<const Scene> scene_;  ///< of the model, as it was read
-    std::vector<bool> has_answer_;        ///< per vertex, by the reference
+    ModelTruth truth_;                    ///< but its reference, which is in state_
     SessionSettings solved_with_;         ///< the answer, a draft's where it is one
-    std::vector<Occlusion> occlusion_;
+    std::vector<Occlusion> occlusion_, at_points_;
 
     std::unique_ptr<Engines> engines_;  ///< used by the solver's thread alone
 
