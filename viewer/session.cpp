@@ -2,6 +2,7 @@
 
 #include "bake/bake.h"
 #include "files/scene_io.h"
+#include "gpu/context.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "engines/engine.h"
-#include "gpu/context.h"
 #include "surfels/occlusion.h"
 #include "surfels/scene.h"
 #include "viewer/background_worker.h"

@@ -11,6 +11,7 @@
 #include "viewer/model.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace surfelao {

@@ -195,6 +195,19 @@ TEST_F(SessionTest, TheReferenceIsTracedMeasuredAgainstAndThenComesFromTheCache)
     }
 }
 
+TEST_F(SessionTest, WithoutAreaThereIsNothingToJudge)
+{
+    Session session;
+    session.want_reference(16);
+    session.open(folder_.file("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), UpAxis::y);
+    ASSERT_TRUE(wait_for_whole_answer(session)) << session.state().message;
+    ASSERT_TRUE(wait_for(session, [&] {
+        return !session.state().reference.empty() || !session.state().message.empty();
+    }));
+    EXPECT_EQ(session.state().message, "");
+    EXPECT_FALSE(session.state().error.has_value());
+}
+
 TEST_F(SessionTest, AFileThatCannotBeReadIsToldAndChangesNothing)
 {
     Session session;
@@ -395,8 +408,8 @@ TEST_F(SessionTest, OfTargetsChosenInARowTheLastCounts)
     EXPECT_FALSE(session.opening());
 }
 
-// Answers that are three times too dark are wrong where they are solved and where they are seen; what
-// vertices can hold is nobody's fault.
+// Answers that are three times too dark are wrong where they are solved and where they are seen;
+// what vertices can hold is nobody's fault.
 TEST(SolveModel, ErrorsAreThoseOfTheSurface)
 {
     for (const TargetSettings& target : {TargetSettings(), pointwise()}) {
