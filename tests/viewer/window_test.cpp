@@ -80,6 +80,16 @@ void press(int key)
     callback(window, key, scancode, GLFW_RELEASE, 0);
 }
 
+/// The left button goes down there and is let go a call later.
+void click(double x, double y, int action)
+{
+    GLFWwindow* window = glfwGetCurrentContext();
+    glfwSetCursorPos(window, x, y);
+    const GLFWmousebuttonfun callback = glfwSetMouseButtonCallback(window, nullptr);
+    glfwSetMouseButtonCallback(window, callback);
+    callback(window, GLFW_MOUSE_BUTTON_LEFT, action, 0);
+}
+
 void drop(const std::filesystem::path& path)
 {
     GLFWwindow* window = glfwGetCurrentContext();
@@ -410,6 +420,44 @@ TEST_F(Window, AnswersOfTheGpuLookLikeTheCpus)
         EXPECT_LT(sum / static_cast<double>(found.pixels.size()), 1.0 / 255.0) << name_of(engine);
         EXPECT_GT(share(found, is_light), 0.05);
     }
+}
+
+// The widget opens a list of two, the second of which is taken. The box has become small before.
+TEST_F(Window, AnotherTargetInThePanelMakesTheModelAnewUnderTheSameCamera)
+{
+    constexpr double kX = 60.0, kWidget = 205.0, kSecond = 246.0;  // pixels: see the panel
+    int frames = 0, frames_after = 0;
+    double small = 0.0, after = 0.0;
+    WindowOptions options;
+    options.input = box_file();
+    options.width = 1000;
+    options.height = 700;
+    options.on_frame = [&](const Image& shown, const Session& session) {
+        if (!session.state().is_solved || session.state().is_draft)
+            return true;
+        const double light = share(shown, is_light);
+        const bool is_new = session.state().model->settings.values == VertexValues::point;
+        if (is_new) {
+            after = light;
+            return ++frames_after < 4;
+        }
+        ++frames;
+        if (frames == 2) {
+            for (int i = 0; i < 5; ++i)
+                press(GLFW_KEY_MINUS);
+        }
+        if (frames == 6)
+            small = light;
+        if (frames == 8 || frames == 11)
+            click(kX, kWidget, frames == 8 ? GLFW_PRESS : GLFW_RELEASE);
+        if (frames == 14 || frames == 17)
+            click(kX, kSecond, frames == 14 ? GLFW_PRESS : GLFW_RELEASE);
+        return frames < 200;
+    };
+    (void)show_window(options);
+    EXPECT_EQ(frames_after, 4);
+    EXPECT_GT(small, 0.001);
+    EXPECT_NEAR(after, small, 0.1 * small);
 }
 
 TEST_F(Window, MayGetAsSmallAsItWill)
