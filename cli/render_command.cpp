@@ -7,7 +7,6 @@
 #include "engines/threads.h"
 #include "files/scene_io.h"
 #include "image/image_file.h"
-#include "reference/reference_cache.h"
 #include "surfels/number_text.h"
 #include "surfels/stopwatch.h"
 #include "viewer/render.h"
@@ -100,16 +99,15 @@ int run(const RenderCommandOptions& options)
     std::vector<Occlusion> occlusion(model.answer_count());
     if (colors != Colors::rays && colors != Colors::normals && colors != Colors::levels)
         occlusion = solve_model(prepare(model.geometry(), engine), model, engine,
-                                shows_ground(picture.view), stage("solve"))
-                        .occlusion;
+                                {.ground = shows_ground(picture.view)}, stage("solve"))
+                        .values;
     const double solve_s = watch.lap();
-    Reference reference;
+    ModelReference reference;
     if (needs_reference(picture.view))
-        reference = reference_of(model, {engine.definition, options.show.reference_rays},
-                                 stage("reference"));
+        reference =
+            reference_of(model, engine.definition, options.show.reference_rays, stage("reference"));
     const double reference_s = watch.lap();
-    const Image image =
-        render(model, occlusion, reference.occlusion, camera, picture, stage("draw"));
+    const Image image = render(model, occlusion, reference.values, camera, picture, stage("draw"));
     const double draw_s = watch.lap();
     write_image(options.output, image);
 

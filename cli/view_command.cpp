@@ -23,6 +23,7 @@ struct ViewCommandOptions {
     ShowOptions show;
     EngineOptions engine;
     MeasureOptions measure;
+    SurfaceOptions surface;
     std::optional<int> threads;
 };
 
@@ -44,7 +45,8 @@ int run(const ViewCommandOptions& options)
     if (!options.input.empty() && !std::filesystem::exists(options.input))
         throw InputError(options.input + ": no such file");
 
-    window.panel.settings = {settings_of(options.engine), distance_limit_of(options.measure)};
+    window.panel.settings = {settings_of(options.engine), distance_limit_of(options.measure),
+                             target_settings_of(options.surface)};
     window.keep_open = [] { return caught_signal() == 0; };
     for (const std::filesystem::path& file : show_window(window))
         std::cout << "wrote " << file.string() << '\n';
@@ -72,10 +74,12 @@ void add_view_command(CLI::App& app, Work& work)
     add_show_options(*command, options->show);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
+    add_surface_options(*command, options->surface);
     add_thread_option(*command, options->threads);
     command->callback([options, &work] {
         static_cast<void>(settings_of(options->engine));
         static_cast<void>(view_options_of(options->show));
+        static_cast<void>(target_settings_of(options->surface));
         const DistanceLimit distance = distance_limit_of(options->measure);
         if (std::isfinite(distance.value) && !distance.percent)
             throw UsageError("--max-distance of a window is in % of the diagonal (10%).");

@@ -55,8 +55,9 @@ void add_show_options(CLI::App& command, ShowOptions& options)
     command
         .add_option("--mode", options.mode,
                     "What the colours tell: visibility = 1 - occlusion; rays = the same by ray "
-                    "casting; difference = to rays, as a heat map; bent-normals; normals of the "
-                    "surfels; levels = depth in the octree; environment = light of a panorama")
+                    "casting; difference = to rays, as a heat map; bent-normals; normals at "
+                    "corners, or of the disks; levels = depth in the octree; environment = light "
+                    "of a panorama")
         ->check(CLI::IsMember(names_of(kModes)))
         ->type_name("MODE")
         ->default_str("visibility")

@@ -46,7 +46,8 @@ vec3 safe_normalize(vec3 v)
 // A direction as a colour: the shown value is (d + 1) / 2.
 vec3 direction_color(vec3 d) { return srgb_decode(0.5 + 0.5 * d); }
 
-// normal_level, own and reference: the texels of model_shape.glsl and model_values.glsl.
+// normal_level: the normal of what is drawn, and the level of its surfel (model_shape.glsl). own and
+// reference: the texels of model_values.glsl.
 vec3 shade(vec4 normal_level, vec4 own, vec4 reference)
 {
     vec4 shown = gl_FragCoord.x < u_wipe_x ? own : reference;

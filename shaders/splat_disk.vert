@@ -9,7 +9,7 @@
 // Reads      model_shape.glsl, model_values.glsl, splats.glsl
 // Writes     v_disk    place on the square, -1..1 in both directions
 //            v_inside  inside_edges of splats.glsl
-//            v_normal_level v_own v_reference: the model's values there
+//            v_normal_level  the disk's normal and level; v_own v_reference: the values there
 
 out vec2 v_disk;
 out vec3 v_inside;
@@ -21,7 +21,7 @@ void main()
 {
     Splat splat = this_splat();
     v_disk = splat_corner();
-    v_normal_level = value_at(splat, u_normals);
+    v_normal_level = vec4(splat_normal(splat), value_at(splat, u_surfels).w);
     v_own = value_at(splat, u_occlusion);
     v_reference = value_at(splat, u_reference);
     vec3 corner = disk_corner(splat);

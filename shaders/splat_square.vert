@@ -14,7 +14,7 @@
 //            v_view_normal   the disk's normal in view space
 //            v_center_depth  its z in view space
 //            v_radius        its radius
-//            v_normal_level v_own v_reference: the model's values there
+//            v_normal_level  the disk's normal and level; v_own v_reference: the values there
 
 out vec2 v_disk;
 flat out vec3 v_view_normal;
@@ -28,7 +28,7 @@ void main()
 {
     Splat splat = this_splat();
     v_disk = splat_corner();
-    v_normal_level = value_at(splat, u_normals);
+    v_normal_level = vec4(splat_normal(splat), value_at(splat, u_surfels).w);
     v_own = value_at(splat, u_occlusion);
     v_reference = value_at(splat, u_reference);
     v_radius = splat_radius();

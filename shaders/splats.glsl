@@ -45,7 +45,7 @@ vec4 value_at(Splat splat, samplerBuffer values)
 vec3 splat_normal(Splat splat)
 {
     if (splat.is_surfel)
-        return texelFetch(u_normals, splat.vertices.x).xyz;
+        return texelFetch(u_surfels, splat.vertices.x).xyz;
     vec3 a = texelFetch(u_positions, splat.vertices.x).xyz;
     vec3 b = texelFetch(u_positions, splat.vertices.y).xyz;
     vec3 c = texelFetch(u_positions, splat.vertices.z).xyz;

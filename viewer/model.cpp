@@ -1,5 +1,6 @@
 #include "viewer/model.h"
 
+#include "bake/surface_error.h"
 #include "surfels/surfel.h"
 #include "tree/disks/octree.h"
 
@@ -194,6 +195,7 @@ Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings, float lar
 {
     Model model;
     model.mesh = std::make_shared<const Mesh>(std::move(mesh));
+    model.settings = settings;
     model.target = std::make_shared<const VertexTarget>(model.mesh, settings);
     model.up = up;
     const Geometry& g = model.geometry();
@@ -216,15 +218,19 @@ Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings, float lar
     make_splats(model, largest_splat);
     model.levels = leaf_levels(build_octree(surfels_at_vertices(g)));
 
+    const Offset offset = offset_of(settings, g.frame);
+    model.points = surface_points(g, kModelPoints);
+    model.point_receivers = receivers_at(g, model.mesh->surface, model.points, offset);
+
     model.ground = make_ground(model.seen, up_direction(up));
-    const float offset = offset_of(settings, g.frame).value_or(kMostOffset);
+    const float height = offset.value_or(kMostOffset);
     const Ground& ground = model.ground;
     for (int y = 0; y <= kGroundCells; ++y) {
         for (int x = 0; x <= kGroundCells; ++x) {
             const float cell = 1.0f / static_cast<float>(kGroundCells);
             const glm::vec3 place = ground.corner + static_cast<float>(x) * cell * ground.axis_x +
                                     static_cast<float>(y) * cell * ground.axis_y;
-            model.ground_receivers.push_back({place + offset * ground.up, ground.up, offset});
+            model.ground_receivers.push_back({place + height * ground.up, ground.up, height});
         }
     }
     return model;

@@ -31,6 +31,10 @@ struct Ground {
     glm::vec3 up{0.0f};      ///< unit length
 };
 
+/// Points at which the window tells errors (bake/surface_error.h): their RMSE is right to a
+/// fiftieth or so of itself, and they cost little beside any model.
+inline constexpr std::uint64_t kModelPoints = 4000;
+
 /// A disk that is drawn for a piece of the surface, with the values that lie there. Either a
 /// surfel: three times the same vertex, in the plane of its normal. Or a place inside a large
 /// triangle, in the triangle's plane and cut off at its edges.
@@ -45,6 +49,7 @@ inline constexpr float kLargestSplat = 0.01f;
 
 struct Model {
     std::shared_ptr<const Mesh> mesh;
+    TargetSettings settings;                     ///< that it was made with
     std::shared_ptr<const VertexTarget> target;  ///< of the mesh's vertices
     std::vector<glm::vec3> seen;         ///< positions that triangles use: what a camera frames
     std::vector<std::uint32_t> surfels;  ///< vertices that are: surfels_at_vertices' order
@@ -53,10 +58,12 @@ struct Model {
     std::vector<float> splat_radii;  ///< one per splat
     Ground ground;
     std::vector<Receiver> ground_receivers;
+    std::vector<SurfacePoint> points;  ///< kModelPoints, all over the surface; none without area
+    std::vector<Receiver> point_receivers;
     UpAxis up = UpAxis::y;
 
     const Geometry& geometry() const { return mesh->geometry; }
-    /// Answers that a picture needs: one per vertex, then the ground's.
+    /// Values that a picture needs: one per vertex, then the ground's.
     std::size_t answer_count() const
     {
         return mesh->geometry.positions.size() + ground_receivers.size();

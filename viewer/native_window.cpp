@@ -18,14 +18,6 @@ std::runtime_error no_window()
                               (text ? text : "the window system gives no reason"));
 }
 
-void hint_context()
-{
-    glfwDefaultWindowHints();
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-}
-
 Inbox& inbox_of(GLFWwindow* window)
 {
     return *static_cast<Inbox*>(glfwGetWindowUserPointer(window));
@@ -72,16 +64,12 @@ void CloseWindow::operator()(GLFWwindow* window) const
     glfwDestroyWindow(window);
 }
 
-WindowHandle open_hidden_window(GLFWwindow* shown)
-{
-    hint_context();
-    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
-    return WindowHandle(glfwCreateWindow(1, 1, "surfelao", nullptr, shown));
-}
-
 WindowHandle open_window(int width, int height)
 {
-    hint_context();
+    glfwDefaultWindowHints();
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     WindowHandle window(glfwCreateWindow(width, height, "surfelao", nullptr, nullptr));
     if (!window)
         throw no_window();

@@ -29,10 +29,6 @@ using WindowHandle = std::unique_ptr<GLFWwindow, CloseWindow>;
 /// system's reason.
 [[nodiscard]] WindowHandle open_window(int width, int height);
 
-/// A window that is never seen, for the sake of its context, which shares objects with `shown`'s
-/// and may be used in another thread. Null where there is none to be had.
-[[nodiscard]] WindowHandle open_hidden_window(GLFWwindow* shown);
-
 /// Takes part in the window's context, which is current in this thread afterwards.
 [[nodiscard]] GlContext adopt_context(GLFWwindow* window);
 

@@ -233,6 +233,7 @@ void Panel::solver_widgets(PanelState& state)
     }
     bool apply = edit_settings(edited_.engine);
     apply |= edit_distance(edited_.max_distance, falloff_);
+    apply |= edit_target(edited_.target);
     if (apply)
         state.settings = edited_;
 }

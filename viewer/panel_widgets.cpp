@@ -93,6 +93,25 @@ bool edit_distance(DistanceLimit& limit, Falloff& falloff)
     return apply;
 }
 
+bool edit_target(TargetSettings& target)
+{
+    bool apply = false;
+    int source = static_cast<int>(target.normals.source);
+    if (ImGui::Combo("normals", &source, "auto\0file\0smooth\0flat\0")) {
+        target.normals.source = static_cast<NormalSource>(source);
+        apply = true;
+    }
+    ImGui::SliderFloat("crease", &target.normals.crease, 0.0f, 180.0f, "%.0f deg",
+                       ImGuiSliderFlags_AlwaysClamp);
+    apply |= was_set();
+    int values = static_cast<int>(target.values);
+    if (ImGui::Combo("values", &values, "fit\0point\0")) {
+        target.values = static_cast<VertexValues>(values);
+        apply = true;
+    }
+    return apply;
+}
+
 bool view_widgets(PanelState& state)
 {
     ViewOptions& view = state.view;
@@ -137,9 +156,15 @@ void stage_lines(const SessionState& s)
         ImGui::Text("reference %.3f s", *s.reference_s);
     else if (!s.reference.empty())
         ImGui::TextUnformatted("reference from the cache");
-    if (s.error)
-        ImGui::Text("RMSE %.4f   bias %+.4f\n95 %% %.4f   max %.4f", s.error->rmse, s.error->bias,
-                    s.error->p95, s.error->max);
+    if (!s.error)
+        return;
+    const ErrorStatistics& seen = s.error->seen;
+    ImGui::Text(
+        "seen %.4f (floor %.4f, solve %.4f)\nbias %+.4f   95 %% %.4f   max %.4f\n"
+        "%llu points, %llu left out",
+        seen.rmse, s.error->floor, s.error->solve, seen.bias, seen.p95, seen.max,
+        static_cast<unsigned long long>(seen.count),
+        static_cast<unsigned long long>(s.error->left_out));
 }
 
 void histogram(const Session& session)

@@ -13,6 +13,9 @@ bool edit_settings(EngineSettings& engine);
 /// The same for the limit, in % of the diagonal. falloff: what a limit has, once there is one.
 bool edit_distance(DistanceLimit& limit, Falloff& falloff);
 
+/// The same for the surface's normals and what the values at vertices are.
+bool edit_target(TargetSettings& target);
+
 /// How the model is shown. True when anything changed.
 bool view_widgets(PanelState& state);
 
@@ -22,8 +25,7 @@ void progress_line(const char* what, double done);
 /// Times and errors.
 void stage_lines(const SessionState& s);
 
-/// How many vertices are how closed. Of an answer that is still on the device when nothing else
-/// runs: drafts are not worth the wait.
+/// How many vertices are how closed.
 void histogram(const Session& session);
 
 /// The twin of draw_heat_legend, in the lower right corner of the window.

@@ -51,11 +51,14 @@ std::vector<glm::vec4> occlusion_texels(std::span<const Occlusion> values)
 struct Upload {
     Upload(const GlContext& context, const Model& model)
         : positions(texels(context, model.geometry().positions)),
-          normals(texels(context, normals_and_levels(model))),
+          surfels(texels(context, surfel_texels(model))),
+          wedge_normals(texels(context, model.mesh->surface.normals)),
+          extra_vertices(context, TexelFormat::r32ui,
+                         view(at_least_one(model.mesh->surface.extra_vertices))),
           occlusion(texels(context, open(model))),
           splats(context, TexelFormat::rgba32ui, view(at_least_one(model.splats))),
           radii(context, TexelFormat::r32f, view(at_least_one(model.splat_radii))),
-          index_buffer(context, view(at_least_one(model.geometry().triangles))),
+          index_buffer(context, view(at_least_one(model.mesh->surface.corners))),
           triangles(context),
           index_count(3 * model.geometry().triangles.size()),
           splat_count(model.splats.size()),
@@ -90,7 +93,8 @@ struct Upload {
             padded.emplace_back(value, 0.0f);
         return texels(context, padded);
     }
-    static std::vector<glm::vec4> normals_and_levels(const Model& model)
+    /// One per vertex: the surfel's own normal, and its level.
+    static std::vector<glm::vec4> surfel_texels(const Model& model)
     {
         const Geometry& geometry = model.geometry();
         std::vector<float> level_at(geometry.positions.size(), 0.0f);
@@ -106,17 +110,14 @@ struct Upload {
     static std::vector<glm::vec4> open(const Model& model)
     {
         std::vector<glm::vec4> values;
-        values.reserve(model.geometry().normals.size());
-        for (const glm::vec3& normal : model.geometry().normals)
-            values.emplace_back(normal, 0.0f);
+        const Surface& surface = model.mesh->surface;
+        values.reserve(surface.vertex_count());
+        for (std::size_t v = 0; v < surface.vertex_count(); ++v)
+            values.emplace_back(surface.normals[v], 0.0f);
         return values;
     }
 
-    /// The result at the vertices.
-    const TextureBuffer& result() const { return lent_occlusion ? *lent_occlusion : occlusion; }
-
-    TextureBuffer positions, normals, occlusion;
-    std::shared_ptr<const TextureBuffer> lent_occlusion;  ///< stands for `occlusion`; or null
+    TextureBuffer positions, surfels, wedge_normals, extra_vertices, occlusion;
     std::optional<TextureBuffer> reference;
     TextureBuffer splats, radii;
     Buffer index_buffer;
@@ -206,13 +207,13 @@ struct Renderer::Impl {
     void set_model_texels(Program& program)
     {
         program.set("u_positions", upload->positions);
-        program.set("u_normals", upload->normals);
-        program.set("u_occlusion", upload->result());
-        program.set("u_reference", upload->reference ? *upload->reference : upload->result());
+        program.set("u_occlusion", upload->occlusion);
+        program.set("u_reference", upload->reference ? *upload->reference : upload->occlusion);
     }
 
     void set_splats(Program& program, const Frame& frame)
     {
+        program.set("u_surfels", upload->surfels);
         program.set("u_splats", upload->splats);
         program.set("u_radii", upload->radii);
         program.set("u_radius_scale", frame.options.radius_scale);
@@ -238,6 +239,10 @@ struct Renderer::Impl {
     {
         set_shading(surface, frame);
         set_model_texels(surface);
+        surface.set("u_surfels", upload->surfels);
+        surface.set("u_wedge_normals", upload->wedge_normals);
+        surface.set("u_extra_vertices", upload->extra_vertices);
+        surface.set("u_vertex_count", static_cast<int>(upload->vertex_count));
         surface.set("u_view_projection", frame.projection * frame.view);
         draw(frame.target, surface, upload->triangles,
              {.count = upload->index_count, .indexed = true}, {.depth = DepthTest::less});
@@ -267,7 +272,6 @@ struct Renderer::Impl {
         const DrawCall call = {.count = 6 * upload->splat_count};
 
         disk_depth.set("u_positions", upload->positions);
-        disk_depth.set("u_normals", upload->normals);
         set_splats(disk_depth, frame);
         disk_depth.set("u_push", kPush);
         draw(*splat_target, disk_depth, nothing, call,
@@ -313,16 +317,11 @@ struct Renderer::Impl {
         if (upload->vertex_count > 0)
             texels.update(0, std::span<const glm::vec4>(
                                  occlusion_texels(values.first(upload->vertex_count))));
-        set_ground(values.subspan(upload->vertex_count), channel);
-    }
-
-    void set_ground(std::span<const Occlusion> values, int channel)
-    {
-        SURFELAO_CHECK(values.size() == upload->ground_values.size());
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            upload->ground_values[i][channel] = values[i].occlusion;
+        const std::span<const Occlusion> ground = values.subspan(upload->vertex_count);
+        for (std::size_t i = 0; i < ground.size(); ++i) {
+            upload->ground_values[i][channel] = ground[i].occlusion;
             if (!upload->reference)
-                upload->ground_values[i][1] = values[i].occlusion;
+                upload->ground_values[i][1] = ground[i].occlusion;
         }
         upload_ground();
     }
@@ -353,15 +352,7 @@ void Renderer::set_model(const Model& model)
 
 void Renderer::set_occlusion(std::span<const Occlusion> occlusion)
 {
-    impl_->upload->lent_occlusion.reset();
     impl_->set_values(occlusion, impl_->upload->occlusion, 0);
-}
-
-void Renderer::set_occlusion(std::shared_ptr<const TextureBuffer> vertices,
-                             std::span<const Occlusion> ground)
-{
-    impl_->upload->lent_occlusion = std::move(vertices);
-    impl_->set_ground(ground, 0);
 }
 
 void Renderer::set_reference(std::span<const Occlusion> reference)

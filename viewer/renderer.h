@@ -32,14 +32,9 @@ public:
     /// device's buffers.
     void set_model(const Model& model);
 
-    /// One per receiver of the model. Without a reference, the result stands in for it.
+    /// Model::answer_count() values. Without a reference, the result stands in for it.
     void set_occlusion(std::span<const Occlusion> occlusion);
     void set_reference(std::span<const Occlusion> reference);
-
-    /// The same where the vertices' answers lie on the device already, in this context or one that
-    /// shares objects with it: RGBA32F, a texel per vertex: bent normal xyz | occlusion.
-    void set_occlusion(std::shared_ptr<const TextureBuffer> vertices,
-                       std::span<const Occlusion> ground);
 
     /// Light for Colors::environment: see environment.h.
     void set_environment(const Image& panorama);

@@ -2,11 +2,9 @@
 
 #include "bake/bake.h"
 #include "files/scene_io.h"
-#include "gpu/answers.h"
-#include "reference/reference_cache.h"
+#include "gpu/context.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
-#include "viewer/solve_model.h"
 
 #include <algorithm>
 #include <exception>
@@ -30,18 +28,17 @@ EngineSettings draft_of(EngineSettings settings)
 
 }  // namespace
 
-struct Session::Read {
+struct Session::Made {
     std::uint64_t number = 0;
     std::string failure;  ///< if not empty, the rest is
-    std::filesystem::path path;
+    std::shared_ptr<const Scene> scene;
     std::shared_ptr<const Model> model;
     double seconds = 0.0;
 };
 
 struct Session::Answer {
     std::uint64_t number = 0;
-    std::vector<Occlusion> occlusion;
-    double seconds = 0.0;
+    ModelAnswer found;
     std::optional<double> build_s;
     SessionSettings settings;
     bool is_draft = false;
@@ -49,14 +46,13 @@ struct Session::Answer {
 
 struct Session::Traced {
     std::uint64_t number = 0;
-    Reference reference;
+    ModelTruth found;
     double seconds = 0.0;
 };
 
 /// The engine at hand and what it was prepared for.
 struct Session::Engines {
-    const GlContext* lent = nullptr;
-    std::optional<GlContext> own;
+    std::optional<GlContext> own_context;
     std::shared_ptr<const Model> model;
     std::optional<Prepared> prepared;
     std::optional<double> untold_s;  ///< seconds of preparing, until a whole answer has come of it
@@ -64,11 +60,9 @@ struct Session::Engines {
     /// Where the GPU's engines compute.
     const GlContext* context()
     {
-        if (lent != nullptr)
-            return lent;
-        if (!own)
-            own.emplace(GlContext::create());
-        return &*own;
+        if (!own_context)
+            own_context.emplace(GlContext::create());
+        return &*own_context;
     }
 
     void prepare_for(const std::shared_ptr<const Model>& wanted, const EngineChoice& choice)
@@ -81,50 +75,48 @@ struct Session::Engines {
         untold_s = prepared->seconds().surfels + prepared->seconds().tree;
     }
 
-    void solve(const Model& of, const SolveSettings& settings, const Progress& progress,
-               Answer& answer) const
-    {
-        Solution found = solve_model(*prepared, of, settings, true, progress);
-        answer.occlusion = std::move(found.occlusion);
-        answer.seconds = found.seconds;
-    }
-
     /// In the thread that has used them.
     void end()
     {
         prepared.reset();
-        own.reset();
-        if (lent != nullptr)
-            lent->release();
+        own_context.reset();
     }
 };
 
-Session::Session(const GlContext* device)
-    : engines_(std::make_unique<Engines>()), solver_([this] { engines_->end(); })
+Session::Session() : engines_(std::make_unique<Engines>()), solver_([this] { engines_->end(); })
 {
-    engines_->lent = device;
 }
 Session::~Session() = default;
 
 void Session::open(const std::filesystem::path& path, UpAxis up)
 {
     state_.message.clear();
-    opening_ = true;
+    start_making({path, up, nullptr, settings_.target});
+}
+
+void Session::start_making(Making making)
+{
+    making_ = making;
     const std::uint64_t number = ++solve_number_;
-    solver_.start([this, number, path, up](const Progress&) {
+    solver_.start([this, number, making = std::move(making)](const Progress&) {
         Stopwatch watch;
-        auto read = std::make_unique<Read>();
-        read->number = number;
-        read->path = path;
+        auto made = std::make_unique<Made>();
+        made->number = number;
         try {
-            read->model =
-                std::make_shared<const Model>(make_model(make_mesh(read_scene(path)), up));
+            Scene scene = making.scene ? *making.scene : read_scene(making.path);
+            if (scene.free_vertices)  // make_mesh splits them, for these normals alone
+                made->scene = making.scene ? making.scene : std::make_shared<const Scene>(scene);
+            made->model = std::make_shared<const Model>(make_model(
+                make_mesh(std::move(scene), making.target.normals), making.up, making.target));
+            const std::shared_ptr<const Mesh>& mesh = made->model->mesh;
+            if (!made->scene)
+                made->scene = std::shared_ptr<const Scene>(mesh, &mesh->scene);
         } catch (const std::exception& error) {
-            read->failure = error.what();
+            made->failure = error.what();
         }
-        read->seconds = watch.lap();
+        made->seconds = watch.lap();
         const std::lock_guard lock(mailbox_);
-        read_ = std::move(read);
+        made_ = std::move(made);
     });
 }
 
@@ -134,16 +126,33 @@ void Session::solve(const SessionSettings& settings)
         return;
     const bool other_question = settings.max_distance != settings_.max_distance;
     settings_ = settings;
-    if (!state_.model || opening_)
-        return;  // the next model is solved with them
+    if (making_) {  // its model is solved with them
+        if (making_->target != settings_.target) {
+            Making anew = *making_;
+            anew.target = settings_.target;
+            start_making(std::move(anew));
+        }
+        return;
+    }
+    if (!state_.model)
+        return;
     if (other_question)
         start_reference();
-    start_solve();
+    solve_or_make();
+}
+
+/// The model at hand, where it is the one that the settings ask for.
+void Session::solve_or_make()
+{
+    was_cancelled_ = false;
+    if (state_.model->settings == settings_.target)
+        start_solve();
+    else
+        start_making({state_.path, state_.model->up, scene_, settings_.target});
 }
 
 void Session::start_solve()
 {
-    was_cancelled_ = false;
     const std::uint64_t number = ++solve_number_;
     EngineSettings whole = settings_.engine;
     whole.definition =
@@ -162,8 +171,9 @@ void Session::start_solve()
                 answer->number = number;
                 answer->is_draft = i + 1 < steps.size();
                 answer->build_s = engines_->untold_s;
-                answer->settings = {steps[i], limit};
-                engines_->solve(*model, steps[i], progress, *answer);
+                answer->settings = {steps[i], limit, model->settings};
+                answer->found = solve_model(*engines_->prepared, *model, steps[i],
+                                            {.ground = true, .points = true}, progress);
                 const std::lock_guard lock(mailbox_);
                 answer_ = std::move(answer);
             }
@@ -195,15 +205,15 @@ void Session::start_reference()
         tracer_.cancel();
         return;
     }
-    const ReferenceOptions options{
-        definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry().frame),
-        reference_rays_};
-    tracer_.start([this, number, options, model = state_.model](const Progress& progress) {
+    const Definition definition =
+        definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry().frame);
+    tracer_.start([this, number, definition, rays = reference_rays_,
+                   model = state_.model](const Progress& progress) {
         try {
             Stopwatch watch;
             auto traced = std::make_unique<Traced>();
             traced->number = number;
-            traced->reference = reference_of(*model, options, progress);
+            traced->found = truth_of(*model, definition, rays, progress);
             traced->seconds = watch.lap();
             const std::lock_guard lock(mailbox_);
             traced_ = std::move(traced);
@@ -218,84 +228,76 @@ void Session::start_reference()
 
 void Session::solve_again()
 {
-    if (state_.model && !opening_)
-        start_solve();
+    if (state_.model && !making_)
+        solve_or_make();
 }
 
 void Session::cancel()
 {
     was_cancelled_ = solver_.busy();
-    opening_ = false;
+    making_.reset();
     solver_.cancel();
     tracer_.cancel();
 }
 
-/// Over the vertices that have a normal and an answer.
 void Session::measure()
 {
     state_.error.reset();
-    if (state_.reference.empty() || !state_.is_solved)
-        return;
-    const std::vector<Occlusion>& own = occlusion();
-    std::vector<Occlusion> answer, reference;
-    for (std::size_t v = 0; v < has_answer_.size(); ++v) {
-        if (has_answer_[v]) {
-            answer.push_back(own[v]);
-            reference.push_back(state_.reference[v]);
-        }
-    }
-    state_.error = error_statistics(answer, reference);
+    if (state_.is_solved && !state_.reference.empty() && !truth_.truth.points.empty() &&
+        solved_with_.max_distance == settings_.max_distance)
+        state_.error = error_of(*state_.model, truth_, occlusion_, at_points_);
 }
 
 Session::Changes Session::update()
 {
-    std::unique_ptr<Read> read;
+    std::unique_ptr<Made> made;
     std::unique_ptr<Answer> answer;
     std::unique_ptr<Traced> traced;
     std::string failure;
     {
         const std::lock_guard lock(mailbox_);
-        read = std::move(read_);
+        made = std::move(made_);
         answer = std::move(answer_);
         traced = std::move(traced_);
         failure = std::exchange(failure_, {});
     }
     Changes changes;
-    if (read && read->number == solve_number_ && opening_) {
-        opening_ = false;
-        state_.message = read->failure;
-        changes.model = read->failure.empty();
-    }
-    if (changes.model) {
-        state_.path = read->path;
-        state_.model = read->model;
-        state_.read_s = read->seconds;
-        state_.is_solved = false;
-        occlusion_.clear();
-        start_reference();
-        start_solve();
+    if (made && made->number == solve_number_ && making_) {
+        const Making making = *std::exchange(making_, std::nullopt);
+        state_.message = made->failure;
+        changes.model = made->failure.empty();
+        changes.file = changes.model && !making.scene;
+        if (changes.model) {
+            state_.path = making.path;
+            state_.model = made->model;
+            state_.read_s = made->seconds;
+            state_.is_solved = false;
+            scene_ = made->scene;
+            occlusion_.clear();
+            start_reference();
+            was_cancelled_ = false;
+            start_solve();
+        }
     }
     if (answer && answer->number == solve_number_) {
-        occlusion_ = std::move(answer->occlusion);
+        occlusion_ = std::move(answer->found.values);
+        at_points_ = std::move(answer->found.at_points);
         state_.is_solved = true;
         solved_with_ = answer->settings;
         ++state_.answer_count;
         state_.is_draft = answer->is_draft;
         was_cancelled_ = was_cancelled_ && answer->is_draft;
         state_.build_s = answer->build_s;
-        state_.solve_s = answer->seconds;
+        state_.solve_s = answer->found.seconds;
         state_.message.clear();
         changes.occlusion = true;
     }
     if (traced && traced->number == trace_number_) {
-        const Geometry& geometry = state_.model->geometry();
-        has_answer_.assign(geometry.positions.size(), false);
-        for (std::size_t v = 0; v < has_answer_.size(); ++v)
-            has_answer_[v] = state_.model->mesh->surface.normals[v] != glm::vec3(0.0f);
+        truth_ = std::move(traced->found);
         state_.reference_s.reset();
-        if (!traced->reference.from_cache)
+        if (!truth_.reference.from_cache)
             state_.reference_s = traced->seconds;
-        state_.reference = std::move(traced->reference.occlusion);
+        state_.reference = std::move(truth_.reference.values);
         changes.reference = true;
     }
     if (changes.occlusion || changes.reference)
@@ -314,6 +316,7 @@ void Session::save(const std::filesystem::path& path) const
     made.output = path;
     made.engine = solved_with_.engine;
     made.max_distance = solved_with_.max_distance;
+    made.target = solved_with_.target;
     const Scene& scene = state_.model->mesh->scene;
     write_scene(path, scene, std::span(occlusion()).first(scene.positions.size()),
                 {.mark = mark_of(made)});

@@ -2,14 +2,13 @@
 /// answer first, and tracing the reference. Knows no window.
 #pragma once
 
-#include "bake/statistics.h"
 #include "engines/engine.h"
-#include "gpu/context.h"
 #include "surfels/occlusion.h"
 #include "surfels/scene.h"
 #include "viewer/background_worker.h"
 #include "viewer/camera.h"
 #include "viewer/model.h"
+#include "viewer/solve_model.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -27,6 +26,7 @@ struct SessionSettings {
     /// size: whatever stands there does not count.
     EngineSettings engine;
     DistanceLimit max_distance;
+    TargetSettings target;
     bool operator==(const SessionSettings&) const = default;
 };
 
@@ -41,20 +41,18 @@ struct SessionState {
     double read_s = 0.0;
     std::optional<double> build_s;  ///< empty where what was built before has answered again
     double solve_s = 0.0;
-    std::optional<double> reference_s;     ///< empty where it was read from the cache
-    std::optional<ErrorStatistics> error;  ///< of the answer against the reference, over vertices
-                                           ///< whose question has one (well_defined.h)
+    std::optional<double> reference_s;  ///< empty where it was read from the cache
+    std::optional<ModelError> error;    ///< of the answer; empty where there is nothing to judge
     std::string message;  ///< the last thing that went wrong, one sentence; else empty
 };
 
 /// For one thread, the window's; update() takes over what the background threads have finished.
 /// An engine is prepared once per model, and solves drafts, whole answers and other settings until
-/// another engine, device or model is wanted.
+/// another engine, device or model is wanted. On the GPU they compute in a context of the session's
+/// own, made when it is first needed.
 class Session {
 public:
-    /// device: where engines compute on the GPU: a context that nobody else uses and that outlives
-    /// the session. Null: a context of the session's own, made when it is first needed.
-    explicit Session(const GlContext* device = nullptr);
+    Session();
     ~Session();
 
     /// Reads a file in the background, then solves it with the last settings. What is shown stays
@@ -62,7 +60,8 @@ public:
     void open(const std::filesystem::path& path, UpAxis up);
 
     /// Solves the model with these settings: a draft first where the engine has one, then the
-    /// whole. What is running is given up. Does nothing when they are the last settings.
+    /// whole. What is running is given up. Other targets need another model: it is made first, of
+    /// the scene that was read. Does nothing when they are the last settings.
     void solve(const SessionSettings& settings);
 
     /// An even number of rays: the reference is traced now and whenever the definition changes.
@@ -77,7 +76,10 @@ public:
 
     /// What changed in state() since the last call.
     struct Changes {
-        bool model = false, occlusion = false, reference = false;
+        bool file = false;   ///< the model is of another file
+        bool model = false;  ///< of another file, or made anew for other targets
+        bool occlusion = false;
+        bool reference = false;
     };
     [[nodiscard]] Changes update();
 
@@ -91,7 +93,7 @@ public:
 
     const SessionState& state() const { return state_; }
     const SessionSettings& settings() const { return settings_; }
-    bool opening() const { return opening_; }
+    bool opening() const { return making_.has_value() && !making_->scene; }
     bool was_cancelled() const { return was_cancelled_; }  ///< the last solving, before its end
     bool solving() const { return solver_.busy(); }
     bool tracing() const { return tracer_.busy(); }
@@ -99,29 +101,39 @@ public:
     double trace_progress() const { return tracer_.progress(); }
 
 private:
-    struct Read;
+    /// A model that is being made.
+    struct Making {
+        std::filesystem::path path;
+        UpAxis up = UpAxis::y;
+        std::shared_ptr<const Scene> scene;  ///< null: the file is read
+        TargetSettings target;
+    };
+    struct Made;
     struct Answer;
     struct Traced;
     struct Engines;
+    void start_making(Making making);
+    void solve_or_make();
     void start_solve();
     void start_reference();
     void measure();
 
     SessionSettings settings_;
     std::uint32_t reference_rays_ = 0;
-    bool opening_ = false;
+    std::optional<Making> making_;
     bool was_cancelled_ = false;
     SessionState state_;
-    std::vector<bool> has_answer_;  ///< per vertex, by the reference
-    SessionSettings solved_with_;   ///< the answer, a draft's where it is one
-    std::vector<Occlusion> occlusion_;
+    std::shared_ptr<const Scene> scene_;  ///< of the model, as it was read
+    ModelTruth truth_;                    ///< but its reference, which is in state_
+    SessionSettings solved_with_;         ///< the answer, a draft's where it is one
+    std::vector<Occlusion> occlusion_, at_points_;
 
     std::unique_ptr<Engines> engines_;  ///< used by the solver's thread alone
 
     // written by the background threads, taken by update(); what was started before the last model
     // or settings carries an old number and is dropped
     std::mutex mailbox_;
-    std::unique_ptr<Read> read_;
+    std::unique_ptr<Made> made_;
     std::unique_ptr<Answer> answer_;
     std::unique_ptr<Traced> traced_;
     std::string failure_;

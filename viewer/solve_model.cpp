@@ -1,49 +1,126 @@
 #include "viewer/solve_model.h"
 
+#include "reference/reference_cache.h"
+#include "surfels/errors.h"
 #include "surfels/stopwatch.h"
 
 #include <span>
 #include <utility>
-#include <vector>
 
 namespace surfelao {
+namespace {
 
-Solution solve_model(const Prepared& prepared, const Model& model, const SolveSettings& settings,
-                     bool with_ground, const Progress& progress)
+/// A stage of a longer work, which takes it from one share of the whole to another.
+Progress stage(const Progress& whole, double from, double to)
 {
-    const std::span<const Receiver> asked = model.target->receivers();
-    std::vector<Solution> found;
-    if (with_ground) {
-        const std::span<const Receiver> lists[] = {asked, model.ground_receivers};
-        found = solve_lists(prepared, lists, settings, progress);
-    } else {
-        found.push_back(solve(prepared, asked, settings, progress));
-        found.emplace_back();
-        for (const Receiver& receiver : model.ground_receivers)
-            found.back().occlusion.push_back({0.0f, receiver.normal});
-    }
-    Stopwatch watch;
-    Solution solution = std::move(found[0]);
-    solution.occlusion = model.target->values(solution.occlusion);
-    solution.occlusion.insert(solution.occlusion.end(), found[1].occlusion.begin(),
-                              found[1].occlusion.end());
-    solution.seconds += watch.lap();
-    return solution;
+    if (!whole)
+        return {};
+    return [&whole, from, to](double done) { return whole(from + (to - from) * done); };
 }
 
-Reference reference_of(const Model& model, const ReferenceOptions& options,
-                       const Progress& progress)
+void append(std::vector<Occlusion>& values, std::span<const Occlusion> more)
+{
+    values.insert(values.end(), more.begin(), more.end());
+}
+
+bool is_same(const SurfacePoint& a, const SurfacePoint& b)
+{
+    return a.triangle == b.triangle && a.at == b.at;
+}
+
+}  // namespace
+
+ModelAnswer solve_model(const Prepared& prepared, const Model& model, const SolveSettings& settings,
+                        const SolveWith& with, const Progress& progress)
+{
+    std::vector<std::span<const Receiver>> lists = {model.target->receivers()};
+    if (with.ground)
+        lists.push_back(model.ground_receivers);
+    if (with.points)
+        lists.push_back(model.point_receivers);
+    std::vector<Solution> found = solve_lists(prepared, lists, settings, progress);
+
+    Stopwatch watch;
+    ModelAnswer answer;
+    if (with.points) {
+        answer.at_points = std::move(found.back().occlusion);
+        found.pop_back();
+    }
+    answer.values = model.target->values(found.front().occlusion);
+    if (with.ground) {
+        append(answer.values, found.back().occlusion);
+    } else {
+        for (const Receiver& receiver : model.ground_receivers)
+            answer.values.push_back({0.0f, receiver.normal});
+    }
+    answer.seconds = found.front().seconds + watch.lap();
+    return answer;
+}
+
+ModelReference reference_of(const Model& model, const Definition& definition, std::uint32_t rays,
+                            const Progress& progress)
 {
     const std::span<const Receiver> asked = model.target->receivers();
     std::vector<Receiver> receivers(asked.begin(), asked.end());
     receivers.insert(receivers.end(), model.ground_receivers.begin(), model.ground_receivers.end());
-    Reference reference = trace_reference(model.geometry(), receivers, options, progress);
-    const std::span<const Occlusion> traced = reference.occlusion;
-    std::vector<Occlusion> values = model.target->values(traced.first(asked.size()));
-    values.insert(values.end(), traced.begin() + static_cast<std::ptrdiff_t>(asked.size()),
-                  traced.end());
-    reference.occlusion = std::move(values);
+    const Reference traced = trace_reference(
+        model.geometry(), receivers,
+        {.definition = definition, .rays = rays, .find_ill_defined = false}, progress);
+    const std::span<const Occlusion> answers = traced.occlusion;
+    ModelReference reference{model.target->values(answers.first(asked.size())), traced.from_cache};
+    append(reference.values, answers.subspan(asked.size()));
     return reference;
+}
+
+ModelTruth truth_of(const Model& model, const Definition& definition, std::uint32_t rays,
+                    const Progress& progress)
+{
+    const Geometry& geometry = model.geometry();
+    const TruthSettings settings = {.definition = definition,
+                                    .offset = offset_of(model.settings, geometry.frame),
+                                    .points = kModelPoints,
+                                    .rays = rays};
+    ModelTruth found;
+    found.truth = trace_truth(*model.mesh, settings, stage(progress, 0.0, 0.2));
+    const auto find = [&](const VertexTarget& fitted) {
+        found.floor =
+            find_floor(fitted, geometry, found.truth, settings, stage(progress, 0.2, 0.6));
+    };
+    if (model.settings.values == VertexValues::fit) {
+        find(*model.target);
+        const Reference ground =
+            trace_reference(geometry, model.ground_receivers,
+                            {.definition = definition, .rays = rays, .find_ill_defined = false},
+                            stage(progress, 0.6, 1.0));
+        found.reference = {found.floor.values, found.floor.from_cache && ground.from_cache};
+        append(found.reference.values, ground.occlusion);
+    } else {
+        TargetSettings fit = model.settings;
+        fit.values = VertexValues::fit;
+        find(VertexTarget(model.mesh, fit));
+        found.reference = reference_of(model, definition, rays, stage(progress, 0.6, 1.0));
+        found.reference.from_cache &= found.floor.from_cache;
+    }
+    found.reference.from_cache &= found.truth.from_cache;
+    return found;
+}
+
+ModelError error_of(const Model& model, const ModelTruth& truth, std::span<const Occlusion> values,
+                    std::span<const Occlusion> at_points)
+{
+    // those of the well-defined points: in the same order, some left out
+    std::vector<Occlusion> judged;
+    for (std::size_t i = 0; i < model.points.size() && judged.size() < truth.truth.points.size();
+         ++i) {
+        if (is_same(model.points[i], truth.truth.points[judged.size()]))
+            judged.push_back(at_points[i]);
+    }
+    SURFELAO_CHECK(judged.size() == truth.truth.points.size());
+    const std::span<const Occlusion> of_vertices = values.first(model.geometry().positions.size());
+    return {.seen = seen_error(model.geometry(), of_vertices, truth.truth),
+            .floor = truth.floor.error.rmse,
+            .solve = error_against(truth.truth, judged).rmse,
+            .left_out = truth.truth.ill_defined};
 }
 
 }  // namespace surfelao

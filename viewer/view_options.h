@@ -17,7 +17,7 @@ enum class Colors {
     rays = 1,          ///< the same by the ray reference
     difference = 2,    ///< |occlusion - reference| as a heat map
     bent_normals = 3,  ///< x, y, z as red, green, blue
-    normals = 4,       ///< of the surfels, likewise
+    normals = 4,       ///< likewise: corner normals of triangles, the disks' own of splats
     levels = 5,        ///< depth of the surfel's leaf in the octree, as a heat map
     environment = 6,   ///< light of a panorama along the bent normal, times visibility
 };

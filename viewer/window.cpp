@@ -59,15 +59,12 @@ Image joined(const std::vector<Image>& images)
 /// The window with all that belongs to it, made and destroyed with its context current.
 class Viewer {
 public:
-    /// hidden: open_hidden_window's.
-    Viewer(const WindowOptions& options, GLFWwindow* window, GLFWwindow* hidden)
+    Viewer(const WindowOptions& options, GLFWwindow* window)
         : options_(options),
           window_(window),
           inbox_(window),
-          solving_context_(solving_context(hidden)),
           context_(adopt_context(window)),
           renderer_(context_),
-          session_(solving_context_ ? &*solving_context_ : nullptr),
           panel_state_(options.panel),
           panel_(window, content_scale(window))
     {
@@ -99,20 +96,6 @@ public:
     const std::vector<std::filesystem::path>& written() const { return files_.written(); }
 
 private:
-    /// Where engines may leave their answers for the window; none where the system has none.
-    static std::optional<GlContext> solving_context(GLFWwindow* hidden)
-    {
-        if (hidden == nullptr)
-            return std::nullopt;
-        try {
-            GlContext context = adopt_context(hidden);
-            context.release();  // the solver's thread takes it
-            return context;
-        } catch (const std::exception&) {
-            return std::nullopt;
-        }
-    }
-
     void wait_for_events()
     {
         const bool drawing = has_view() && (panes_.empty() || samples() < kMostSamples);
@@ -139,10 +122,11 @@ private:
         const Session::Changes changes = session_.update();
         const SessionState& state = session_.state();
         try {
-            if (changes.model) {
+            if (changes.model)
+                renderer_.set_model(*state.model);
+            if (changes.file) {
                 note_.clear();
                 files_.add_input(state.path);
-                renderer_.set_model(*state.model);
                 glfwSetWindowTitle(window_,
                                    (state.path.filename().string() + " - surfelao").c_str());
                 frame_all();
@@ -393,7 +377,6 @@ private:
     const WindowOptions& options_;
     GLFWwindow* window_;
     Inbox inbox_;
-    std::optional<GlContext> solving_context_;  ///< shares objects with the window's
     GlContext context_;
     Renderer renderer_;
     Session session_;
@@ -413,8 +396,7 @@ std::vector<std::filesystem::path> show_window(const WindowOptions& options)
 {
     const WindowSystem system;
     const WindowHandle window = open_window(options.width, options.height);
-    const WindowHandle hidden = open_hidden_window(window.get());
-    Viewer viewer(options, window.get(), hidden.get());
+    Viewer viewer(options, window.get());
     viewer.run();
     return viewer.written();
 }

@@ -64,6 +64,10 @@ TEST_F(RenderCommand, EveryModeAndSurfaceIsAnotherPicture)
              {"--mode", "environment"},
              {"--no-ground"},
              {"--camera", "azimuth=90"},
+             {"--normals", "flat"},
+             {"--crease", "80"},
+             {"--values", "point"},
+             {"--values", "point", "--offset", "1%"},
          }) {
         const Outcome outcome = render("x.png", options);
         ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -92,6 +96,8 @@ TEST_F(RenderCommand, RefusesWhatCannotBeDoneInOneSentence)
             {"--environment", "sky.hdr", "--mode", "rays"});
     refused(2, "--reference-rays must be an even number", "x.png", {"--reference-rays", "15"});
     refused(2, "--mode", "x.png", {"--mode", "colourful"});
+    refused(2, "--crease", "x.png", {"--crease", "181"});
+    refused(1, "the offset must be smaller than the scene", "x.png", {"--offset", "1000"});
 }
 
 TEST_F(RenderCommand, RefusesToReplaceWhatItReads)
@@ -137,6 +143,24 @@ TEST_F(RenderCommand, WithoutADriverItSaysSoInOneSentenceAndAutoDrawsBySoftware)
     EXPECT_EQ(std::count(refused.err.begin(), refused.err.end(), '\n'), 1) << refused.err;
     EXPECT_FALSE(fs::exists(folder_ / "x.png"));
     EXPECT_EQ(drawn.code, 0) << drawn.err;
+}
+
+TEST(ViewCommand, RefusesWhatTheWindowCannotShow)
+{
+    const TemporaryFolder folder;
+    for (const std::vector<std::string>& options :
+         std::vector<std::vector<std::string>>{{"--normals", "mean"},
+                                               {"--crease", "-1"},
+                                               {"--values", "both"},
+                                               {"--offset", "0"},
+                                               {"--max-distance", "5"},
+                                               {"--kernel", "bunnell"}}) {
+        std::vector<std::string> arguments = {"view"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const Outcome outcome = run(folder.path(), arguments);
+        EXPECT_EQ(outcome.code, 2) << options[0];
+        EXPECT_NE(outcome.err.find(options[0]), std::string::npos) << outcome.err;
+    }
 }
 
 TEST(ViewCommand, WithoutADisplayItSaysSoAndFails)

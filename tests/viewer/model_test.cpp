@@ -77,7 +77,7 @@ TEST(Model, HasASplatPerSurfelWhereTrianglesAreSmall)
 {
     for (const float largest : {0.2f, std::numeric_limits<float>::infinity()}) {
         const Model model =
-            make_model(make_geometry(scenes::sphere({0, 0, 0}, 1.0, 8)), UpAxis::y, 1e-4f, largest);
+            make_model(make_mesh(scenes::sphere({0, 0, 0}, 1.0, 8)), UpAxis::y, {}, largest);
         ASSERT_EQ(model.splats.size(), surfels_at_vertices(model.geometry()).size());
         ASSERT_EQ(model.splat_radii.size(), model.splats.size());
         for (std::size_t i = 0; i < model.splats.size(); ++i)
@@ -91,7 +91,7 @@ TEST(Model, LargeTrianglesAreCoveredFromInside)
 {
     const glm::dvec3 a(0, 0, 0), b(1, 0, 0);
     for (const glm::dvec3 c : {glm::dvec3(0, 1, 0), glm::dvec3(0.3, 0.01, 0)}) {
-        const Model model = make_model(make_geometry(triangle(a, b, c)), UpAxis::y, 1e-4f);
+        const Model model = make_model(make_mesh(triangle(a, b, c)), UpAxis::y);
         ASSERT_EQ(model.splat_radii.size(), model.splats.size());
         EXPECT_LT(model.splats.size(), 20'000u);
         const std::vector<glm::vec3>& p = model.geometry().positions;
@@ -131,15 +131,14 @@ TEST(Model, SplatsInsideOfTrianglesEndAtANumber)
             scene.positions.emplace_back(random() % 1000, random() % 1000, random() % 1000);
         scene.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
-    const Model model = make_model(make_geometry(scene), UpAxis::y, 1e-4f);
+    const Model model = make_model(make_mesh(scene), UpAxis::y);
     EXPECT_LE(model.splats.size(), 400'000u + 60'000u);
     EXPECT_GE(model.splats.size(), 20'000u);
 }
 
 TEST(Model, KnowsTheLevelOfEachSurfelsLeaf)
 {
-    const Model model =
-        make_model(make_geometry(scenes::sphere({0, 0, 0}, 1.0, 8)), UpAxis::y, 1e-4f);
+    const Model model = make_model(make_mesh(scenes::sphere({0, 0, 0}, 1.0, 8)), UpAxis::y);
     ASSERT_EQ(model.levels.size(), model.surfels.size());
     const glm::vec2 range = level_range(model);
     EXPECT_GE(range.x, 1.0f);   // more surfels than fit into a root that is a leaf
@@ -150,22 +149,21 @@ TEST(Model, KnowsTheLevelOfEachSurfelsLeaf)
 TEST(Model, GroundLiesUnderTheScene)
 {
     for (const UpAxis up : {UpAxis::y, UpAxis::z}) {
-        const Model model =
-            make_model(make_geometry(scenes::box({1, 2, 3}, {2, 4, 6}, 2)), up, 1e-4f);
+        const Model model = make_model(make_mesh(scenes::box({1, 2, 3}, {2, 4, 6}, 2)), up);
         const glm::vec3 above = up_direction(up);
         float lowest = 1e9f;
         for (const glm::vec3& p : model.geometry().positions)
             lowest = std::min(lowest, glm::dot(p, above));
-        const std::size_t vertices = model.geometry().positions.size();
-        ASSERT_EQ(model.receivers.size(), vertices + (kGroundCells + 1) * (kGroundCells + 1));
-        for (std::size_t i = vertices; i < model.receivers.size(); ++i) {
-            EXPECT_LT(glm::dot(model.receivers[i].position, above), lowest);
-            EXPECT_GT(glm::dot(model.receivers[i].position, above), lowest - 0.01f);
-            EXPECT_EQ(model.receivers[i].normal, above);
+        ASSERT_EQ(model.ground_receivers.size(), std::size_t{kGroundReceivers});
+        EXPECT_EQ(model.answer_count(), model.geometry().positions.size() + kGroundReceivers);
+        for (const Receiver& receiver : model.ground_receivers) {
+            EXPECT_LT(glm::dot(receiver.position, above), lowest);
+            EXPECT_GT(glm::dot(receiver.position, above), lowest - 0.01f);
+            EXPECT_EQ(receiver.normal, above);
         }
         const Ground& ground = model.ground;
         EXPECT_GT(glm::dot(glm::cross(ground.axis_x, ground.axis_y), above), 0.0f);
-        EXPECT_NEAR(glm::distance(model.receivers.back().position,
+        EXPECT_NEAR(glm::distance(model.ground_receivers.back().position,
                                   ground.corner + ground.axis_x + ground.axis_y),
                     1e-4f, 1e-5f);
     }
@@ -173,11 +171,10 @@ TEST(Model, GroundLiesUnderTheScene)
 
 TEST(Model, AlsoOfOneTriangleAndOfNoneWithArea)
 {
-    const Model one = make_model(make_geometry(triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})),
-                                 UpAxis::y, 1e-4f, 1.0f);
+    const Model one =
+        make_model(make_mesh(triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0})), UpAxis::y, {}, 1.0f);
     EXPECT_EQ(one.splats.size(), 3u);
-    const Model none =
-        make_model(make_geometry(triangle({0, 0, 0}, {1, 0, 0}, {2, 0, 0})), UpAxis::y, 1e-4f);
+    const Model none = make_model(make_mesh(triangle({0, 0, 0}, {1, 0, 0}, {2, 0, 0})), UpAxis::y);
     EXPECT_EQ(none.splats.size(), 0u);
     EXPECT_FALSE(none.seen.empty());
     EXPECT_EQ(level_range(none), glm::vec2(0.0f, 1.0f));

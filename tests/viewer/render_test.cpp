@@ -7,9 +7,9 @@
 #include "image/color_map.h"
 #include "image/difference.h"
 #include "image/image_file.h"
-#include "reference/rays.h"
 #include "scenes.h"
 #include "surfels/errors.h"
+#include "viewer/solve_model.h"
 
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
@@ -27,24 +27,23 @@
 namespace surfelao {
 namespace {
 
-constexpr float kOffset = 1e-4f;
-
 Model model_of(const Scene& scene, UpAxis up = UpAxis::z)
 {
-    return make_model(make_geometry(scene), up, kOffset);
+    return make_model(make_mesh(scene), up);
 }
 
 /// One splat per vertex, however large.
 Model surfels_of(const Scene& scene)
 {
-    return make_model(make_geometry(scene), UpAxis::z, kOffset,
-                      std::numeric_limits<float>::infinity());
+    return make_model(make_mesh(scene), UpAxis::z, {}, std::numeric_limits<float>::infinity());
 }
 
 std::vector<Occlusion> all(const Model& model, float occlusion)
 {
     std::vector<Occlusion> values;
-    for (const Receiver& receiver : model.receivers)
+    for (std::size_t i = 0; i < model.geometry().positions.size(); ++i)
+        values.push_back({occlusion, model.mesh->surface.normals[i]});
+    for (const Receiver& receiver : model.ground_receivers)
         values.push_back({occlusion, receiver.normal});
     return values;
 }
@@ -279,6 +278,28 @@ TEST(Render, TheDifferenceIsAHeatMapWithItsLegend)
     EXPECT_LT(glm::distance(middle(0.9f, 0.1f), heat_color(1.0f)), 0.01f);
 }
 
+// A cube of eight vertices: each of the three faces in sight is of one colour, its edges too. Mean
+// normals would run through all colours between.
+TEST(Render, HardEdgesHaveTheNormalsOfTheirSides)
+{
+    const Model model = model_of(scenes::box({0, 0, 0}, {1, 1, 1}, 1));
+    ASSERT_EQ(model.geometry().positions.size(), 8u);
+    RenderOptions options = plain(Shape::triangles, 60, 60);
+    const Camera camera = frame_points(model.seen, UpAxis::z, 1.0f);
+    options.view.colors = Colors::visibility;
+    const Image open = draw_open(model, camera, options);
+    options.view.colors = Colors::normals;
+    const Image image = draw_open(model, camera, options);
+    std::vector<glm::vec3> colors;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const glm::vec3 color(image.pixels[i]);
+        const auto alike = [&](glm::vec3 other) { return glm::distance(color, other) < 0.01f; };
+        if (is_model(open.pixels[i]) && std::none_of(colors.begin(), colors.end(), alike))
+            colors.push_back(color);
+    }
+    EXPECT_EQ(colors.size(), 3u);
+}
+
 // Light from +x only: a surface that bends towards it is lit, whatever its own normal.
 TEST(Render, TheEnvironmentIsLookedUpAlongTheBentNormal)
 {
@@ -403,11 +424,10 @@ struct Golden {
 TEST(Render, LooksAsItDidWhenItWasLookedAt)
 {
     const Model model = surfels_of(corner_with_ball());
-    const RayScene scene(model.geometry(), RayScene::Build::robust);
-    const std::vector<Occlusion> reference =
-        trace_occlusion(scene, model.receivers, {.rays = 256, .seed = 1});
+    const Prepared rays = prepare(model.geometry(), {.engine = Engine::rays});
+    const std::vector<Occlusion> reference = solve_model(rays, model, {.rays = 256}).values;
     // few rays: something to see in the difference
-    const std::vector<Occlusion> own = trace_occlusion(scene, model.receivers, {.rays = 64});
+    const std::vector<Occlusion> own = solve_model(rays, model, {.rays = 64}).values;
     const Camera camera =
         frame_points(model.seen, UpAxis::z, 4.0f / 3.0f, {.azimuth_deg = 40, .elevation_deg = 20});
     for (const Golden& golden : {
