@@ -89,7 +89,6 @@ public:
     /// threads.
     [[nodiscard]] std::vector<Occlusion> solve(std::span<const Occlusion> answers) const;
 
-    [[nodiscard]] const SurfaceSamples& samples() const;
 
     /// Vertices that no triangle with an area uses, rising.
     [[nodiscard]] std::vector<std::uint32_t> unused_vertices() const;
