@@ -11,6 +11,7 @@
 #include <cmath>
 #include <optional>
 #include <ranges>
+#include <span>
 #include <utility>
 
 namespace surfelao {

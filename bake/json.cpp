@@ -3,6 +3,7 @@
 #include "bake/compare.h"
 #include "bake/frontier.h"
 #include "bake/info.h"
+#include "surfels/number_text.h"
 
 #include <nlohmann/json.hpp>
 
