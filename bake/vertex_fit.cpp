@@ -84,6 +84,7 @@ struct VertexFit::Impl {
     std::vector<std::uint32_t> unknowns;  ///< per vertex
     SurfaceSamples samples;
     Buckets<std::uint32_t> corners;  ///< 4 * cell + corner, by unknown
+    std::vector<bool> edged;         ///< unknowns of vertices that faces share over a hard edge
     Matrix matrix;
 
     Impl(const Geometry& g, const Surface& s, const NormalSettings& normals)
@@ -97,8 +98,15 @@ struct VertexFit::Impl {
                   for (int corner = 0; corner < corner_count(own); ++corner)
                       put(own.unknowns[corner], 4 * cell + static_cast<std::uint32_t>(corner));
               }
-          })
+          }),
+          edged(unknown_count, false)
     {
+        for (std::uint32_t wedge = 0; wedge < s.normals.size(); ++wedge) {
+            const std::uint32_t vertex = s.vertex_of(wedge);
+            if (unknowns[vertex] != kUnused &&
+                !are_smooth(s.normals[vertex], s.normals[wedge], normals))
+                edged[unknowns[vertex]] = true;
+        }
         make_matrix();
     }
 
@@ -135,11 +143,16 @@ glm::dvec4 VertexFit::Impl::row_of(std::uint32_t cell, int corner) const
         area += static_cast<double>(samples.areas[s]);
     });
     // edges that meet at the corner: in a quad either cut gives half of its two triangles' edges
-    const int count = corner_count(samples.cells[cell]);
+    const FitCell& own = samples.cells[cell];
+    const int count = corner_count(own);
+    bool at_edge = false;
+    for (int each = 0; each < count; ++each)
+        at_edge |= edged[own.unknowns[each]];
+    const double smoothness = at_edge ? kFitSmoothnessAtEdges : kFitSmoothness;
     for (int other = 0; other < count; ++other) {
         if (other == corner)
             continue;
-        const double edge = kFitSmoothness * area / (count == 3 ? 3.0 : 6.0);
+        const double edge = smoothness * area / (count == 3 ? 3.0 : 6.0);
         row[corner] += edge;
         row[other] -= edge;
     }

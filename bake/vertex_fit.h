@@ -5,11 +5,11 @@
 /// Bargteil, Sloan. Least Squares Vertex Baking. EGSR 2011): the x that make least
 ///
 ///     sum over samples s of  w_s (sum over corners i of b_si x_i - a_s)^2
-///         + kFitSmoothness * sum over triangles t of  A_t / 3 * sum over its edges of (x_i -
-///         x_j)^2
+///         + sum over triangles t of  k_t A_t / 3 * sum over its edges of (x_i - x_j)^2
 ///
-/// a_s: the answer at the sample; b_si: its barycentric weights; w_s: the area that it stands for.
-/// The second sum is small beside the first. It decides where one sample a triangle does not.
+/// a_s: the answer at the sample; b_si: its barycentric weights; w_s: the area that it stands for;
+/// A_t: the triangle's; k_t: kFitSmoothness, small beside the first sum: it decides where one sample
+/// a triangle does not.
 ///
 /// Unknowns are vertices: a file can hold one value for each. Vertices at one place whose normals
 /// make one smooth surface there are one unknown: no seam of the file shows. At hard edges that the
@@ -32,6 +32,12 @@ namespace surfelao {
 /// Unitless. Tried from .001 to .1 on five models: the seen error is least at .03 on all of them,
 /// and up to a sixth higher at .001, where a triangle's single sample leaves its corners free.
 inline constexpr double kFitSmoothness = 0.03;
+
+/// The same in triangles at a hard edge whose faces share their vertices. The values there stand
+/// for both sides at once and fit neither; what the fit makes up for beside them shows as bands
+/// (stars on a roof, light lines along an edge). Seen error at .03, .06, .1: gazebo .1925, .1926,
+/// .1938, blob .0111, .0117, .0127, wingnut .0089, .0087, .0087, pandora .0413, .0411, .0416.
+inline constexpr double kFitSmoothnessAtEdges = 0.06;
 
 /// Samples of a surface: at least one a triangle, and by area as many as there are triangles; of
 /// coarse meshes kFewestSamples, or kMostSamplesEach a triangle where that is less. So a scan has
@@ -88,7 +94,6 @@ public:
     /// their normal. O(n): some ten steps of conjugate gradients. Same bytes for any number of
     /// threads.
     [[nodiscard]] std::vector<Occlusion> solve(std::span<const Occlusion> answers) const;
-
 
     /// Vertices that no triangle with an area uses, rising.
     [[nodiscard]] std::vector<std::uint32_t> unused_vertices() const;

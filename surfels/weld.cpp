@@ -116,17 +116,19 @@ private:
     /// larger than noise.
     static constexpr int kMostInCell = 64;
 
+    /// In reaches: nearly all places then have only one cell to look at.
+    static constexpr double kCell = 32.0;
+
     std::uint64_t cell_of(glm::dvec3 p) const
     {
-        const glm::dvec3 cell = glm::floor(p / (2.0 * reach_));
-        return hash_position(cell);
+        return hash_position(glm::floor(p / (kCell * reach_)));
     }
 
     /// Each cell that the cube of 2 reach around p touches, once: 1 to 8 of them.
     template <class Visit>
     void for_each_cell(glm::dvec3 p, double reach, const Visit& visit) const
     {
-        const double size = 2.0 * reach_;
+        const double size = kCell * reach_;
         const glm::dvec3 low = glm::floor((p - reach) / size);
         const glm::dvec3 high = glm::floor((p + reach) / size);
         for (double x = low.x; x <= high.x; ++x) {

@@ -13,8 +13,8 @@ namespace surfelao {
 ///
 /// Exporters that write every corner of every facet (STL), or move a mesh's parts about in floats,
 /// leave corners that are equal but for their last digits. Where a vertex's triangles close around
-/// it nothing is missing, and nothing but its exact position is looked at. Where they do not, the
-/// nearest torn vertices within kWeldDistance are taken for the same place, but never two that are
+/// it nothing is missing, and nothing but its exact position is looked at. Where they do not,
+/// torn vertices within kWeldDistance are taken for the same place, but never two that are
 /// farther apart than kWeldShare of the shortest edge at either: so no edge vanishes, and small
 /// things in big worlds keep their shape.
 ///
