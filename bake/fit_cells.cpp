@@ -337,7 +337,7 @@ public:
         for (const Piece& piece : pieces)
             wanted += piece.triangles > 0 ? wanted_of(piece.triangles) : 0.0;
         const auto count = static_cast<double>(areas.size());
-        const double most = std::max(count, static_cast<double>(kMostByPiece));
+        const double most = count + static_cast<double>(kMoreByPiece);
         const double extra = wanted > most ? (most - count) / (wanted - count) : 1.0;
         per_area_ = area > 0.0 ? wanted_of(areas.size()) / area : 0.0;
         per_area_of_.resize(pieces.size(), 0.0);

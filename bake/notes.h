@@ -34,9 +34,9 @@ struct Baked {
 /// share is at most .0003 on scans, and at least .015 where walls or floors are a few triangles.
 inline constexpr double kNotableMisfit = 0.015;
 inline constexpr double kNotableShare = 0.01;  ///< of the area
-/// A vertex above this occlusion is closed on all sides: behind large triangles the masks leave up
-/// to .005 of a closed place open.
-inline constexpr float kClosed = 0.995f;
+/// A vertex above this occlusion is closed on all sides: inside of a ball of few triangles the masks
+/// leave up to .013 open at good.
+inline constexpr float kClosed = 0.98f;
 inline constexpr double kNotableClosed = 0.01;  ///< of the vertices
 /// Above this mean occlusion a scene is an interior, and shades differ too little to be seen.
 inline constexpr double kInteriorMean = 0.9;

@@ -41,15 +41,15 @@ inline constexpr double kFitSmoothnessAtEdges = 0.06;
 
 /// Samples of a surface: at least one a triangle, and by area as many as there are triangles; of
 /// coarse meshes kFewestSamples, or kMostSamplesEach a triangle where that is less. So a scan has
-/// about one a triangle, and a floor of two triangles dozens. Seen error with samples by area for a
+/// about one a triangle, and a floor of two triangles a dozen. Seen error with samples by area for a
 /// half, one and four times the number of triangles: pandora .0420, .0411, .0399; bunny .0066,
 /// .0066, .0064; at twice the time for four times as many.
 inline constexpr std::uint64_t kFewestSamples = 2048;
-inline constexpr std::uint64_t kMostSamplesEach = 32;
+inline constexpr std::uint64_t kMostSamplesEach = 8;
 /// The same holds for each connected piece by itself, so that nothing that is put beside it changes
-/// its samples; but for scenes of many small pieces, which have kMostByPiece by that count, or as
-/// many as there are triangles.
-inline constexpr std::uint64_t kMostByPiece = 8192;
+/// its samples: all pieces together may have kMoreByPiece more than one a triangle by that. Where
+/// they want more, as scenes of many small pieces do, each has its share of it.
+inline constexpr std::uint64_t kMoreByPiece = 2048;
 inline constexpr std::uint32_t kMostSampleRows = 32;  ///< of a triangle or quad: 32^2 samples
 
 /// What the sum over the samples runs over: triangles, and planar quads of two of them. A file, or
