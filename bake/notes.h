@@ -36,7 +36,7 @@ inline constexpr double kNotableMisfit = 0.015;
 inline constexpr double kNotableShare = 0.01;  ///< of the area
 /// A vertex above this occlusion is closed on all sides: inside of a ball of few triangles the masks
 /// leave up to .013 open at good.
-inline constexpr float kClosed = 0.98f;
+inline constexpr float kClosed = 0.985f;
 inline constexpr double kNotableClosed = 0.01;  ///< of the vertices
 /// Above this mean occlusion a scene is an interior, and shades differ too little to be seen.
 inline constexpr double kInteriorMean = 0.9;

@@ -317,9 +317,8 @@ float offset_at(const Geometry& geometry, std::uint32_t triangle, const Offset& 
     const glm::uvec3 t = geometry.triangles[triangle];
     const glm::vec3 a = geometry.positions[t.y] - geometry.positions[t.x];
     const glm::vec3 b = geometry.positions[t.z] - geometry.positions[t.x];
-    const float longest2 = std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(a - b, a - b)});
-    const float height = glm::length(glm::cross(a, b)) / std::sqrt(longest2);
-    return std::clamp(kOffsetShare * height, kLeastOffset, kMostOffset);
+    const float size = std::sqrt(glm::length(glm::cross(a, b)));
+    return std::clamp(kOffsetShare * size, kLeastOffset, kMostOffset);
 }
 
 std::vector<Receiver> receivers_at(const Geometry& geometry, const Surface& surface,
