@@ -141,9 +141,9 @@ TEST(Values, OfASmoothSurfaceShowNoSeamOfTheFile)
 TEST(Values, AreTheSameBesideASpeckFarAway)
 {
     const Scene speck = scenes::triangle({80, 0, 0}, {80, 1e-3, 0}, {80, 0, 1e-3});
-    for (const Scene& scene : {scenes::bumpy_sphere(20), furnished_corner()}) {
-        const std::vector<Occlusion> expected = values_of(scene, by_rays(4096));
-        std::vector<Occlusion> found = values_of(scene + speck, by_rays(4096));
+    for (const Scene& scene : {scenes::bumpy_sphere(32), furnished_corner()}) {
+        const std::vector<Occlusion> expected = values_of(scene, by_rays(2048));
+        std::vector<Occlusion> found = values_of(scene + speck, by_rays(2048));
         found.resize(expected.size());
         EXPECT_LT(rms_difference(expected, found), 0.002);
     }

@@ -257,16 +257,16 @@ TEST(FileNormals, OfCornersAreCountedInTheSceneWhereTrianglesAreDropped)
 TEST(Offsets, FollowTheTriangleBetweenTheirLimits)
 {
     Scene scene = square();
-    const auto offset_of_strip = [&](double width, const Offset& offset = {}) {
-        const Scene strip = scenes::triangle({0, 0, 0}, {0.1, 0, 0}, {0, width, 0});
-        return offset_at(make_geometry(strip + scene), 0, offset);
+    const auto offset_of = [&](double length, double width, const Offset& offset = {}) {
+        const Scene own = scenes::triangle({0, 0, 0}, {length, 0, 0}, {0, width, 0});
+        return offset_at(make_geometry(own + scene), 0, offset);
     };
     const float diagonal = std::sqrt(2.0f);
-    EXPECT_EQ(offset_of_strip(0.1), kMostOffset);
-    EXPECT_NEAR(offset_of_strip(1e-3), kOffsetShare * 1e-3f / diagonal, 1e-8f);
-    EXPECT_EQ(offset_of_strip(1e-6), kLeastOffset);
-    for (const double width : {0.1, 1e-6})
-        EXPECT_EQ(offset_of_strip(width, 0.02f), 0.02f);
+    EXPECT_EQ(offset_of(0.1, 0.1), kMostOffset);
+    EXPECT_NEAR(offset_of(0.1, 1e-3), kOffsetShare * 1e-2f / diagonal, 1e-8f);
+    EXPECT_EQ(offset_of(1e-5, 1e-5), kLeastOffset);
+    for (const double size : {0.1, 1e-5})
+        EXPECT_EQ(offset_of(size, size, 0.02f), 0.02f);
 }
 
 TEST(Receivers, StandOffTheFaceOnTheSideOfTheShadingNormal)
