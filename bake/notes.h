@@ -34,8 +34,8 @@ struct Baked {
 /// share is at most .0003 on scans, and at least .015 where walls or floors are a few triangles.
 inline constexpr double kNotableMisfit = 0.015;
 inline constexpr double kNotableShare = 0.01;  ///< of the area
-/// A vertex above this occlusion is closed on all sides: what lies on a wide floor is not. The masks
-/// leave some vertices inside of coarse pieces up to .013 open: those are not counted.
+/// A vertex above this occlusion is closed on all sides: what lies on a wide floor is not. The
+/// masks leave some vertices inside of coarse pieces up to .013 open: those are not counted.
 inline constexpr float kClosed = 0.995f;
 inline constexpr double kNotableClosed = 0.01;  ///< of the vertices
 /// Above this mean occlusion a scene is an interior, and shades differ too little to be seen.

@@ -92,13 +92,15 @@ struct VertexFit::Impl {
           surface(s),
           unknowns(unknowns_of(g, s, normals, unknown_count)),
           samples(samples_of(g, unknowns)),
-          corners(unknown_count, [this](const auto& put) {
-              for (std::uint32_t cell = 0; cell + 1 < samples.cells.size(); ++cell) {
-                  const FitCell& own = samples.cells[cell];
-                  for (int corner = 0; corner < corner_count(own); ++corner)
-                      put(own.unknowns[corner], 4 * cell + static_cast<std::uint32_t>(corner));
-              }
-          }),
+          corners(unknown_count,
+                  [this](const auto& put) {
+                      for (std::uint32_t cell = 0; cell + 1 < samples.cells.size(); ++cell) {
+                          const FitCell& own = samples.cells[cell];
+                          for (int corner = 0; corner < corner_count(own); ++corner)
+                              put(own.unknowns[corner],
+                                  4 * cell + static_cast<std::uint32_t>(corner));
+                      }
+                  }),
           edged(unknown_count, false)
     {
         for (std::uint32_t wedge = 0; wedge < s.normals.size(); ++wedge) {

@@ -8,8 +8,8 @@
 ///         + sum over triangles t of  k_t A_t / 3 * sum over its edges of (x_i - x_j)^2
 ///
 /// a_s: the answer at the sample; b_si: its barycentric weights; w_s: the area that it stands for;
-/// A_t: the triangle's; k_t: kFitSmoothness, small beside the first sum: it decides where one sample
-/// a triangle does not.
+/// A_t: the triangle's; k_t: kFitSmoothness, small beside the first sum: it decides where one
+/// sample a triangle does not.
 ///
 /// Unknowns are vertices: a file can hold one value for each. Vertices at one place whose normals
 /// make one smooth surface there are one unknown: no seam of the file shows. At hard edges that the
@@ -41,8 +41,8 @@ inline constexpr double kFitSmoothnessAtEdges = 0.06;
 
 /// Samples of a surface: at least one a triangle, and by area as many as there are triangles; of
 /// coarse meshes kFewestSamples, or kMostSamplesEach a triangle where that is less. So a scan has
-/// about one a triangle, and a floor of two triangles a dozen. Seen error with samples by area for a
-/// half, one and four times the number of triangles: pandora .0420, .0411, .0399; bunny .0066,
+/// about one a triangle, and a floor of two triangles a dozen. Seen error with samples by area for
+/// a half, one and four times the number of triangles: pandora .0420, .0411, .0399; bunny .0066,
 /// .0066, .0064; at twice the time for four times as many.
 inline constexpr std::uint64_t kFewestSamples = 2048;
 inline constexpr std::uint64_t kMostSamplesEach = 8;
