@@ -77,7 +77,7 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     tbb::parallel_invoke(
         [&] {
             write_scene(settings.output, scene, values,
-                        {.colors = settings.colors, .mark = mark_of(settings)});
+                        {settings.colors, settings.encoding, mark_of(settings)});
         },
         [&] {  // a writer leaves cores idle
             report.misfit = target.misfit(solution.occlusion, values);
@@ -134,7 +134,8 @@ std::string mark_of(const BakeSettings& settings)
     text += std::isfinite(limit.value) && limit.percent ? "%" : "";
     text += limit.falloff == Falloff::smooth ? " falloff=smooth" : " falloff=none";
     text += " " + text_of(settings.target);
-    text += settings.colors ? " colors=yes" : " colors=no";
+    text += " colors=" + name_of(settings.colors);
+    text += " encoding=" + name_of(settings.encoding);
     return make_mark("bake", text);
 }
 

@@ -3,6 +3,7 @@
 
 #include "bake/vertex_target.h"
 #include "engines/engine.h"
+#include "files/vertex_colors.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -22,7 +23,8 @@ struct BakeSettings {
     DistanceLimit max_distance;
     Kernel kernel = Kernel::cosine;
     TargetSettings target;
-    bool colors = false;  ///< glTF: COLOR_0 too (files/scene_io.h)
+    VertexColors colors = VertexColors::automatic;
+    Encoding encoding = Encoding::automatic;
 };
 
 /// Wall-clock seconds of each stage.
@@ -87,7 +89,7 @@ struct BatchEntry {
 /// were asked for; neither the input nor threads. Of what only another engine has, nothing.
 ///
 ///     surfelao 0.1.0 bake: engine=masks device=cpu quality=1 kernel=cosine max_distance=none
-///     falloff=none normals=auto crease=40 values=fit colors=no
+///     falloff=none normals=auto crease=40 values=fit colors=auto encoding=auto
 [[nodiscard]] std::string mark_of(const BakeSettings& settings);
 
 /// Whether the output exists with the mark that a bake would give it now and is not older than its

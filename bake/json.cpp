@@ -81,7 +81,8 @@ Json json_of(const BatchEntry& entry)
     json["settings"] = json_of(report.settings.engine);
     json["settings"]["threads"] = report.threads;
     add(json["settings"], report.settings.target);
-    json["settings"]["colors"] = report.settings.colors;
+    json["settings"]["colors"] = name_of(report.settings.colors);
+    json["settings"]["encoding"] = name_of(report.settings.encoding);
     json["seconds"] = {{"read", seconds.read},  {"surfels", seconds.surfels},
                        {"tree", seconds.tree},  {"solve", seconds.solve},
                        {"fit", seconds.fit},    {"write", seconds.write},

@@ -24,7 +24,7 @@ struct BakeOptions {
     EngineOptions engine;
     MeasureOptions measure;
     SurfaceOptions surface;
-    bool colors = false;
+    ColorOptions colors;
     bool resume = false;
     bool overwrite = false;
     std::optional<std::string> json;
@@ -111,7 +111,8 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
     settings.target = target_settings_of(options.surface);
-    settings.colors = options.colors;
+    settings.colors = colors_of(options.colors);
+    settings.encoding = encoding_of(options.colors);
     return settings;
 }
 
@@ -203,8 +204,7 @@ void add_bake_command(CLI::App& app, Work& work)
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
-    command->add_flag("--colors", options->colors,
-                      "glTF: visibility as COLOR_0 too (.ply and .obj always have colours)");
+    add_color_options(*command, options->colors);
     command->add_flag(
         "--resume", options->resume,
         "Skip files whose result is not older than they are and says that it was "

@@ -151,6 +151,28 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options)
         ->group("What is measured");
 }
 
+void add_color_options(CLI::App& command, ColorOptions& options)
+{
+    command
+        .add_option("--colors", options.colors,
+                    "What the vertices' colours show: grey = visibility; shaded = the file's own "
+                    "colours times visibility; keep = the file's own; bent = bent normals; auto = "
+                    "grey where the file has no colours and no textures, else kept (.obj, .off: "
+                    "shaded)")
+        ->check(CLI::IsMember({"auto", "grey", "shaded", "keep", "bent"}))
+        ->type_name("auto|grey|shaded|keep|bent")
+        ->default_str("auto")
+        ->group("What is written");
+    command
+        .add_option("--encoding", options.encoding,
+                    "Numbers of colours: auto = as readers of the format take them (glTF linear, "
+                    ".ply .obj .off sRGB)")
+        ->check(CLI::IsMember({"auto", "linear", "srgb"}))
+        ->type_name("auto|linear|srgb")
+        ->default_str("auto")
+        ->group("What is written");
+}
+
 void add_thread_option(CLI::App& command, std::optional<int>& threads)
 {
     command.add_option("--threads", threads, "Use at most this many cores (default: all)")
@@ -258,6 +280,23 @@ void check_kernel(Engine engine, Kernel kernel)
 {
     if (!knows_kernel(engine, kernel))
         throw UsageError("--kernel bunnell is only for --engine disks or rays.");
+}
+
+VertexColors colors_of(const ColorOptions& options)
+{
+    for (const VertexColors colors :
+         {VertexColors::grey, VertexColors::shaded, VertexColors::keep, VertexColors::bent})
+        if (name_of(colors) == options.colors)
+            return colors;
+    return VertexColors::automatic;
+}
+
+Encoding encoding_of(const ColorOptions& options)
+{
+    for (const Encoding encoding : {Encoding::linear, Encoding::srgb})
+        if (name_of(encoding) == options.encoding)
+            return encoding;
+    return Encoding::automatic;
 }
 
 Kernel kernel_of(const MeasureOptions& options)

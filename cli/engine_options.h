@@ -3,6 +3,7 @@
 
 #include "bake/vertex_target.h"
 #include "engines/engine.h"
+#include "files/vertex_colors.h"
 
 #include <optional>
 #include <string>
@@ -38,10 +39,18 @@ struct SurfaceOptions {
     std::optional<std::string> offset;
 };
 
+/// What a result's colours show.
+struct ColorOptions {
+    std::string colors = "auto";
+    std::string encoding = "auto";
+};
+
 void add_engine_options(CLI::App& command, EngineOptions& options);
 void add_measure_options(CLI::App& command, MeasureOptions& options);
 
 void add_surface_options(CLI::App& command, SurfaceOptions& options);
+
+void add_color_options(CLI::App& command, ColorOptions& options);
 
 /// Adds `--threads N`.
 void add_thread_option(CLI::App& command, std::optional<int>& threads);
@@ -50,6 +59,8 @@ void add_thread_option(CLI::App& command, std::optional<int>& threads);
 [[nodiscard]] EngineSettings settings_of(const EngineOptions& options);
 [[nodiscard]] DistanceLimit distance_limit_of(const MeasureOptions& options);
 [[nodiscard]] TargetSettings target_settings_of(const SurfaceOptions& options);
+[[nodiscard]] VertexColors colors_of(const ColorOptions& options);
+[[nodiscard]] Encoding encoding_of(const ColorOptions& options);
 [[nodiscard]] Kernel kernel_of(const MeasureOptions& options);
 
 /// Throws UsageError where this engine does not know this kernel.

@@ -204,7 +204,7 @@ void add_attributes(json& document, const GltfAsset& asset, const Scene& scene,
             json& attributes = primitives[i]["attributes"];
             attributes["_OCCLUSION"] = scalar;
             attributes["_BENT_NORMAL"] = bent;
-            if (options.colors)
+            if (options.colors == VertexColors::shaded)
                 attributes["COLOR_0"] = colors.add(attributes, values);
         }
     }

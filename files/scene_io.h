@@ -6,6 +6,7 @@
 /// are one).
 #pragma once
 
+#include "files/vertex_colors.h"
 #include "surfels/occlusion.h"
 #include "surfels/scene.h"
 
@@ -21,8 +22,8 @@ namespace surfelao {
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path);
 
 struct WriteOptions {
-    bool colors =
-        false;  ///< glTF: also write COLOR_0 (visibility as grey). PLY and OBJ always have it
+    VertexColors colors = VertexColors::automatic;  ///< vertex_colors.h
+    Encoding encoding = Encoding::automatic;        ///< of the colours that are written
     std::string mark = {};  ///< who made the file, and how (maker_mark.h); empty: it says nothing
 };
 

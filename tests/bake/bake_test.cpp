@@ -192,7 +192,7 @@ TEST(Batch, MarksNameTheSettingsOfTheEngineAtHand)
     BakeSettings settings = settings_for("in.obj", "out.obj");
     EXPECT_NE(mark_of(settings).find(" bake: engine=masks device=cpu quality=1 kernel=cosine "
                                      "max_distance=none falloff=none normals=auto crease=40 "
-                                     "values=fit colors=no"),
+                                     "values=fit colors=auto encoding=auto"),
               std::string::npos)
         << mark_of(settings);
     settings.engine.engine = Engine::disks;
@@ -203,12 +203,12 @@ TEST(Batch, MarksNameTheSettingsOfTheEngineAtHand)
     settings.target = {.normals = {NormalSource::smooth, 30},
                        .values = VertexValues::point,
                        .offset = Length{0.5, true}};
-    settings.colors = true;
-    EXPECT_NE(
-        mark_of(settings).find("engine=disks device=gpu quality=0.1 passes=2 strength=1 "
-                               "kernel=bunnell max_distance=12.5% falloff=smooth "
-                               "normals=smooth crease=30 values=point offset=0.5% colors=yes"),
-        std::string::npos)
+    settings.colors = VertexColors::shaded;
+    EXPECT_NE(mark_of(settings).find(
+                  "engine=disks device=gpu quality=0.1 passes=2 strength=1 "
+                  "kernel=bunnell max_distance=12.5% falloff=smooth "
+                  "normals=smooth crease=30 values=point offset=0.5% colors=shaded encoding=auto"),
+              std::string::npos)
         << mark_of(settings);
     settings.engine.engine = Engine::rays;
     EXPECT_NE(mark_of(settings).find("engine=rays device=gpu rays=16 kernel"), std::string::npos);

@@ -187,7 +187,7 @@ TEST_F(BakeCommand, ResumeSkipsWhatIsFinishedAndRedoesWhatIsOlderOrHasOtherSetti
     std::string finished =
         "# surfelao 0.1.0 bake: engine=masks device=cpu quality=1 "
         "kernel=cosine max_distance=none falloff=none normals=auto crease=40 values=fit "
-        "colors=no\nfinished";
+        "colors=auto encoding=auto\nfinished";
     std::ofstream(result) << finished;
     Outcome outcome = resume("good");
     EXPECT_EQ(outcome.code, 0) << outcome.err;

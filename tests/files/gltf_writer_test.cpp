@@ -239,7 +239,7 @@ TEST(GltfWriter, PrimitivesThatShareVerticesShareAttributes)
 
 TEST(GltfWriter, ColorsAreTheVisibility)
 {
-    const Written written = round_trip(square(), {.colors = true});
+    const Written written = round_trip(square(), {.colors = VertexColors::shaded});
     EXPECT_EQ(
         written.floats(written.attributes(0)["COLOR_0"]),
         (std::vector<float>{1, 1, 1, 0.75f, 0.75f, 0.75f, 0.5f, 0.5f, 0.5f, 0.25f, 0.25f, 0.25f}));
@@ -259,7 +259,7 @@ GltfMaker coloured_square()
 
 TEST(GltfWriter, ExistingColorsAreDarkenedAndKeepTheirAlpha)
 {
-    const Written written = round_trip(coloured_square(), {.colors = true});
+    const Written written = round_trip(coloured_square(), {.colors = VertexColors::shaded});
     const std::vector<float> values = written.floats(written.attributes(0)["COLOR_0"]);
     ASSERT_EQ(values.size(), 16u);
     EXPECT_FLOAT_EQ(values[4], 0.75f);
@@ -279,7 +279,7 @@ TEST(GltfWriter, PrimitivesWithColorsOfTheirOwnAreDarkenedApart)
 {
     GltfMaker maker = coloured_square();
     maker.document["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}});
-    const Written written = round_trip(maker, {.colors = true});
+    const Written written = round_trip(maker, {.colors = VertexColors::shaded});
     EXPECT_EQ(written.floats(written.attributes(0, 0)["COLOR_0"]).size(), 16u);
     EXPECT_EQ(written.floats(written.attributes(0, 1)["COLOR_0"]).size(), 12u);
 }
