@@ -8,6 +8,7 @@
 /// is at least one triangle. Of the normals only the indices are in range: values may be anything.
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
@@ -42,6 +43,18 @@ struct CornerNormals {
     [[nodiscard]] bool empty() const { return values.empty(); }
 };
 
+/// Where the corners of triangles lie in a map: u to the right, v down, the map from 0 to 1.
+struct UvSet {
+    std::vector<glm::dvec2> values;
+    /// Per triangle, into values; kNone where a corner has none. Empty: the triangles themselves
+    /// are indices into values (one place per vertex).
+    std::vector<glm::uvec3> corners;
+
+    static constexpr std::uint32_t kNone = 0xffffffff;
+
+    [[nodiscard]] bool empty() const { return values.empty(); }
+};
+
 /// The file as its writer needs it to hand it back untouched; opaque to everyone else.
 class SourceAsset {
 public:
@@ -54,6 +67,7 @@ struct Scene {
     std::vector<glm::uvec3> triangles;  ///< into positions; polygons are already cut up
     std::vector<Part> parts;
     CornerNormals normals;           ///< empty where the file has none
+    std::vector<UvSet> uvs;          ///< by number: glTF's TEXCOORD_0, _1 and so on
     bool free_vertices = false;      ///< the file has none of its own (STL): they may be split
     std::vector<std::string> notes;  ///< what the file holds and nobody honours: a sentence each
     std::shared_ptr<const SourceAsset> asset;  ///< null for scenes made in code

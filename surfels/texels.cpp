@@ -1,0 +1,341 @@
+#include "surfels/texels.h"
+
+#include "surfels/errors.h"
+
+#include <tbb/parallel_for.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace surfelao {
+namespace {
+
+/// Rows that one thread takes at a time.
+constexpr std::uint32_t kStripRows = 16;
+/// Twice a triangle's area in texels below which it shows nothing.
+constexpr double kFlatTwiceArea = 1e-9;
+/// A triangle of this area in texels has some part above kLeastPart.
+constexpr double kHasLargePart = 1e-3;
+
+double cross(glm::dvec2 a, glm::dvec2 b)
+{
+    return a.x * b.y - a.y * b.x;
+}
+
+double twice_area(const glm::dvec2 (&p)[3])
+{
+    return cross(p[1] - p[0], p[2] - p[0]);
+}
+
+/// On which side of the line a-b the point lies: exactly opposite for b-a.
+double side_of(glm::dvec2 a, glm::dvec2 b, glm::dvec2 point)
+{
+    const bool turned = b.x < a.x || (b.x == a.x && b.y < a.y);
+    const glm::dvec2 from = turned ? b : a, to = turned ? a : b;
+    const double side = cross(to - from, point - from);
+    return turned ? -side : side;
+}
+
+/// Of two triangles with a common edge one contains each point of it: the one whose edge looks up,
+/// or straight left.
+bool contains(const glm::dvec2 (&p)[3], glm::dvec2 point)
+{
+    const bool turned = twice_area(p) < 0.0;
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec2 a = p[turned ? (k + 1) % 3 : k], b = p[turned ? k : (k + 1) % 3];
+        const double side = side_of(a, b, point);
+        const bool owns_edge = b.y < a.y || (b.y == a.y && b.x > a.x);
+        if (side < 0.0 || (side == 0.0 && !owns_edge))
+            return false;
+    }
+    return true;
+}
+
+SurfacePoint point_at(const glm::dvec2 (&p)[3], std::uint32_t triangle, glm::dvec2 place)
+{
+    const double whole = twice_area(p);
+    double second = cross(place - p[0], p[2] - p[0]) / whole;
+    double third = cross(p[1] - p[0], place - p[0]) / whole;
+    second = std::clamp(second, 0.0, 1.0);
+    third = std::clamp(third, 0.0, 1.0 - second);
+    return {triangle, {static_cast<float>(second), static_cast<float>(third)}};
+}
+
+/// A convex polygon: a triangle cut by the four sides of a texel has seven corners at most.
+struct Clipped {
+    std::array<glm::dvec2, 8> corners;
+    std::size_t count = 0;
+
+    void add(glm::dvec2 corner) { corners[count++] = corner; }
+};
+
+/// What lies where sign * (corner[axis] - limit) >= 0 (Sutherland, Hodgman. Reentrant Polygon
+/// Clipping. 1974).
+Clipped cut(const Clipped& polygon, int axis, double limit, double sign)
+{
+    Clipped rest;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        const glm::dvec2 a = polygon.corners[i], b = polygon.corners[(i + 1) % polygon.count];
+        const double from = sign * (a[axis] - limit), to = sign * (b[axis] - limit);
+        if (from >= 0.0)
+            rest.add(a);
+        if ((from < 0.0) != (to < 0.0) && rest.count < rest.corners.size())
+            rest.add(a + from / (from - to) * (b - a));
+    }
+    return rest;
+}
+
+struct PartOfTexel {
+    double area = 0.0;
+    glm::dvec2 centroid{0.0};
+};
+
+PartOfTexel part_in_texel(const glm::dvec2 (&p)[3], glm::dvec2 low)
+{
+    Clipped polygon;
+    for (const glm::dvec2 corner : p)
+        polygon.add(corner - low);
+    for (int axis = 0; axis < 2; ++axis) {
+        polygon = cut(polygon, axis, 0.0, 1.0);
+        polygon = cut(polygon, axis, 1.0, -1.0);
+    }
+    PartOfTexel part;
+    double twice = 0.0;
+    glm::dvec2 sum(0.0);
+    for (std::size_t i = 1; i + 1 < polygon.count; ++i) {
+        const glm::dvec2 a = polygon.corners[0], b = polygon.corners[i], c = polygon.corners[i + 1];
+        const double area = std::abs(cross(b - a, c - a));
+        twice += area;
+        sum += area / 3.0 * (a + b + c);
+    }
+    part.area = twice / 2.0;
+    if (twice > 0.0)
+        part.centroid = low + sum / twice;
+    return part;
+}
+
+/// The texels that a range of the plane touches.
+struct Span {
+    std::int64_t begin, end;
+};
+
+Span span_of(double low, double high)
+{
+    return {static_cast<std::int64_t>(std::floor(low)), static_cast<std::int64_t>(std::ceil(high))};
+}
+
+std::uint32_t folded(std::int64_t texel, std::uint32_t side)
+{
+    const std::int64_t rest = texel % side;
+    return static_cast<std::uint32_t>(rest < 0 ? rest + side : rest);
+}
+
+}  // namespace
+
+/// A few rows of the map, filled by one thread.
+class MapRaster::Strip {
+public:
+    Strip(const MapRaster& raster, std::uint32_t first, std::uint32_t rows)
+        : raster_(raster), first_(first), rows_(rows), best_(std::size_t{rows} * raster.size_.width)
+    {
+    }
+
+    /// Triangles in their order: all centres first, then all parts.
+    void add_centres(const Placed& placed) { for_each_row(placed, &Strip::add_centres_in_row); }
+    void add_parts(const Placed& placed) { for_each_row(placed, &Strip::add_parts_in_row); }
+
+    [[nodiscard]] std::vector<Texel> texels()
+    {
+        std::vector<Texel> list;
+        std::ranges::stable_sort(sheets_, {}, [](const Sheet& sheet) { return sheet.place; });
+        std::size_t next = 0;
+        for (std::size_t place = 0; place < best_.size(); ++place) {
+            const Best& best = best_[place];
+            const auto x = static_cast<std::uint32_t>(place % raster_.size_.width);
+            const auto y = first_ + static_cast<std::uint32_t>(place / raster_.size_.width);
+            if (best.is_centre) {
+                for (; next < sheets_.size() && sheets_[next].place == place; ++next)
+                    if (!sheets_[next].is_outside || !best.has_inside)
+                        list.push_back({x, y, sheets_[next].point, 1.0f});
+            } else if (best.area > 0.0f) {
+                list.push_back({x, y, best.point, best.area});
+            }
+        }
+        return list;
+    }
+
+private:
+    struct Best {
+        SurfacePoint point;
+        float area = 0.0f;
+        bool is_centre = false;   ///< then the points are in sheets_
+        bool has_inside = false;  ///< one of them, or the part, is of a triangle within [0, 1]
+    };
+    struct Sheet {
+        std::size_t place;
+        SurfacePoint point;
+        bool is_outside;
+    };
+    using Row = void (Strip::*)(const Placed&, std::int64_t y, std::size_t first_place);
+
+    void for_each_row(const Placed& placed, Row row)
+    {
+        const auto& p = placed.corners;
+        const Span ys =
+            span_of(std::min({p[0].y, p[1].y, p[2].y}), std::max({p[0].y, p[1].y, p[2].y}));
+        // of each tile the rows of this strip
+        const std::int64_t height = raster_.size_.height;
+        for (std::int64_t tile = ys.begin - folded(ys.begin, raster_.size_.height); tile < ys.end;
+             tile += height) {
+            const std::int64_t begin = std::max(ys.begin, tile + first_);
+            const std::int64_t end = std::min(ys.end, tile + first_ + rows_);
+            for (std::int64_t y = begin; y < end; ++y)
+                (this->*row)(placed, y,
+                             static_cast<std::size_t>(y - tile - first_) * raster_.size_.width);
+        }
+    }
+
+    /// The columns in which the triangle meets low <= y <= high.
+    static Span columns_in(const Placed& placed, double low, double high)
+    {
+        double least = HUGE_VAL, most = -HUGE_VAL;
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec2 a = placed.corners[k], b = placed.corners[(k + 1) % 3];
+            if (std::max(a.y, b.y) < low || std::min(a.y, b.y) > high)
+                continue;
+            for (const double y : {low, high}) {
+                const double t = a.y == b.y ? 0.0 : std::clamp((y - a.y) / (b.y - a.y), 0.0, 1.0);
+                const double x = a.x + t * (b.x - a.x);
+                least = std::min({least, x, a.y == b.y ? b.x : x});
+                most = std::max({most, x, a.y == b.y ? b.x : x});
+            }
+        }
+        return least <= most ? span_of(least - 1e-9, most + 1e-9) : Span{0, 0};
+    }
+
+    void add_centres_in_row(const Placed& placed, std::int64_t y, std::size_t first_place)
+    {
+        const double row = static_cast<double>(y) + 0.5;
+        const Span columns = columns_in(placed, row, row);
+        for (std::int64_t x = columns.begin; x < columns.end; ++x) {
+            const glm::dvec2 centre(static_cast<double>(x) + 0.5, row);
+            if (!contains(placed.corners, centre))
+                continue;
+            const std::size_t place = first_place + folded(x, raster_.size_.width);
+            best_[place].is_centre = true;
+            best_[place].has_inside |= !placed.is_outside;
+            sheets_.push_back(
+                {place, point_at(placed.corners, placed.triangle, centre), placed.is_outside});
+        }
+    }
+
+    void add_parts_in_row(const Placed& placed, std::int64_t y, std::size_t first_place)
+    {
+        const double low = static_cast<double>(y);
+        const Span columns = columns_in(placed, low, low + 1.0);
+        const bool has_large_part = std::abs(twice_area(placed.corners)) > 2.0 * kHasLargePart;
+        for (std::int64_t x = columns.begin; x < columns.end; ++x) {
+            Best& best = best_[first_place + folded(x, raster_.size_.width)];
+            if (best.is_centre || (placed.is_outside && best.has_inside))
+                continue;
+            const PartOfTexel part = part_in_texel(placed.corners, {static_cast<double>(x), low});
+            if (!(part.area > 0.0) || (part.area < kLeastPart && has_large_part))
+                continue;
+            const bool is_first_inside = !placed.is_outside && !best.has_inside;
+            if (!is_first_inside && static_cast<float>(part.area) <= best.area)
+                continue;
+            best.point = point_at(placed.corners, placed.triangle, part.centroid);
+            best.area = static_cast<float>(part.area);
+            best.has_inside |= !placed.is_outside;
+        }
+    }
+
+    const MapRaster& raster_;
+    std::uint32_t first_, rows_;
+    std::vector<Best> best_;
+    std::vector<Sheet> sheets_;
+};
+
+MapRaster::MapRaster(const Geometry& geometry, const UvSet& uvs, MapSize size) : size_(size)
+{
+    require(size.width >= 1 && size.height >= 1 && size.width <= kMostTexels &&
+                size.height <= kMostTexels,
+            "a map has 1 to " + std::to_string(kMostTexels) + " texels a side");
+    const glm::dvec2 scale(size.width, size.height);
+    for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t) {
+        const std::size_t in_scene = geometry.scene_triangle(t);
+        const glm::uvec3 corners =
+            uvs.corners.empty() ? geometry.triangles[t] : uvs.corners[in_scene];
+        Placed placed;
+        placed.triangle = t;
+        double least = HUGE_VAL, most = -HUGE_VAL;
+        bool is_there = true;
+        for (int k = 0; k < 3; ++k) {
+            if (corners[k] == UvSet::kNone) {
+                is_there = false;
+                break;
+            }
+            const glm::dvec2 uv = uvs.values[corners[k]];
+            is_there &= std::isfinite(uv.x) && std::isfinite(uv.y);
+            placed.corners[k] = uv * scale;
+            least = std::min({least, uv.x, uv.y});
+            most = std::max({most, uv.x, uv.y});
+        }
+        is_there = is_there && most - least <= kMostTiles &&
+                   std::abs(twice_area(placed.corners)) > kFlatTwiceArea;
+        if (!is_there) {
+            ++flat_;
+            continue;
+        }
+        placed.is_outside = least < 0.0 || most > 1.0;
+        outside_ += placed.is_outside ? 1 : 0;
+        placed_.push_back(placed);
+    }
+}
+
+std::vector<Texel> MapRaster::texels(std::uint32_t first, std::uint32_t rows) const
+{
+    const std::uint32_t end = std::min(size_.height, first + rows);
+    if (first >= end)
+        return {};
+    const std::size_t strips = (end - first + kStripRows - 1) / kStripRows;
+    // the triangles of each strip, in their order
+    std::vector<std::vector<std::uint32_t>> of_strip(strips);
+    for (std::uint32_t i = 0; i < placed_.size(); ++i) {
+        const auto& p = placed_[i].corners;
+        const Span ys =
+            span_of(std::min({p[0].y, p[1].y, p[2].y}), std::max({p[0].y, p[1].y, p[2].y}));
+        const bool wraps = ys.end - ys.begin >= size_.height;
+        std::size_t last = strips;  // each strip once
+        for (std::int64_t y = wraps ? 0 : ys.begin; y < (wraps ? size_.height : ys.end); ++y) {
+            const std::uint32_t row = folded(y, size_.height);
+            if (row < first || row >= end)
+                continue;
+            const std::size_t strip = (row - first) / kStripRows;
+            if (strip != last)
+                of_strip[strip].push_back(i);
+            last = strip;
+        }
+    }
+    std::vector<std::vector<Texel>> found(strips);
+    tbb::parallel_for(std::size_t{0}, strips, [&](std::size_t s) {
+        const std::uint32_t begin = first + static_cast<std::uint32_t>(s) * kStripRows;
+        Strip strip(*this, begin, std::min(kStripRows, end - begin));
+        std::vector<std::uint32_t>& list = of_strip[s];
+        list.erase(std::unique(list.begin(), list.end()), list.end());
+        for (const std::uint32_t i : list)
+            strip.add_centres(placed_[i]);
+        for (const std::uint32_t i : list)
+            strip.add_parts(placed_[i]);
+        found[s] = strip.texels();
+    });
+    std::vector<Texel> all;
+    for (const std::vector<Texel>& some : found)
+        all.insert(all.end(), some.begin(), some.end());
+    return all;
+}
+
+}  // namespace surfelao
