@@ -74,17 +74,51 @@ Image read_image(const std::filesystem::path& path)
     return image;
 }
 
-void check_image_output(const std::filesystem::path& path)
+namespace {
+
+/// What is not a matter of the format.
+void check_place(const std::filesystem::path& path)
 {
-    const std::string extension = lower_extension(path);
-    if (extension != ".png" && extension != ".jpg" && extension != ".jpeg" && extension != ".exr")
-        throw InputError(path.string() + ": pictures are written as .png, .jpg or .exr");
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored))
         throw InputError(path.string() + ": is a folder, a file name was wanted");
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
     if (!std::filesystem::is_directory(folder, ignored))
         throw InputError(path.string() + ": there is no folder " + folder.string());
+}
+
+/// write(temporary) returns what went wrong.
+template <class Write>
+void write_picture(const std::filesystem::path& path, const Write& write)
+{
+    write_atomically(path, [&](const std::filesystem::path& temporary) {
+        const std::string error = write(temporary.string());
+        if (!error.empty())
+            throw std::runtime_error(path.string() + ": cannot be written: " + one_line(error));
+    });
+}
+
+}  // namespace
+
+void check_image_output(const std::filesystem::path& path)
+{
+    const std::string extension = lower_extension(path);
+    if (extension != ".png" && extension != ".jpg" && extension != ".jpeg" && extension != ".exr")
+        throw InputError(path.string() + ": pictures are written as .png, .jpg or .exr");
+    check_place(path);
+}
+
+void check_map_output(const std::filesystem::path& path, MapDepth depth)
+{
+    const std::string extension = lower_extension(path);
+    const bool is_png = extension == ".png", is_exr = extension == ".exr";
+    if (!is_png && !is_exr && extension != ".tif" && extension != ".tiff")
+        throw InputError(path.string() + ": maps are written as .png, .tif or .exr");
+    if (is_png && depth == MapDepth::whole)
+        throw InputError(path.string() + ": .png has 8 or 16 bits, use .tif or .exr for 32");
+    if (is_exr && depth == MapDepth::byte)
+        throw InputError(path.string() + ": .exr has 16 or 32 bits, use .png or .tif for 8");
+    check_place(path);
 }
 
 void write_image(const std::filesystem::path& path, const Image& image)
@@ -94,10 +128,18 @@ void write_image(const std::filesystem::path& path, const Image& image)
         throw InputError(path.string() + ": the picture has no pixels");
     const bool alpha = std::any_of(image.pixels.begin(), image.pixels.end(),
                                    [](const glm::vec4& pixel) { return pixel.a < 1.0f; });
-    write_atomically(path, [&](const std::filesystem::path& temporary) {
-        const std::string error = module().write(temporary.string(), image, alpha);
-        if (!error.empty())
-            throw std::runtime_error(path.string() + ": cannot be written: " + one_line(error));
+    write_picture(path, [&](const std::string& temporary) {
+        return module().write(temporary, image, alpha);
+    });
+}
+
+void write_map(const std::filesystem::path& path, const Map& map, MapDepth depth)
+{
+    check_map_output(path, depth);
+    if (map.values.empty())
+        throw InputError(path.string() + ": the map has no texels");
+    write_picture(path, [&](const std::string& temporary) {
+        return module().write_map(temporary, map, depth);
     });
 }
 

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "image/image.h"
+#include "image/map.h"
 
 #include <filesystem>
 
@@ -27,5 +28,13 @@ void check_image_output(const std::filesystem::path& path);
 /// (atomic_file.h). Throws InputError as check_image_output does and for an image without pixels,
 /// std::runtime_error when the machine refuses.
 void write_image(const std::filesystem::path& path, const Image& image);
+
+/// Throws InputError as check_image_output(), for an extension other than .png, .tif, .tiff or
+/// .exr, and for a depth that the format does not have (.png: byte, half; .exr: half, whole).
+void check_map_output(const std::filesystem::path& path, MapDepth depth);
+
+/// Writes the numbers of a map as they are: tagged linear, without a gamma, those of 0 to 1 rounded
+/// to the nearest step of the depth. One channel is grey, three are RGB. As write_image() else.
+void write_map(const std::filesystem::path& path, const Map& map, MapDepth depth);
 
 }  // namespace surfelao

@@ -82,6 +82,25 @@ std::string write(const std::string& path, const Image& image, bool alpha)
     return {};
 }
 
+std::string write_map(const std::string& path, const Map& map, MapDepth depth)
+{
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path);
+    if (!output)
+        return OIIO::geterror();
+    const bool is_exr = std::string(output->format_name()) == "openexr";
+    const OIIO::TypeDesc type = depth == MapDepth::byte ? OIIO::TypeDesc::UINT8
+                                : depth == MapDepth::half
+                                    ? is_exr ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::UINT16
+                                    : OIIO::TypeDesc::FLOAT;
+    OIIO::ImageSpec spec(static_cast<int>(map.width), static_cast<int>(map.height),
+                         static_cast<int>(map.channels), type);
+    spec.attribute("oiio:ColorSpace", "Linear");
+    if (!output->open(path, spec) ||
+        !output->write_image(OIIO::TypeDesc::FLOAT, map.values.data()) || !output->close())
+        return output->geterror();
+    return {};
+}
+
 /// An empty error text would read as success.
 template <class Work>
 std::string guarded(Work work)
@@ -105,6 +124,9 @@ surfelao_image_module()
         },
         [](const std::string& path, const surfelao::Image& image, bool alpha) {
             return surfelao::guarded([&] { return surfelao::write(path, image, alpha); });
+        },
+        [](const std::string& path, const surfelao::Map& map, surfelao::MapDepth depth) {
+            return surfelao::guarded([&] { return surfelao::write_map(path, map, depth); });
         },
     };
     return &module;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "image/image.h"
+#include "image/map.h"
 
 #include <string>
 
@@ -14,6 +15,8 @@ struct ImageModule {
     /// Writes `image` to `path` in the format of its extension, with or without alpha; returns the
     /// same.
     std::string (*write)(const std::string& path, const Image& image, bool alpha);
+    /// The same for a map: its numbers as they are.
+    std::string (*write_map)(const std::string& path, const Map& map, MapDepth depth);
 };
 
 /// The name and type of the one function that the module exports.

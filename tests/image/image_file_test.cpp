@@ -9,6 +9,8 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <tuple>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -181,6 +183,40 @@ TEST_F(ImageFile, ImpossibleOutputsAreRefusedAndLeaveNothing)
     EXPECT_THROW(write_image(path("folder.png"), gradient()), InputError);
     EXPECT_TRUE(std::filesystem::is_empty(path("folder.png")));
     EXPECT_FALSE(std::filesystem::exists(path("a.png")));
+}
+
+TEST_F(ImageFile, MapsHoldTheirNumbersAsTheyAre)
+{
+    for (const std::uint32_t channels : {1u, 3u}) {
+        Map map(3, 2, channels, 1.0f);
+        map.values[map.index(1, 0)] = 0.25f;
+        map.values[map.index(2, 1)] = 0.0f;
+        for (const auto& [name, depth, steps] : {std::tuple("a.png", MapDepth::byte, 255.0f),
+                                                 {"b.png", MapDepth::half, 65535.0f},
+                                                 {"c.tif", MapDepth::byte, 255.0f},
+                                                 {"d.tif", MapDepth::whole, 0.0f},
+                                                 {"e.exr", MapDepth::half, 0.0f},
+                                                 {"f.exr", MapDepth::whole, 0.0f}}) {
+            write_map(path(name), map, depth);
+            const Image image = read_image(path(name));
+            ASSERT_EQ(image.width, 3) << name;
+            ASSERT_EQ(image.height, 2) << name;
+            // whole numbers are read as sRGB: back to what is stored
+            const auto stored = [&](int x, int y) {
+                const float value = image.at(x, y).r;
+                return steps > 0.0f ? srgb_encode(value) : value;
+            };
+            const float quarter = steps > 0.0f ? std::round(0.25f * steps) / steps : 0.25f;
+            EXPECT_NEAR(stored(1, 0), quarter, 1e-5) << name;
+            EXPECT_NEAR(stored(2, 1), 0.0f, 1e-6) << name;
+            EXPECT_NEAR(stored(0, 0), 1.0f, 1e-6) << name;
+        }
+    }
+    for (const auto& [name, depth] : {std::pair("a.png", MapDepth::whole),
+                                      {"a.exr", MapDepth::byte},
+                                      {"a.jpg", MapDepth::byte},
+                                      {"none/a.png", MapDepth::byte}})
+        EXPECT_THROW(check_map_output(path(name), depth), InputError) << name;
 }
 
 }  // namespace

@@ -1,0 +1,107 @@
+#include "image/map.h"
+
+#include "surfels/errors.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace surfelao {
+namespace {
+
+std::uint32_t repeated(double texel, std::uint32_t side)
+{
+    const double rest = std::fmod(texel, side);
+    const auto place = static_cast<std::uint32_t>(rest < 0.0 ? rest + side : rest);
+    return place < side ? place : 0;
+}
+
+/// Calls visit(index) for the neighbours of a texel.
+template <class Visit>
+void for_each_neighbour(const Map& map, std::size_t texel, const Visit& visit)
+{
+    const auto x = static_cast<std::uint32_t>(texel % map.width);
+    const auto y = static_cast<std::uint32_t>(texel / map.width);
+    for (std::uint32_t row = y > 0 ? y - 1 : 0; row <= std::min(y + 1, map.height - 1); ++row)
+        for (std::uint32_t column = x > 0 ? x - 1 : 0; column <= std::min(x + 1, map.width - 1);
+             ++column)
+            visit(std::size_t{row} * map.width + column);
+}
+
+/// Texels without a value beside one of `front`, each once, rising.
+std::vector<std::size_t> ring_around(const Map& map, const std::vector<std::uint8_t>& known,
+                                     const std::vector<std::size_t>& front)
+{
+    std::vector<std::size_t> ring;
+    for (const std::size_t texel : front)
+        for_each_neighbour(map, texel, [&](std::size_t neighbour) {
+            if (known[neighbour] == 0)
+                ring.push_back(neighbour);
+        });
+    std::ranges::sort(ring);
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    return ring;
+}
+
+}  // namespace
+
+float fetch(const Map& map, std::uint32_t channel, glm::dvec2 uv)
+{
+    const double x = uv.x * map.width - 0.5, y = uv.y * map.height - 0.5;
+    const double left = std::floor(x), top = std::floor(y);
+    const std::uint32_t columns[2] = {repeated(left, map.width), repeated(left + 1.0, map.width)};
+    const std::uint32_t rows[2] = {repeated(top, map.height), repeated(top + 1.0, map.height)};
+    double sum = 0.0;
+    for (int j = 0; j < 2; ++j)
+        for (int i = 0; i < 2; ++i)
+            sum += (i == 1 ? x - left : 1.0 - x + left) * (j == 1 ? y - top : 1.0 - y + top) *
+                   map.values[map.index(columns[i], rows[j]) + channel];
+    return static_cast<float>(sum);
+}
+
+void fill_around(Map& map, std::vector<std::uint8_t>& known, std::uint32_t rings)
+{
+    SURFELAO_CHECK(known.size() == map.texels());
+    std::vector<std::size_t> front;
+    std::vector<double> mean(map.channels, 0.0);
+    double count = 0.0;
+    for (std::size_t texel = 0; texel < known.size(); ++texel) {
+        if (known[texel] == 0)
+            continue;
+        ++count;
+        for (std::uint32_t c = 0; c < map.channels; ++c)
+            mean[c] += map.values[texel * map.channels + c];
+        bool is_rim = false;
+        for_each_neighbour(map, texel, [&](std::size_t other) { is_rim |= known[other] == 0; });
+        if (is_rim)
+            front.push_back(texel);
+    }
+    if (count == 0.0)
+        return;
+    for (std::uint32_t ring = 0; ring < rings && !front.empty(); ++ring) {
+        front = ring_around(map, known, front);
+        for (const std::size_t texel : front) {
+            double neighbours = 0.0;
+            std::vector<double> sums(map.channels, 0.0);
+            for_each_neighbour(map, texel, [&](std::size_t other) {
+                if (known[other] == 0)
+                    return;
+                ++neighbours;
+                for (std::uint32_t c = 0; c < map.channels; ++c)
+                    sums[c] += map.values[other * map.channels + c];
+            });
+            for (std::uint32_t c = 0; c < map.channels; ++c)
+                map.values[texel * map.channels + c] = static_cast<float>(sums[c] / neighbours);
+        }
+        for (const std::size_t texel : front)
+            known[texel] = 1;
+    }
+    for (std::size_t texel = 0; texel < known.size(); ++texel) {
+        if (known[texel] != 0)
+            continue;
+        for (std::uint32_t c = 0; c < map.channels; ++c)
+            map.values[texel * map.channels + c] = static_cast<float>(mean[c] / count);
+        known[texel] = 1;
+    }
+}
+
+}  // namespace surfelao
