@@ -1,0 +1,54 @@
+/// map_bake.h: from a mesh and its places in a map to the occlusion at every texel.
+///
+/// Texels are receivers (surfels/texels.h), solved band by band: memory follows the band, not the
+/// map, and the bytes do not depend on it. Where sheets lie on each other a texel holds their mean,
+/// and how far they differ is told. Texels that nothing covers take what surrounds them
+/// (image/map.h), so that filters and mip levels fetch no emptiness.
+#pragma once
+
+#include "bake/vertex_bake.h"
+#include "engines/engine.h"
+#include "image/map.h"
+#include "surfels/surface.h"
+#include "surfels/texels.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace surfelao {
+
+struct MapSettings {
+    MapSize size{1024, 1024};
+    std::uint32_t padding = 4;  ///< texels around what is covered that take their neighbours' mean
+    bool bent = false;          ///< bent normals too
+};
+
+/// Texels of a band: receivers, answers and what engines need of them take some 100 bytes each.
+inline constexpr std::uint64_t kBandTexels = std::uint64_t{1} << 21;
+
+struct MapSeconds {
+    double raster = 0.0;  ///< which texels, and where each is asked
+    double surfels = 0.0;
+    double tree = 0.0;
+    double solve = 0.0;
+    double fill = 0.0;
+};
+
+struct MapBake {
+    Map visibility;                 ///< one channel, 1 = open
+    Map bent;                       ///< three channels, world space, unit length; or empty
+    std::uint64_t receivers = 0;    ///< points that were asked
+    std::uint64_t covered = 0;      ///< texels that show the surface
+    std::uint64_t overlapping = 0;  ///< texels with several sheets
+    double spread = 0.0;  ///< of these: RMS difference of the sheets' occlusion to their mean
+    std::uint64_t flat_triangles = 0;     ///< that show no texel
+    std::uint64_t outside_triangles = 0;  ///< that reach out of the map
+    MapSeconds seconds;
+};
+
+/// Throws as MapRaster, prepare() and solve(), and Cancelled where progress says so.
+[[nodiscard]] MapBake bake_map(const Mesh& mesh, const UvSet& uvs, const MapSettings& settings,
+                               const EngineSettings& engine, const Offset& offset,
+                               const StageProgress& progress = {});
+
+}  // namespace surfelao
