@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -105,11 +104,6 @@ public:
         if (!cursor_.at_line_end())
             fail("has more numbers than the header says");
     }
-    double number(Type)
-    {
-        demand_word();
-        return cursor_.number({});
-    }
     /// May be infinite or nan.
     double any_number(Type)
     {
@@ -183,14 +177,6 @@ public:
             default:
                 return static_cast<double>(integer(type));
         }
-    }
-    double number(Type type)
-    {
-        const double value = any_number(type);
-        if (!std::isfinite(value))
-            fail("has the coordinate " + std::string(std::isnan(value) ? "nan" : "inf") +
-                 ", which is not finite");
-        return value;
     }
     std::int64_t integer(Type type)
     {

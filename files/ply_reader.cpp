@@ -123,7 +123,7 @@ private:
                 const Property& property = element.properties[p];
                 const auto [kind, axis] = roles[p];
                 if (kind == Role::position)
-                    positions[row][axis] = data_.number(property.type);
+                    positions[row][axis] = data_.any_number(property.type);
                 else if (kind == Role::normal)
                     normals.values[row][axis] = static_cast<float>(data_.any_number(property.type));
                 else
@@ -162,8 +162,6 @@ private:
 
     void read_face(std::uint64_t length)
     {
-        if (length < 3)
-            data_.fail("has " + std::to_string(length) + " corners, but needs 3");
         for (std::uint64_t i = 0; i < length; ++i)
             polygons.corners.push_back(checked(data_.integer(index_type_)));
         close_polygon(polygons, static_cast<std::uint32_t>(length));
