@@ -35,6 +35,7 @@ struct Property {
     std::string name;
     std::optional<Type> count_type;  ///< of a list
     Type type = Type::int8;
+    bool is_second = false;  ///< the element has another of this name, which comes first
 };
 
 struct Element {

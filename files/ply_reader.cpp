@@ -212,8 +212,14 @@ Scene read_with(const std::string& file_name, std::shared_ptr<PlySource> source)
 {
     Reader<Data> reader(file_name, *source);
     reader.run();
-    return make_mesh_scene(file_name, std::move(reader.positions), std::move(reader.polygons),
-                           std::move(source), std::move(reader.normals));
+    Scene scene = make_mesh_scene(file_name, std::move(reader.positions),
+                                  std::move(reader.polygons), source, std::move(reader.normals));
+    for (const Element& element : source->header.elements)
+        add_note(scene.notes,
+                 static_cast<std::uint64_t>(
+                     std::ranges::count(element.properties, true, &Property::is_second)),
+                 "property|properties", "of a name that an earlier one has: passed over");
+    return scene;
 }
 
 }  // namespace

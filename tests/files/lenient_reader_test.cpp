@@ -81,6 +81,12 @@ std::vector<Trifle> trifles()
         {"obj_TextureOutOfRange", kObj + "f 1/7 2/0 3/-9\n", {}},
         {"ply_SmallFaces", ply(3, 4, kRows + "2 0 1\n3 0 1 2\n1 2\n0\n"), small_faces(3)},
         {"off_SmallFaces", "OFF 3 3 0\n" + kRows + "0\n3 0 1 2\n2 0 1 255 0 0\n", small_faces(2)},
+        {"ply_NameTwice",
+         "ply\nformat ascii 1.0\nelement vertex 3\nproperty int flags\nproperty int flags\n"
+         "property int x\nproperty int y\nproperty int z\nelement face 1\n"
+         "property list uchar int vertex_index\nend_header\n"
+         "1 2 0 0 0\n1 2 1 0 0\n1 2 0 1 0\n3 0 1 2\n",
+         {"1 property of a name that an earlier one has: passed over"}},
         {"off_Glued",
          "OFF3 1 0\n" + kRows + "3 0 1 2\n",
          {"1 space missing between OFF and the counts"}},
