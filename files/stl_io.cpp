@@ -220,7 +220,7 @@ private:
     {
         if (found.empty())
             cursor_.fail("the file ends, but " + wanted + " is missing");
-        cursor_.fail(quoted(found) + " stands where " + wanted + " must");
+        cursor_.fail(surfelao::quoted(found) + " stands where " + wanted + " must");
     }
 
     void expect(std::string_view wanted)

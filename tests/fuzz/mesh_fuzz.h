@@ -42,18 +42,18 @@ inline void check_round_trips(const Scene& scene, From from)
     std::vector<Occlusion> occlusion(scene.positions.size());
     for (std::size_t v = 0; v < occlusion.size(); ++v)
         occlusion[v] = {static_cast<float>(v % 8) / 7.0f, {0.0f, 0.0f, 1.0f}};
-    const Scene from_obj = read_obj("obj", obj_contents(scene, occlusion));
+    const Scene from_obj = read_obj("obj", obj_contents("x.obj", scene, occlusion).contents);
     check_same(from_obj, scene, false);
     if (from == From::obj)
         check_same_normals(from_obj.normals, scene.normals);
-    check_same(read_off("off", off_contents(scene, occlusion)), scene, false);
-    const std::string ply = ply_contents(scene, occlusion);
+    check_same(read_off("off", off_contents(scene, occlusion).contents), scene, false);
+    const std::string ply = ply_contents("x.ply", scene, occlusion).contents;
     const Scene again = read_ply("ply", ply);
     check_same(again, scene, from != From::ply);
     if (from == From::ply)
         check_same_normals(again.normals, scene.normals);
     // what we wrote is replaced, not added to
-    SURFELAO_CHECK(ply_contents(again, occlusion).size() == ply.size());
+    SURFELAO_CHECK(ply_contents("x.ply", again, occlusion).contents.size() == ply.size());
 }
 
 template <class Read>
