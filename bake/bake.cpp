@@ -74,16 +74,18 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     report.seconds.fit = stage.lap();
 
     enter(progress, "write");
+    std::vector<std::string> notes_of_file;
     tbb::parallel_invoke(
         [&] {
-            write_scene(settings.output, scene, values,
-                        {settings.colors, settings.encoding, mark_of(settings)});
+            notes_of_file = write_scene(settings.output, scene, values,
+                                        {settings.colors, settings.encoding, mark_of(settings)});
         },
         [&] {  // a writer leaves cores idle
             report.misfit = target.misfit(solution.occlusion, values);
             report.notes = notes_of(
                 {*mesh, analyse_topology(geometry), engine.definition, values, report.misfit});
         });
+    report.notes.insert(report.notes.end(), notes_of_file.begin(), notes_of_file.end());
     report.seconds.write = stage.lap();
 
     report.vertices = scene.positions.size();

@@ -11,6 +11,7 @@
 #include "surfels/errors.h"
 
 #include <string>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -68,8 +69,9 @@ void check_output(const fs::path& input, const fs::path& output)
     check_writable(output);
 }
 
-void write_scene(const fs::path& path, const Scene& scene, std::span<const Occlusion> occlusion,
-                 const WriteOptions& options)
+std::vector<std::string> write_scene(const fs::path& path, const Scene& scene,
+                                     std::span<const Occlusion> occlusion,
+                                     const WriteOptions& options)
 {
     require(occlusion.size() == scene.positions.size(),
             "writing takes one answer per vertex: there are " +
@@ -83,13 +85,19 @@ void write_scene(const fs::path& path, const Scene& scene, std::span<const Occlu
     check_output(path, path);
     switch (type_of(path)) {
         case FileType::obj:
-            return write_atomically(path, obj_contents(scene, occlusion, options.mark));
+            write_atomically(path, obj_contents(scene, occlusion, options.mark));
+            return {};
         case FileType::off:
-            return write_atomically(path, off_contents(scene, occlusion, options.mark));
+            write_atomically(path, off_contents(scene, occlusion, options.mark));
+            return {};
         case FileType::ply:
-            return write_atomically(path, ply_contents(scene, occlusion, options.mark));
-        default:
-            return write_atomically(path, gltf_contents(path, scene, occlusion, options));
+            write_atomically(path, ply_contents(scene, occlusion, options.mark));
+            return {};
+        default: {
+            WrittenFile written = gltf_contents(path, scene, occlusion, options);
+            write_atomically(path, written.contents);
+            return std::move(written.notes);
+        }
     }
 }
 
