@@ -2,6 +2,7 @@
 
 #include "files/file_contents.h"
 #include "files/gltf_uri.h"
+#include "files/sidecars.h"
 #include "surfels/errors.h"
 
 #include <nlohmann/json.hpp>
@@ -150,7 +151,7 @@ private:
         if (!fs::is_regular_file(*file, error))
             absent.push_back(shortened(text));
         else if (!same_folder_ || text.find_first_of("\\ ") != text.npos)
-            uri = relative_uri(path_, *file);
+            uri = encode_uri(path_from(fs::absolute(path_).parent_path(), *file));
     }
 
     const fs::path& model_;

@@ -115,16 +115,10 @@ std::optional<fs::path> resolve_buffer_uri(const fs::path& folder, std::string_v
     return file && lower_extension(*file) == ".bin" ? file : resolve_uri(folder, uri);
 }
 
-std::string relative_uri(const fs::path& from, const fs::path& file)
+std::string encode_uri(std::string_view path)
 {
-    std::error_code error;  // where a folder is not there, the path is as good as it can be
-    const auto folder_of = [&](const fs::path& path) {
-        return fs::weakly_canonical(fs::absolute(path).parent_path(), error);
-    };
-    const fs::path relative =
-        (folder_of(file) / file.filename()).lexically_relative(folder_of(from));
     std::string uri;
-    for (const unsigned char c : relative.generic_string()) {
+    for (const unsigned char c : path) {
         if (std::isalnum(c) || kUnescaped.find(static_cast<char>(c)) != kUnescaped.npos) {
             uri.push_back(static_cast<char>(c));
             continue;

@@ -23,9 +23,9 @@ namespace surfelao {
 [[nodiscard]] std::optional<std::filesystem::path> resolve_buffer_uri(
     const std::filesystem::path& folder, std::string_view uri);
 
-/// The URI by which a file at `from` finds `file`, relative and well formed.
-[[nodiscard]] std::string relative_uri(const std::filesystem::path& from,
-                                       const std::filesystem::path& file);
+/// A relative path, with slashes, as a URI: percent signs for all but ASCII letters, digits and
+/// what else a path may have.
+[[nodiscard]] std::string encode_uri(std::string_view path);
 
 [[nodiscard]] bool is_data_uri(std::string_view uri);
 
