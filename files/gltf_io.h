@@ -67,17 +67,17 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
 /// VertexColors::automatic shows the occlusion in every primitive, in the way that leaves its looks
 /// alone:
 ///   - without colours (or all white) and without textures of colour, emission or occlusion:
-///     COLOR_0 = visibility, which viewers multiply with the material's colour. Where there is no
-///     material, a plain one is added, white and no metal, as for `grey`, `shaded` and `bent`:
-///     without one Blender shows no colours, and others show metal
-///   - else, and with a material: an `occlusionTexture`, where the specification puts ambient
-///     occlusion. The picture is a ramp from 0 to 1, and a new set TEXCOORD_n (u: unsigned short,
-///     normalised; v = .5), the first that is free, looks up the visibility in it, exactly. The
-///     material becomes a copy where others use it too
-///   - a material that has an occlusionTexture keeps it; colours without a material stay alone
-/// Notes count the last two kinds. three.js follows any of the first four sets; Godot two, older
-/// ones (before its change 96748) only the first: they need `grey` or `shaded`. Blender shows no
-/// occlusionTexture, but has it beside the material.
+///     COLOR_0 = visibility, which viewers multiply with the material's colour
+///   - else: an `occlusionTexture`, where the specification puts ambient occlusion. The picture is
+///     a ramp from 0 to 1, and a new set TEXCOORD_n (u: unsigned short, normalised; v = .5), the
+///     first that is free, looks up the visibility in it, exactly. The material becomes a copy
+///     where others use it too
+///   - a material that has an occlusionTexture keeps it
+/// A note counts the last two kinds. Where colours or textures are added, primitives without a
+/// material get a plain one, white and no metal: without one Blender shows no colours, and others
+/// show metal. occlusionTexture darkens ambient light only. three.js follows any of the first four
+/// sets; Godot two, and before its change 96748 only the first, where the file's own coordinates
+/// stand: there and in Blender, which shows none, ask for `shaded`.
 ///
 /// Everything else is handed back: materials, textures, animations, nodes, extensions, extras,
 /// unknown GLB chunks; keys of JSON objects come out sorted. A mesh that several nodes use is

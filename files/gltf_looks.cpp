@@ -67,6 +67,12 @@ void count_uses(const json& value, std::map<std::size_t, std::size_t>& uses_of)
     }
 }
 
+/// As specified for primitives without a material, but no metal.
+json plain_material()
+{
+    return {{"name", kAddedMaterial}, {"pbrMetallicRoughness", {{"metallicFactor", 0}}}};
+}
+
 std::size_t append(json& document, const char* list, json value)
 {
     json& entries = document[list];
@@ -107,7 +113,7 @@ void GltfLooks::add(std::span<json* const> primitives, std::span<const Occlusion
         }
         const json& index = member(*primitive, "material");
         const json& material = entry(document_, "materials", index);
-        if (options_.colors == VertexColors::keep || !material.is_object())
+        if (options_.colors == VertexColors::keep || (!index.is_null() && !material.is_object()))
             continue;
         if (material.contains("occlusionTexture")) {
             ++kept_textures_;
@@ -121,7 +127,7 @@ void GltfLooks::add(std::span<json* const> primitives, std::span<const Occlusion
         }
         const std::size_t set = free_set(attributes);
         attributes["TEXCOORD_" + std::to_string(set)] = *coordinates;
-        textured_.push_back({primitive, index.get<std::size_t>(), set});
+        textured_.push_back({primitive, index, set});
     }
 }
 
@@ -183,9 +189,7 @@ void GltfLooks::finish()
 
 void GltfLooks::set_plain_material()
 {
-    const std::size_t plain =
-        append(document_, "materials",
-               {{"name", kAddedMaterial}, {"pbrMetallicRoughness", {{"metallicFactor", 0}}}});
+    const std::size_t plain = append(document_, "materials", plain_material());
     for (json* const primitive : bare_)
         (*primitive)["material"] = plain;
 }
@@ -195,23 +199,23 @@ void GltfLooks::set_occlusion_textures()
     const std::size_t texture = add_texture();
     std::map<std::size_t, std::size_t> uses_of;
     count_uses(document_["meshes"], uses_of);
-    std::map<std::pair<std::size_t, std::size_t>, std::vector<json*>> primitives_of;
+    std::map<std::pair<json, std::size_t>, std::vector<json*>> primitives_of;
     for (const Textured& textured : textured_)
         primitives_of[{textured.material, textured.set}].push_back(textured.primitive);
-    json& materials = document_["materials"];
     for (const auto& [material_and_set, primitives] : primitives_of) {
         const auto& [material, set] = material_and_set;
         json info = {{"index", texture}, {"texCoord", set}};
-        if (uses_of[material] == primitives.size()) {
-            materials[material]["occlusionTexture"] = info;
+        if (!material.is_null() && uses_of[material.get<std::size_t>()] == primitives.size()) {
+            document_["materials"][material.get<std::size_t>()]["occlusionTexture"] = info;
             continue;
         }
-        json copy = materials[material];
-        info["extras"] = {{kMarkKey, material}};
+        json copy = material.is_null() ? plain_material() : entry(document_, "materials", material);
+        if (!material.is_null())
+            info["extras"] = {{kMarkKey, material}};
         copy["occlusionTexture"] = info;
-        materials.push_back(copy);
+        const std::size_t added = append(document_, "materials", copy);
         for (json* const primitive : primitives)
-            (*primitive)["material"] = materials.size() - 1;
+            (*primitive)["material"] = added;
     }
 }
 
@@ -234,19 +238,25 @@ std::size_t GltfLooks::add_texture()
 
 std::vector<std::string> GltfLooks::notes() const
 {
-    std::string kept;
-    const auto add = [&](std::size_t count, const char* one, const char* many) {
-        if (count > 0)
-            kept += (kept.empty() ? "" : ", ") + std::to_string(count) + (count == 1 ? one : many);
-    };
-    add(textured_.size(), " gets an occlusionTexture", " get an occlusionTexture");
-    add(kept_textures_, " keeps the occlusionTexture it has",
-        " keep the occlusionTexture they have");
-    add(kept_colors_, " keeps its colours", " keep their colours");
-    if (kept.empty())
+    if (textured_.empty() && kept_textures_ == 0)
         return {};
-    return {"primitives with looks of their own: " + kept +
-            " (--colors grey or shaded shows the visibility as colours)"};
+    const auto counted_as = [](std::size_t count, const char* one, const char* many) {
+        return std::to_string(count) + (count == 1 ? one : many);
+    };
+    std::string note = "primitives with looks of their own: ";
+    if (!textured_.empty())
+        note +=
+            counted_as(textured_.size(), " gets an occlusionTexture", " get an occlusionTexture");
+    if (!textured_.empty() && kept_textures_ > 0)
+        note += ", ";
+    if (kept_textures_ > 0)
+        note += counted_as(kept_textures_, " keeps the occlusionTexture it has",
+                           " keep the occlusionTexture they have");
+    if (kept_colors_ > 0)
+        note +=
+            counted_as(kept_colors_, " of them keeps its colours", " of them keep their colours")
+                .insert(0, "; ");
+    return {note + " (--colors grey or shaded shows the visibility as colours)"};
 }
 
 }  // namespace surfelao

@@ -33,8 +33,8 @@ public:
 private:
     struct Textured {
         nlohmann::json* primitive;
-        std::size_t material;
-        std::size_t set;  ///< n of TEXCOORD_n
+        nlohmann::json material;  ///< its index; null: none
+        std::size_t set;          ///< n of TEXCOORD_n
     };
 
     [[nodiscard]] VertexColors decide(const nlohmann::json& primitive,

@@ -106,7 +106,7 @@ std::vector<Made> all_made()
     return {{"bare", square(), "COLOR_0"},
             {"plain", plain, "COLOR_0"},
             {"white", white_square(), "COLOR_0"},
-            {"coloured", coloured_square(), ""},
+            {"coloured", coloured_square(), "TEXCOORD_0"},
             {"painted", painted, "TEXCOORD_0"},
             {"textured", textured_square(), "TEXCOORD_1"},
             {"textured twice", textured_square(2), "TEXCOORD_2"},
@@ -242,7 +242,7 @@ TEST(GltfLooks, ColorsWithoutAMaterialGetAPlainOne)
     }
 }
 
-TEST(GltfLooks, NotesTellWhatKeepsItsLooks)
+TEST(GltfLooks, ANoteTellsWhatKeepsItsLooks)
 {
     GltfMaker maker = occluded_square();
     json& primitives = maker.document["meshes"][0]["primitives"];
@@ -250,18 +250,24 @@ TEST(GltfLooks, NotesTellWhatKeepsItsLooks)
     primitives.push_back(primitive(textured_square()));
     maker.add("materials", textured_square().document["materials"][0]);
     primitives[1]["material"] = primitives[2]["material"] = 1;
-    const Scene scene = read_gltf("in.glb", maker.glb());
+    const auto notes = [](const GltfMaker& made, VertexColors colors) {
+        const Scene scene = read_gltf("in.glb", made.glb());
+        return gltf_contents("out.glb", scene, pattern(scene), {.colors = colors}).notes;
+    };
+    using Notes = std::vector<std::string>;
     for (const VertexColors colors : kAll) {
-        const std::vector<std::string> notes =
-            gltf_contents("out.glb", scene, pattern(scene), {.colors = colors}).notes;
-        EXPECT_EQ(
-            notes,
-            colors != VertexColors::automatic
-                ? std::vector<std::string>{}
-                : std::vector<std::string>{
-                      "primitives with looks of their own: 2 get an occlusionTexture, 1 keeps "
-                      "the occlusionTexture it has (--colors grey or shaded shows the "
-                      "visibility as colours)"});
+        const bool automatic = colors == VertexColors::automatic;
+        EXPECT_EQ(notes(maker, colors),
+                  automatic ? Notes{"primitives with looks of their own: 2 get an "
+                                    "occlusionTexture, 1 keeps the occlusionTexture it has "
+                                    "(--colors grey or shaded shows the visibility as colours)"}
+                            : Notes{});
+        EXPECT_EQ(notes(coloured_square(), colors),
+                  automatic ? Notes{"primitives with looks of their own: 1 gets an "
+                                    "occlusionTexture; 1 of them keeps its colours "
+                                    "(--colors grey or shaded shows the visibility as colours)"}
+                            : Notes{});
+        EXPECT_EQ(notes(square(), colors), Notes{});
     }
 }
 
