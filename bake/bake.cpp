@@ -74,10 +74,10 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     report.seconds.fit = stage.lap();
 
     enter(progress, "write");
-    std::vector<std::string> notes_of_file;
+    std::vector<std::string> written_notes;
     tbb::parallel_invoke(
         [&] {
-            notes_of_file = write_scene(settings.output, scene, values,
+            written_notes = write_scene(settings.output, scene, values,
                                         {settings.colors, settings.encoding, mark_of(settings)});
         },
         [&] {  // a writer leaves cores idle
@@ -85,7 +85,7 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
             report.notes = notes_of(
                 {*mesh, analyse_topology(geometry), engine.definition, values, report.misfit});
         });
-    report.notes.insert(report.notes.end(), notes_of_file.begin(), notes_of_file.end());
+    report.notes.insert(report.notes.end(), written_notes.begin(), written_notes.end());
     report.seconds.write = stage.lap();
 
     report.vertices = scene.positions.size();

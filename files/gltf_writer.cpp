@@ -10,6 +10,7 @@
 #include "files/gltf_uri.h"
 #include "files/gltf_uses.h"
 #include "files/maker_mark.h"
+#include "files/sidecars.h"
 #include "surfels/errors.h"
 
 #include <nlohmann/json.hpp>
@@ -139,20 +140,6 @@ void set_mark(json& document, const std::string& mark)
         extras->erase(kMarkKey);
 }
 
-/// "files that it refers to are not there: a.png, b.png and 3 more"; nothing where all are.
-std::vector<std::string> absent_note(std::span<const std::string> absent)
-{
-    constexpr std::size_t kNamed = 3;
-    if (absent.empty())
-        return {};
-    std::string note = "files that it refers to are not there: " + absent[0];
-    for (std::size_t i = 1; i < std::min(kNamed, absent.size()); ++i)
-        note += ", " + absent[i];
-    if (absent.size() > kNamed)
-        note += " and " + std::to_string(absent.size() - kNamed) + " more";
-    return {note};
-}
-
 }  // namespace
 
 WrittenFile gltf_contents(const fs::path& path, const Scene& scene,
@@ -172,7 +159,7 @@ WrittenFile gltf_contents(const fs::path& path, const Scene& scene,
     if (binary)
         bytes = gather(document, buffers_as_read, asset->path);
     WrittenFile written;
-    written.notes = absent_note(turn_uris(document, asset->path, path));
+    note_missing(turn_uris(document, asset->path, path), written.notes);
     if (!binary)
         embed_buffers(document, buffers_as_read, path);
 

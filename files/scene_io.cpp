@@ -45,6 +45,21 @@ Scene read_any(const fs::path& path)
     }
 }
 
+WrittenFile contents_for(const fs::path& path, const Scene& scene,
+                         std::span<const Occlusion> occlusion, const WriteOptions& options)
+{
+    switch (type_of(path)) {
+        case FileType::obj:
+            return obj_contents(path, scene, occlusion, options);
+        case FileType::off:
+            return off_contents(scene, occlusion, options);
+        case FileType::ply:
+            return ply_contents(path, scene, occlusion, options);
+        default:
+            return gltf_contents(path, scene, occlusion, options);
+    }
+}
+
 }  // namespace
 
 Scene read_scene(const fs::path& path)
@@ -83,22 +98,9 @@ std::vector<std::string> write_scene(const fs::path& path, const Scene& scene,
     if (!covered)
         throw InputError(path.string() + ": the scene's parts do not cover its vertices");
     check_output(path, path);
-    switch (type_of(path)) {
-        case FileType::obj:
-            write_atomically(path, obj_contents(scene, occlusion, options.mark));
-            return {};
-        case FileType::off:
-            write_atomically(path, off_contents(scene, occlusion, options.mark));
-            return {};
-        case FileType::ply:
-            write_atomically(path, ply_contents(scene, occlusion, options.mark));
-            return {};
-        default: {
-            WrittenFile written = gltf_contents(path, scene, occlusion, options);
-            write_atomically(path, written.contents);
-            return std::move(written.notes);
-        }
-    }
+    WrittenFile written = contents_for(path, scene, occlusion, options);
+    write_atomically(path, written.contents);
+    return std::move(written.notes);
 }
 
 }  // namespace surfelao

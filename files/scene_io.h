@@ -43,8 +43,8 @@ void check_output(const std::filesystem::path& input, const std::filesystem::pat
 /// name only when it is complete (written to a temporary name beside it, then renamed): on any
 /// error an existing file is untouched and nothing is left behind. Throws SettingsError when the
 /// number of answers is another one, InputError as check_output does, std::runtime_error when the
-/// machine refuses (disk full). Returns notes, a sentence each: where the file does not show what
-/// one expects (gltf_io.h).
+/// machine refuses (disk full). Returns notes on the result: colours of the file that hide the
+/// occlusion or are shaded by it, other files that it names and that are not there.
 std::vector<std::string> write_scene(const std::filesystem::path& path, const Scene& scene,
                                      std::span<const Occlusion> occlusion,
                                      const WriteOptions& options = {});

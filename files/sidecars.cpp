@@ -3,6 +3,7 @@
 #include "files/file_type.h"
 #include "files/gltf_strings.h"
 #include "files/gltf_uri.h"
+#include "files/text_cursor.h"
 
 #include <algorithm>
 #include <fstream>
@@ -20,6 +21,8 @@ constexpr std::size_t kMostHeaderLines = 1000;
 
 /// Longest name of a file, in words.
 constexpr std::size_t kMostWords = 16;
+
+constexpr std::size_t kMostListed = 4;
 
 constexpr std::string_view kBlanks = " \t\r";
 
@@ -103,7 +106,7 @@ void add_of_ply(const fs::path& mesh, std::vector<fs::path>& files)
 {
     std::size_t lines = 0;
     for_each_line(mesh, [&](std::string_view keyword, std::string_view rest) {
-        if (keyword == "comment" && rest.find("TextureFile") != rest.npos)
+        if (keyword == "comment" && rest.find(kTextureKeyword) != rest.npos)
             add_named(mesh.parent_path(), rest, files);
         return keyword != "end_header" && ++lines < kMostHeaderLines;
     });
@@ -144,6 +147,9 @@ std::string path_from(const fs::path& folder, const fs::path& file)
 std::string names_from(const fs::path& to, const fs::path& from, std::string_view names,
                        std::vector<std::string>& missing)
 {
+    std::error_code error;
+    if (fs::equivalent(to.empty() ? "." : to, from, error))
+        return std::string(names);
     std::string text;
     std::size_t copied = 0;
     for (const NamedFile& named : files_named(from, names)) {
@@ -156,6 +162,18 @@ std::string names_from(const fs::path& to, const fs::path& from, std::string_vie
         copied = begin + named.name.size();
     }
     return text.append(names.substr(copied));
+}
+
+void note_missing(const std::vector<std::string>& missing, std::vector<std::string>& notes)
+{
+    if (missing.empty())
+        return;
+    std::string note = "named in the file and not found: ";
+    for (std::size_t i = 0; i < std::min(missing.size(), kMostListed); ++i)
+        note.append(i > 0 ? ", " : "").append(surfelao::quoted(missing[i]));
+    if (missing.size() > kMostListed)
+        note += " and " + std::to_string(missing.size() - kMostListed) + " more";
+    notes.push_back(std::move(note));
 }
 
 std::vector<fs::path> sidecars_of(const fs::path& mesh)

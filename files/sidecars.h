@@ -15,6 +15,9 @@ namespace surfelao {
 /// file).
 [[nodiscard]] std::vector<std::filesystem::path> sidecars_of(const std::filesystem::path& mesh);
 
+/// A comment of a PLY's header names textures behind this word.
+inline constexpr std::string_view kTextureKeyword = "TextureFile";
+
 struct NamedFile {
     std::string_view name;       ///< into the names
     std::filesystem::path file;  ///< empty where there is none
@@ -32,9 +35,13 @@ struct NamedFile {
                                     const std::filesystem::path& file);
 
 /// The names of files in `from` as they must be written in a file in `to`. Absolute ones and what
-/// is not found stay as they are; the latter are added to `missing`.
+/// is not found stay as they are, and all where both are one folder; what is not found in another
+/// is added to `missing`.
 [[nodiscard]] std::string names_from(const std::filesystem::path& to,
                                      const std::filesystem::path& from, std::string_view names,
                                      std::vector<std::string>& missing);
+
+/// Adds one sentence that lists them, if there are any.
+void note_missing(const std::vector<std::string>& missing, std::vector<std::string>& notes);
 
 }  // namespace surfelao

@@ -260,7 +260,7 @@ TEST(GltfWriter, InAnotherFolderATextFileFindsTheFiles)
         return write_scene(to, scene, pattern(scene), {.mark = make_mark("bake", "x")});
     };
 
-    const std::vector<std::string> notes = {"files that it refers to are not there: absent\\1.png"};
+    const std::vector<std::string> notes = {"named in the file and not found: \"absent\\1.png\""};
     EXPECT_EQ(bake(in, folder / "my model/out.gltf"), notes);
     EXPECT_EQ(bake(in, folder / "there/out.gltf"), notes);
     EXPECT_EQ(bake(folder / "there/out.gltf", folder / "there/deep/out.gltf"), notes);
