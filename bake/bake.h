@@ -58,7 +58,7 @@ struct BakeReport {
     std::optional<StatedError> error;     ///< as displayed
     std::vector<Trial> trials;            ///< of settings.error
     bool is_met = false;                  ///< settings.error is kept
-    std::vector<std::string> notes;       ///< bake/notes.h
+    std::vector<std::string> notes;       ///< bake/notes.h, then those of write_scene()
 };
 
 /// Reads, solves, writes. The output appears complete or not at all: after any exception an older

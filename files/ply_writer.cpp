@@ -76,7 +76,7 @@ void append_channel(std::string& text, Type type, double value, Notation notatio
     }
 }
 
-void append_bytes_of(std::string& text, const glm::vec3& numbers, Notation notation)
+void append_color_bytes(std::string& text, const glm::vec3& numbers, Notation notation)
 {
     for (int channel = 0; channel < 3; ++channel) {
         if (notation.ascii)
@@ -185,10 +185,10 @@ private:
             (keyword == "property" && in_vertex_ && changes_.drops(last))) {
             copy_to(line_begin);
             copied_ = line_end;
-        } else if (is_comment && words.find(kTextureKeyword) != words.npos) {
-            const std::size_t names = words.find(kTextureKeyword) + kTextureKeyword.size();
-            copy_to(words_begin + names);
-            text_ += names_from(folder_, source_.folder, words.substr(names), missing);
+        } else if (is_comment && words.starts_with(kTextureKeyword)) {
+            copy_to(words_begin + kTextureKeyword.size());
+            text_ += names_from(folder_, source_.folder, old_.substr(copied_, words_end - copied_),
+                                missing);
             copied_ = words_end;
         } else if (keyword == "format") {
             copy_to(line_end);
@@ -267,7 +267,7 @@ void append_vertex_rows(std::string& text, const PlySource& source,
         }
         append_measured(text, occlusion[row], notation);
         if (!plan.has_own() && plan.writes())
-            append_bytes_of(text, numbers, notation);
+            append_color_bytes(text, numbers, notation);
         for (std::size_t c = 0; c < 3 && plan.replaces(); ++c)
             text.append(notation.ascii ? " " : "").append(own_word(c));
     }
@@ -389,12 +389,12 @@ WrittenFile ply_contents(const std::filesystem::path& path, const Scene& scene,
         add_color(kColor);
     values.append = [&](std::string& row, std::size_t v) {
         if (plan.has_own())
-            append_bytes_of(row, shown(v), {});
+            append_color_bytes(row, shown(v), {});
         append_measured(row, occlusion[v], {});
         if (plan.replaces())
-            append_bytes_of(row, numbers_of(plan.own[v]), {});
+            append_color_bytes(row, numbers_of(plan.own[v]), {});
         else if (!plan.has_own() && plan.writes())
-            append_bytes_of(row, shown(v), {});
+            append_color_bytes(row, shown(v), {});
     };
     written.contents = new_ply(scene, values, options.mark);
     return written;
