@@ -1,5 +1,6 @@
 #include "files/gltf_notes.h"
 
+#include "files/gltf_json.h"
 #include "surfels/number_text.h"
 
 #include <nlohmann/json.hpp>
@@ -18,16 +19,6 @@ std::string counted(std::size_t count, const std::string& noun, const std::strin
                     const std::string& many)
 {
     return std::to_string(count) + ' ' + noun + (count == 1 ? " " + one : "s " + many);
-}
-
-/// Member of an object; null where there is none.
-const json& member(const json& object, const char* key)
-{
-    static const json none;
-    if (!object.is_object())
-        return none;
-    const auto found = object.find(key);
-    return found == object.end() ? none : *found;
 }
 
 /// Of a primitive that the reader has taken.
@@ -51,7 +42,6 @@ struct Kinds {
 
 Kinds find_kinds(const GltfAsset& asset, const PlacedNodes& nodes)
 {
-    const json& materials = member(*asset.document, "materials");
     Kinds kinds;
     std::set<std::size_t> seen;
     for (const MeshNode& use : nodes.mesh_nodes) {
@@ -71,10 +61,7 @@ Kinds find_kinds(const GltfAsset& asset, const PlacedNodes& nodes)
             else if (primitives[p].value("mode", 4.0) == 4.0)
                 kinds.corners_left += corners % 3;
             const json& material = member(primitives[p], "material");
-            if (!material.is_number_unsigned() || !materials.is_array() ||
-                material.get<std::size_t>() >= materials.size())
-                continue;
-            const json& mode = member(materials[material.get<std::size_t>()], "alphaMode");
+            const json& mode = member(entry(*asset.document, "materials", material), "alphaMode");
             if (mode == "MASK" || mode == "BLEND")
                 kinds.see_through.insert(material.get<std::size_t>());
         }

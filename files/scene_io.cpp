@@ -11,6 +11,7 @@
 #include "surfels/errors.h"
 
 #include <string>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -55,7 +56,7 @@ WrittenFile contents_for(const fs::path& path, const Scene& scene,
         case FileType::ply:
             return ply_contents(path, scene, occlusion, options);
         default:
-            return {gltf_contents(path, scene, occlusion, options), {}};
+            return gltf_contents(path, scene, occlusion, options);
     }
 }
 

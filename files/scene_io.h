@@ -1,6 +1,6 @@
 /// scene_io.h: mesh files in, mesh files with occlusion out.
 ///
-/// Read: .obj .ply .off .stl .gltf .glb (by extension, any case). WrittenFile: .ply .obj .off, and
+/// Read: .obj .ply .off .stl .gltf .glb (by extension, any case). Written: .ply .obj .off, and
 /// .gltf/.glb for a scene that came from glTF. The file's own order and number of vertices are
 /// kept, also on non-manifold meshes and at seams (STL has no vertices of its own: equal corners
 /// are one).

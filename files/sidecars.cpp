@@ -116,7 +116,7 @@ void add_of_gltf(const fs::path& mesh, std::vector<fs::path>& files)
 {
     visit_gltf_strings(mesh, [&](std::span<const std::string> keys, const std::string& text) {
         if (!keys.empty() && keys.back() == "uri" && !is_data_uri(text)) {
-            if (const std::optional<fs::path> file = resolve_uri(mesh.parent_path(), text))
+            if (const std::optional<fs::path> file = locate_uri(mesh.parent_path(), text))
                 files.push_back(*file);
         }
         return true;
