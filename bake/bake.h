@@ -27,7 +27,7 @@ struct BakeSettings {
     std::uint32_t check = kCheckPoints;  ///< points at which the result is measured; 0: not at all
     /// The engine is then the cheapest whose stated error lies below it (bake_to_error): > 0, and
     /// check >= 1. Of `engine` only the instructions count.
-    std::optional<double> error;
+    std::optional<double> error = {};
     VertexColors colors = VertexColors::automatic;
     Encoding encoding = Encoding::automatic;
 };
@@ -58,7 +58,7 @@ struct BakeReport {
     std::optional<StatedError> error;     ///< as displayed
     std::vector<Trial> trials;            ///< of settings.error
     bool is_met = false;                  ///< settings.error is kept
-    std::vector<std::string> notes;       ///< bake/notes.h
+    std::vector<std::string> notes;       ///< bake/notes.h, then those of write_scene()
 };
 
 /// Reads, solves, writes. The output appears complete or not at all: after any exception an older

@@ -20,24 +20,6 @@ constexpr double kTwoSided95 = 1.96;
 /// Rays of n Owen-scrambled points err as n to this power (rays.h).
 constexpr double kRayPower = -0.73;
 
-/// The density of points over the area, per triangle, without a unit.
-std::vector<double> check_density(const Geometry& geometry, std::span<const float> misfits,
-                                  std::span<const Occlusion> values)
-{
-    std::vector<double> density;
-    density.reserve(misfits.size());
-    for (std::size_t t = 0; t < misfits.size(); ++t) {
-        const glm::uvec3 v = geometry.triangles[t];
-        const auto [least, most] =
-            std::minmax({values[v.x].occlusion, values[v.y].occlusion, values[v.z].occlusion});
-        const double range = kCheckRange * (most - least), misfit = misfits[t];
-        const double expected =
-            std::sqrt(misfit * misfit + range * range + kCheckLeast * kCheckLeast);
-        density.push_back(expected * std::sqrt(expected));
-    }
-    return density;
-}
-
 double sum_of(std::span<const double> values)
 {
     double sum = 0.0;
@@ -97,13 +79,29 @@ std::pair<double, double> interval_of(double mean_square, double standard_error)
 
 }  // namespace
 
-ErrorCheck::ErrorCheck(const Mesh& mesh, const VertexTarget& target,
-                       std::span<const Occlusion> answers, std::span<const Occlusion> values,
-                       const Offset& offset, std::uint32_t count)
-    : geometry_(mesh.geometry), target_(target)
+std::vector<double> density_for(const Geometry& geometry, const VertexTarget& target,
+                                std::span<const Occlusion> answers,
+                                std::span<const Occlusion> values)
 {
-    const std::vector<double> density =
-        check_density(geometry_, target.triangle_misfits(answers, values), values);
+    const std::vector<float> misfits = target.triangle_misfits(answers, values);
+    std::vector<double> density;
+    density.reserve(misfits.size());
+    for (std::size_t t = 0; t < misfits.size(); ++t) {
+        const glm::uvec3 v = geometry.triangles[t];
+        const auto [least, most] = std::minmax(
+            {values[v.x].occlusion, values[v.y].occlusion, values[v.z].occlusion});
+        const double range = kCheckRange * (most - least), misfit = misfits[t];
+        const double expected =
+            std::sqrt(misfit * misfit + range * range + kCheckLeast * kCheckLeast);
+        density.push_back(expected * std::sqrt(expected));
+    }
+    return density;
+}
+
+ErrorCheck::ErrorCheck(const Mesh& mesh, std::span<const double> density, const Offset& offset,
+                       std::uint32_t count)
+    : geometry_(mesh.geometry)
+{
     std::vector<double> measure = triangle_areas(geometry_);
     const double whole = sum_of(measure);
     for (std::size_t t = 0; t < measure.size(); ++t)
@@ -113,33 +111,36 @@ ErrorCheck::ErrorCheck(const Mesh& mesh, const VertexTarget& target,
     receivers_ = receivers_at(geometry_, mesh.surface, places, offset);
     for (const SurfacePoint& place : places)
         points_.push_back({place, sum / (whole * density[place.triangle] * count)});
-    if (target.samples() != nullptr)
-        choose_samples(*target.samples(), density, (count + kFloorStride - 1) / kFloorStride);
 }
 
-void ErrorCheck::choose_samples(const SurfaceSamples& samples, std::span<const double> density,
-                                std::uint32_t count)
+void ErrorCheck::add_floor(const VertexTarget& target, std::span<const double> density)
 {
+    if (target.samples() == nullptr)
+        return;
+    const SurfaceSamples& samples = *target.samples();
+    const std::size_t count = (points_.size() + kFloorStride - 1) / kFloorStride;
     std::vector<double> measure(samples.areas.begin(), samples.areas.end());
     const double whole = sum_of(measure);
     for (std::size_t i = 0; i < measure.size(); ++i)
         measure[i] *= density[samples.points[i].triangle];
     const double sum = sum_of(measure);
-    for (const std::uint32_t i : stratified(measure, count))
-        samples_.push_back({samples.points[i],
-                            sum / (whole * density[samples.points[i].triangle] * count), 0.0f, 0.0f,
-                            i});
+    for (const std::uint32_t i : stratified(measure, count)) {
+        const double share = whole * density[samples.points[i].triangle];
+        samples_.push_back(
+            {samples.points[i], sum / (share * static_cast<double>(count)), 0.0f, 0.0f, i});
+        receivers_.push_back(target.receivers()[i]);
+    }
 }
 
-void ErrorCheck::trace(const Definition& definition, std::span<const Occlusion> values,
-                       const Progress& progress, std::optional<double> least)
+void ErrorCheck::trace(const Definition& definition, const Shown& shown, const Progress& progress,
+                       std::optional<double> least)
 {
     const RayScene scene(geometry_, RayScene::Build::quick);
     const auto trace_with = [&](std::uint32_t rays) {
         trace_points(scene, {.definition = definition, .rays = rays / 2}, progress);
     };
     const auto is_hidden = [&] {
-        const double noise = noise_of_rays(rays_), square = mean_square(values);
+        const double noise = noise_of_rays(rays_), square = mean_square(shown);
         return noise * noise > (least ? std::min(square, *least * *least) : square);
     };
     for (trace_with(kCheckRays); rays_ < kMostCheckRays && is_hidden();)
@@ -149,7 +150,7 @@ void ErrorCheck::trace(const Definition& definition, std::span<const Occlusion> 
     std::vector<Receiver> suspicious;
     for (std::size_t i = 0; i < points_.size(); ++i) {
         const float truth = 0.5f * (points_[i].first + points_[i].second);
-        if (std::abs(displayed(geometry_, values, points_[i].at) - truth) > kSuspicious) {
+        if (std::abs(shown(points_[i].at) - truth) > kSuspicious) {
             suspects.push_back(i);
             suspicious.push_back(receivers_[i]);
         }
@@ -167,29 +168,26 @@ void ErrorCheck::trace(const Definition& definition, std::span<const Occlusion> 
 void ErrorCheck::trace_points(const RayScene& scene, RayOptions options, const Progress& progress)
 {
     rays_ = 2 * options.rays;
-    std::vector<Receiver> receivers = receivers_;
-    for (const Point& sample : samples_)
-        receivers.push_back(target_.receivers()[sample.sample]);
     const auto trace_half = [&](std::uint32_t seed) {
         options.seed = seed;
-        return trace_occlusion(scene, receivers, options, [&, seed](double done) {
+        return trace_occlusion(scene, receivers_, options, [&, seed](double done) {
             return !progress || progress(0.5 * (seed + done));
         });
     };
     const std::vector<Occlusion> first = trace_half(0), second = trace_half(1);
     const std::size_t count = points_.size();
-    for (std::size_t i = 0; i < receivers.size(); ++i) {
+    for (std::size_t i = 0; i < receivers_.size(); ++i) {
         Point& point = i < count ? points_[i] : samples_[i - count];
         point.first = first[i].occlusion;
         point.second = second[i].occlusion;
     }
 }
 
-double ErrorCheck::mean_square(std::span<const Occlusion> values) const
+double ErrorCheck::mean_square(const Shown& shown_at) const
 {
     Mean square;
     for (const Point& point : points_) {
-        const double shown = displayed(geometry_, values, point.at);
+        const double shown = shown_at(point.at);
         square.add(point.weight, (shown - point.first) * (shown - point.second));
     }
     return square.estimate().mean;
@@ -206,8 +204,7 @@ void ErrorCheck::leave_out(std::span<const std::size_t> points)
     ill_defined_ = static_cast<std::uint32_t>(points.size());
 }
 
-StatedError ErrorCheck::error_of(std::span<const Occlusion> answers,
-                                 std::span<const Occlusion> values) const
+StatedError ErrorCheck::error_of(const Shown& shown_at, std::span<const Occlusion> answers) const
 {
     StatedError stated;
     stated.points = static_cast<std::uint32_t>(points_.size()) - ill_defined_;
@@ -221,7 +218,7 @@ StatedError ErrorCheck::error_of(std::span<const Occlusion> answers,
     for (const Point& point : points_) {
         if (point.weight == 0.0)
             continue;
-        const double shown = displayed(geometry_, values, point.at);
+        const double shown = shown_at(point.at);
         const double truth = 0.5 * (double{point.first} + double{point.second});
         square.add(point.weight, (shown - point.first) * (shown - point.second));
         difference.add(point.weight, shown - truth);
@@ -237,7 +234,7 @@ StatedError ErrorCheck::error_of(std::span<const Occlusion> answers,
     if (!samples_.empty()) {
         Mean beyond;  // what the mean square would lose by exact answers
         for (const Point& sample : samples_) {
-            const double shown = displayed(geometry_, values, sample.at);
+            const double shown = shown_at(sample.at);
             const double answer = answers[sample.sample].occlusion;
             beyond.add(sample.weight, 0.5 * ((shown - sample.first) * (answer - sample.second) +
                                              (shown - sample.second) * (answer - sample.first)));

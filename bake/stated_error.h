@@ -22,6 +22,7 @@
 #include "surfels/surface.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -65,30 +66,43 @@ struct StatedError {
     std::uint32_t ill_defined = 0;  ///< points that were left out
 };
 
-/// Points of a mesh and what is true there; measures any values at its vertices.
+/// What is displayed at a point of the surface: occlusion, whatever holds it.
+using Shown = std::function<float(const SurfacePoint&)>;
+
+/// Where points tell most of values at vertices that were fitted to answers: the density of points
+/// over the area, one per triangle, without a unit. O(n).
+[[nodiscard]] std::vector<double> density_for(const Geometry& geometry, const VertexTarget& target,
+                                              std::span<const Occlusion> answers,
+                                              std::span<const Occlusion> values);
+
+/// Points of a mesh and what is true there; measures whatever is displayed on it.
 class ErrorCheck {
 public:
-    /// Chooses the points for values that were fitted to answers (VertexTarget::values). mesh and
-    /// target must outlive it. offset: the target's. count: 1 to kMostCheckPoints. O(n).
-    ErrorCheck(const Mesh& mesh, const VertexTarget& target, std::span<const Occlusion> answers,
-               std::span<const Occlusion> values, const Offset& offset, std::uint32_t count);
+    /// Chooses the points. mesh must outlive it. density: > 0, one per triangle. offset: that of
+    /// the job. count: 1 to kMostCheckPoints. O(n).
+    ErrorCheck(const Mesh& mesh, std::span<const double> density, const Offset& offset,
+               std::uint32_t count);
+
+    /// For values that are fitted: asks at samples of the target too, for the floor. target must
+    /// outlive this; before trace().
+    void add_floor(const VertexTarget& target, std::span<const double> density);
 
     /// Traces rays at the points: before error_of(). Points that are ill-defined
     /// (reference/well_defined.h) and err by more than kSuspicious count no more. O(n) for the ray
     /// tracer's hierarchy, with a small factor. least: what is to be known even where the values
     /// err more, for the sake of others. Throws Cancelled.
-    void trace(const Definition& definition, std::span<const Occlusion> values,
-               const Progress& progress = {}, std::optional<double> least = {});
+    void trace(const Definition& definition, const Shown& shown, const Progress& progress = {},
+               std::optional<double> least = {});
 
-    /// values: one per vertex, the target's of answers: those of an engine at the target's
-    /// receivers.
+    /// answers: an engine's, at the receivers of the target of add_floor(), of which the values
+    /// were made; without add_floor() none.
     ///
     /// The floor: least squares makes of the engine's errors e at the samples a part P e of what is
     /// displayed, and P is a projection: the mean of (displayed - truth) e over the samples is that
     /// of (P e)^2, for the floor's own error does not depend on e. It is error^2 - floor^2.
     /// Equal input gives equal bytes, whatever the number of threads.
-    [[nodiscard]] StatedError error_of(std::span<const Occlusion> answers,
-                                       std::span<const Occlusion> values) const;
+    [[nodiscard]] StatedError error_of(const Shown& shown,
+                                       std::span<const Occlusion> answers = {}) const;
 
     /// RMS noise of the answer of `rays` rays over the surface: what the rays of the truth tell of
     /// it.
@@ -97,21 +111,18 @@ public:
 private:
     struct Point {
         SurfacePoint at;
-        double weight = 0.0;                ///< inverse of the density, about 1 in sum; 0: left out
+        double weight = 0.0;  ///< inverse of the density, about 1 in sum; 0: left out
         float first = 0.0f, second = 0.0f;  ///< occlusion by either half of the rays
         std::uint32_t sample = 0;           ///< of the target; samples_ only
     };
 
-    void choose_samples(const SurfaceSamples& samples, std::span<const double> expected,
-                        std::uint32_t count);
     void trace_points(const RayScene& scene, RayOptions options, const Progress& progress);
-    double mean_square(std::span<const Occlusion> values) const;
+    double mean_square(const Shown& shown) const;
     void leave_out(std::span<const std::size_t> points);
 
     const Geometry& geometry_;
-    const VertexTarget& target_;
     std::vector<Point> points_, samples_;
-    std::vector<Receiver> receivers_;  ///< at points_
+    std::vector<Receiver> receivers_;  ///< at points_, then at samples_
     std::uint32_t rays_ = 0;           ///< per point
     std::uint32_t ill_defined_ = 0;
 };

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 
 namespace surfelao {
@@ -26,6 +27,21 @@ struct World {
     std::shared_ptr<const Mesh> mesh;
     VertexTarget target;
 };
+
+/// Of values at vertices that were fitted to answers.
+StatedError measured(const World& world, std::span<const Occlusion> answers,
+                     std::span<const Occlusion> values, std::uint32_t count)
+{
+    const Geometry& geometry = world.mesh->geometry;
+    const std::vector<double> density = density_for(geometry, world.target, answers, values);
+    const Shown shown = [&](const SurfacePoint& point) {
+        return displayed(geometry, values, point);
+    };
+    ErrorCheck check(*world.mesh, density, {}, count);
+    check.add_floor(world.target, density);
+    check.trace({}, shown);
+    return check.error_of(shown, answers);
+}
 
 Scene open_square()
 {
@@ -47,9 +63,7 @@ TEST(StatedError, IsWhatIsDisplayedLessTheTruth)
     std::vector<Occlusion> values(world.mesh->scene.positions.size());
     for (Occlusion& value : values)
         value.occlusion = 0.25f;
-    ErrorCheck check(*world.mesh, world.target, answers, values, {}, kCheckPoints);
-    check.trace({}, values);
-    const StatedError stated = check.error_of(answers, values);
+    const StatedError stated = measured(world, answers, values, kCheckPoints);
     for (const double figure : {stated.rmse, stated.low, stated.high, stated.bias, stated.p95})
         EXPECT_NEAR(figure, 0.25, kStatedStep);
     EXPECT_EQ(stated.points, kCheckPoints);
@@ -69,9 +83,7 @@ TEST(StatedError, WeighsByAreaWhereverThePointsLie)
     std::vector<Occlusion> values(positions.size());
     for (std::size_t v = 0; v < values.size(); ++v)
         values[v].occlusion = positions[v].x < 0.5 ? 0.5f : 0.0f;
-    ErrorCheck check(*world.mesh, world.target, answers, values, {}, 4 * kCheckPoints);
-    check.trace({}, values);
-    const StatedError stated = check.error_of(answers, values);
+    const StatedError stated = measured(world, answers, values, 4 * kCheckPoints);
     const ErrorStatistics truth = [&] {
         TruthSettings settings;
         settings.rays = 64;
@@ -118,9 +130,7 @@ TEST(StatedError, LeavesOutWhatHasNoAnswer)
     std::vector<Occlusion> values(world.mesh->scene.positions.size());
     for (Occlusion& value : values)
         value.occlusion = 0.5f;
-    ErrorCheck check(*world.mesh, world.target, answers, values, {}, kCheckPoints);
-    check.trace({}, values);
-    const StatedError stated = check.error_of(answers, values);
+    const StatedError stated = measured(world, answers, values, kCheckPoints);
     EXPECT_NEAR(stated.ill_defined, kCheckPoints / 2, 2);
     EXPECT_EQ(stated.ill_defined + stated.points, kCheckPoints);
     EXPECT_NEAR(stated.rmse, 0.5, 1e-3);  // of the upper one

@@ -40,9 +40,15 @@ World world_of(std::uint32_t index)
 /// At ten times the points of a bake.
 StatedError judged(const World& world, const VertexBake& bake)
 {
-    ErrorCheck check(*world.mesh, world.target, bake.answers, bake.values, {}, 10 * kCheckPoints);
-    check.trace({}, bake.values);
-    return check.error_of(bake.answers, bake.values);
+    const Geometry& geometry = world.mesh->geometry;
+    const std::vector<double> density =
+        density_for(geometry, world.target, bake.answers, bake.values);
+    const Shown shown = [&](const SurfacePoint& point) {
+        return displayed(geometry, bake.values, point);
+    };
+    ErrorCheck check(*world.mesh, density, {}, 10 * kCheckPoints);
+    check.trace({}, shown);
+    return check.error_of(shown);
 }
 
 std::string number(double value)
