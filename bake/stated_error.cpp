@@ -88,8 +88,8 @@ std::vector<double> density_for(const Geometry& geometry, const VertexTarget& ta
     density.reserve(misfits.size());
     for (std::size_t t = 0; t < misfits.size(); ++t) {
         const glm::uvec3 v = geometry.triangles[t];
-        const auto [least, most] = std::minmax(
-            {values[v.x].occlusion, values[v.y].occlusion, values[v.z].occlusion});
+        const auto [least, most] =
+            std::minmax({values[v.x].occlusion, values[v.y].occlusion, values[v.z].occlusion});
         const double range = kCheckRange * (most - least), misfit = misfits[t];
         const double expected =
             std::sqrt(misfit * misfit + range * range + kCheckLeast * kCheckLeast);

@@ -111,7 +111,7 @@ public:
 private:
     struct Point {
         SurfacePoint at;
-        double weight = 0.0;  ///< inverse of the density, about 1 in sum; 0: left out
+        double weight = 0.0;                ///< inverse of the density, about 1 in sum; 0: left out
         float first = 0.0f, second = 0.0f;  ///< occlusion by either half of the rays
         std::uint32_t sample = 0;           ///< of the target; samples_ only
     };
