@@ -1,6 +1,7 @@
 #include "files/own_colors.h"
 
 #include "files/maker_mark.h"
+#include "files/text_cursor.h"
 #include "surfels/number_text.h"
 
 #include <algorithm>
@@ -70,7 +71,8 @@ std::optional<double> number_in(std::string_view word)
     double number = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
     if (error == std::errc::invalid_argument || end != word.data() + word.size())
-        return std::nullopt;
+        return is_nan_of_windows(word) ? std::optional(std::numeric_limits<double>::quiet_NaN())
+                                       : std::nullopt;
     return number;
 }
 

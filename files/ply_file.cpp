@@ -148,6 +148,8 @@ Header read_header(const std::string& file_name, std::string_view contents)
         if (keyword == "comment" || keyword == "obj_info" || keyword == "Created")
             continue;
         if (keyword == "format") {
+            if (has_format)
+                cursor.fail("a second line \"format\"");
             header.format = read_format(cursor);
             has_format = true;
         } else if (keyword == "element") {

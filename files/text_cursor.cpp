@@ -33,14 +33,13 @@ bool is_underflow(std::string_view word)
     return word.substr(0, word.find('.')).find_first_of("123456789") == std::string_view::npos;
 }
 
-/// As the C library of Windows once printed what is no finite number: 1.#IND, -1.#QNAN0, 1.#INF.
+}  // namespace
+
 bool is_nan_of_windows(std::string_view word)
 {
     const std::size_t digit = word.starts_with('-') ? 1 : 0;
     return word.substr(std::min(digit, word.size())).starts_with("1.#");
 }
-
-}  // namespace
 
 std::string quoted(std::string_view word)
 {

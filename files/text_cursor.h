@@ -14,6 +14,9 @@ namespace surfelao {
 /// replaced by '?'.
 [[nodiscard]] std::string quoted(std::string_view word);
 
+/// As the C library of Windows once printed what is no finite number: 1.#IND, -1.#QNAN0, 1.#INF.
+[[nodiscard]] bool is_nan_of_windows(std::string_view word);
+
 /// What a UTF-8 text may begin with.
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 

@@ -198,6 +198,7 @@ std::vector<Case> cases()
         {"ply_WordBehindFormat",
          "ply\nformat ascii 1.0 yes\n" + v + "end_header\n",
          {"line 2", "\"yes\""}},
+        {"ply_TwoFormats", ply_header("format ascii 1.0\n"), {"line 3", "second", "format"}},
         {"ply_UnknownKeyword", ply_header("elements vertex 3\n"), {"line 3", "\"elements\""}},
         {"ply_ElementWithoutName", ply_header("element\n"), {"line 3", "name"}},
         {"ply_ElementWithoutCount", ply_header("element vertex\n"), {"line 3", "count"}},

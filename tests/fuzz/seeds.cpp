@@ -136,8 +136,9 @@ void save_text_seeds(const fs::path& folder)
     save(folder / "obj/normals.obj",
          "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nvn 0 0 1\nvn nan 0 1e39\n"
          "f 1//-1 2//1 3//2 4 5/1/-2\nvn 1 0 0\nf 1//1 2//2 3//3\n");
-    save(folder / "obj/lapses.obj",
-         "v 0 0 0\nv nan 0 1.#QNAN\nv 1 0 0 nan nan nan\nv 0 1 0\nf 1 2\nf\nf 1//9 3//0 4//-7\n");
+    save(
+        folder / "obj/lapses.obj",
+        "v 0 0 0\nv nan 0 1.#QNAN\nv 1 0 0 nan 1.#IND nan\nv 0 1 0\nf 1 2\nf\nf 1//9 3//0 4//-7\n");
     save(folder / "off/lapses.off", "OFF4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 -inf 0\n0\n3 0 1 2\n2 0 1\n");
     save(folder / "off/square.off",
          "OFF # square\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3 255 0 0\n");
