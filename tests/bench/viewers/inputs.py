@@ -1,6 +1,5 @@
-"""inputs.py: the same mesh as OBJ and as glTF, and a small textured scene, as a bake gets them."""
+"""inputs.py: the same mesh as OBJ and as glTF, and a small scene, plain and textured, to be baked."""
 
-import base64
 import json
 import struct
 import zlib
@@ -9,7 +8,7 @@ import numpy as np
 
 
 def read_obj(path):
-    """Positions [n, 3] and triangles [m, 3] of an OBJ of vertices and faces alone matters here."""
+    """Positions [n, 3] and triangles [m, 3]; whatever else the file has is passed over."""
     positions, triangles = [], []
     for line in path.read_text().splitlines():
         words = line.split()
@@ -19,6 +18,12 @@ def read_obj(path):
             corners = [int(word.split("/")[0]) - 1 for word in words[1:]]
             triangles += [[corners[0], *corners[i:i + 2]] for i in range(1, len(corners) - 1)]
     return np.array(positions, np.float32), np.array(triangles, np.uint32)
+
+
+def write_obj(path, positions, triangles):
+    lines = ["v " + " ".join(map(repr, point)) for point in positions.tolist()]
+    lines += ["f " + " ".join(map(str, corners)) for corners in (triangles + 1).tolist()]
+    path.write_text("\n".join(lines) + "\n")
 
 
 class Gltf:
@@ -120,14 +125,18 @@ def block(low, high, cells):
     return joined([grid(*face, cells) for face in faces])
 
 
-def textured():
-    """A corner of two walls and a floor with a coloured checker, and a plain block in it."""
+def corner():
+    """Two walls and a floor, finely cut, and a box that hangs there: positions, triangles, texcoords."""
+    room = [grid((0, 0, 4), (4, 0, 0), (0, 0, -4), 64), grid((0, 0, 0), (4, 0, 0), (0, 2.5, 0), 64),
+            grid((0, 0, 4), (0, 0, -4), (0, 2.5, 0), 64)]
+    return joined([*room, block((1, 0.3, 1), (2.4, 1.3, 2.4), 24)])
+
+
+def textured(positions, triangles, texcoords):
+    """With a coloured checker."""
     gltf = Gltf()
     squares = (np.indices((8, 8)).sum(0) % 2)[..., None]
     checker = np.where(squares, np.uint8([226, 120, 60]), np.uint8([60, 130, 190])).astype(np.uint8)
     gltf.texture(png(checker.repeat(16, 0).repeat(16, 1)))
-    room = joined([grid((0, 0, 4), (4, 0, 0), (0, 0, -4), 48), grid((0, 0, 0), (4, 0, 0), (0, 2, 0), 48),
-                   grid((0, 0, 4), (0, 0, -4), (0, 2, 0), 48)])
-    gltf.primitive(room[0], room[1], matt(baseColorTexture={"index": 0}), room[2])
-    gltf.primitive(*block((1, 0.2, 1), (2.4, 1.2, 2.4), 24)[:2], matt((0.8, 0.8, 0.8, 1)))
+    gltf.primitive(positions, triangles, matt(baseColorTexture={"index": 0}), texcoords)
     return gltf

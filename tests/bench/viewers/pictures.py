@@ -76,10 +76,15 @@ def visibility(parts, camera, size):
     return picture.reshape(size, size)
 
 
-def against(picture, truth):
-    """Means over the pixels that both cover, and the root mean square of the differences."""
+def against(picture, truth, bare=None):
+    """Means over the pixels that both cover, and the root mean square of the differences. With a
+    picture without occlusion: what remains of its light."""
     light, covered = linear(picture)
     covered &= ~np.isnan(truth)
+    if bare:
+        white, also = linear(bare)
+        covered &= also & (white.min(2) > 0.02)
+        light = light / np.maximum(white, 0.02)
     shown, wanted = light[covered].mean(1), truth[covered]
     return {"screen": shown.mean(), "truth": wanted.mean(), "difference": shown.mean() - wanted.mean(),
             "rms": np.sqrt(((shown - wanted) ** 2).mean()), "pixels": int(covered.sum())}

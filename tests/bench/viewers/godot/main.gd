@@ -1,8 +1,21 @@
-# Shows each glTF of jobs.json as Godot imports it, under ambient light alone.
+# Shows each glTF of jobs.json under white ambient light alone, as Godot imports it and, where a job
+# says so, with one switch of its materials turned on.
 extends Spatial
+
+const SWITCHES = {
+    "albedo": SpatialMaterial.FLAG_ALBEDO_FROM_VERTEX_COLOR,  # Vertex Color > Use As Albedo
+    "uv2": SpatialMaterial.FLAG_AO_ON_UV2,  # Ambient Occlusion > On UV2
+}
 
 func vector(array):
     return Vector3(array[0], array[1], array[2])
+
+func set_flag(node, flag):
+    if node is MeshInstance:
+        for surface in range(node.mesh.get_surface_count()):
+            node.mesh.surface_get_material(surface).set_flag(flag, true)
+    for child in node.get_children():
+        set_flag(child, flag)
 
 func _ready():
     var file = File.new()
@@ -11,12 +24,14 @@ func _ready():
     var light = WorldEnvironment.new()
     light.environment = Environment.new()
     light.environment.background_mode = Environment.BG_COLOR
+    light.environment.background_color = Color(0.43, 0.43, 0.43)
     light.environment.ambient_light_color = Color(1, 1, 1)
     light.environment.ambient_light_sky_contribution = 0
     add_child(light)
-    get_viewport().transparent_bg = true
     for job in jobs:
         var model = load("res://" + job.file).instance()
+        if job.show in SWITCHES:
+            set_flag(model, SWITCHES[job.show])
         add_child(model)
         var view = job.camera
         var camera = Camera.new()
