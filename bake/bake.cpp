@@ -74,16 +74,18 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     report.seconds.fit = stage.lap();
 
     enter(progress, "write");
+    std::vector<std::string> written_notes;
     tbb::parallel_invoke(
         [&] {
-            write_scene(settings.output, scene, values,
-                        {settings.colors, settings.encoding, mark_of(settings)});
+            written_notes = write_scene(settings.output, scene, values,
+                                        {settings.colors, settings.encoding, mark_of(settings)});
         },
         [&] {  // a writer leaves cores idle
             report.misfit = target.misfit(solution.occlusion, values);
             report.notes = notes_of(
                 {*mesh, analyse_topology(geometry), engine.definition, values, report.misfit});
         });
+    report.notes.insert(report.notes.end(), written_notes.begin(), written_notes.end());
     report.seconds.write = stage.lap();
 
     report.vertices = scene.positions.size();

@@ -54,7 +54,7 @@ struct BakeReport {
     std::uint64_t corners_from_file = 0;  ///< corners shaded with the file's normals
     std::uint64_t replaced_corners = 0;   ///< the file's were not usable there
     std::optional<Misfit> misfit;         ///< of the values at vertices, as displayed
-    std::vector<std::string> notes;       ///< bake/notes.h
+    std::vector<std::string> notes;       ///< bake/notes.h, then those of write_scene()
 };
 
 /// Told the stage at hand ("read", "solve", ...) and how much of it is done; false stops the job.

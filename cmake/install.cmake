@@ -23,6 +23,7 @@ target_sources(surfelao_library
         ${PROJECT_SOURCE_DIR}/engines/engine.h
         ${PROJECT_SOURCE_DIR}/engines/threads.h
         ${PROJECT_SOURCE_DIR}/files/scene_io.h
+        ${PROJECT_SOURCE_DIR}/files/vertex_colors.h
         ${PROJECT_SOURCE_DIR}/surfels/errors.h
         ${PROJECT_SOURCE_DIR}/surfels/geometry.h
         ${PROJECT_SOURCE_DIR}/surfels/occlusion.h

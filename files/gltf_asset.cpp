@@ -157,9 +157,10 @@ std::string load_uri(const std::string& uri, const fs::path& path, const std::st
         return *std::move(bytes);
     }
     const std::string place = element + " uri \"" + shortened(uri) + '"';
-    const std::optional<fs::path> file = resolve_uri(path.parent_path(), uri);
+    const std::optional<fs::path> file = resolve_buffer_uri(path.parent_path(), uri);
     if (!file)
-        fail_gltf(path, place, "is not the relative path of a file in the model's own folder");
+        fail_gltf(path, place,
+                  "is not the relative path of a file in the model's own folder, or of a .bin");
     return read_contents(*file, path.string() + ": " + place);
 }
 

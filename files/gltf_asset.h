@@ -65,7 +65,7 @@ struct GltfAsset : SourceAsset {
     std::string_view bin;                        ///< the binary chunk of a GLB; empty without one
     std::vector<std::string_view> other_chunks;  ///< of a GLB: neither JSON nor BIN, with headers
     std::vector<GltfBuffer> buffers;
-    std::map<std::size_t, GltfAccessor> colors;  ///< COLOR_0 by accessor index, of all parts
+    std::map<std::size_t, GltfAccessor> colors;  ///< COLOR_0, _OWN_COLOR by accessor, of all parts
     /// Per mesh that the scene uses and primitive: the first primitive that shares all its vertices
     /// (Part::primitive), or -1 where it draws no triangles. Empty for other meshes.
     std::vector<std::vector<std::int32_t>> group_of_primitive;
@@ -78,7 +78,7 @@ struct GltfAsset : SourceAsset {
 /// using it is the fault.
 ///
 /// Throws InputError: cut, not glTF 2, not JSON, nested deeper than 256 levels, a buffer that is
-/// missing, shorter than declared, or outside the file's folder.
+/// missing, shorter than declared, or outside the file's folder (gltf_uri.h).
 void load_gltf_asset(const std::filesystem::path& path, std::string contents, GltfAsset& asset);
 
 /// The length of a mesh's entry in the document, written close together.

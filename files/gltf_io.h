@@ -57,12 +57,27 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
 ///
 ///   _OCCLUSION    SCALAR float, 0 = open, 1 = closed (occlusion.h)
 ///   _BENT_NORMAL  VEC3 float, unit length, in the mesh's own space like NORMAL: the normal matrix
-///   of
-///                 the node (of a skin: the joints) turns it into world space. Zero where there is
-///                 none, and where the mesh is flattened so that no direction is left.
-///   COLOR_0       when options.colors: VEC3 float, visibility as grey. Where the file has vertex
-///                 colours they are multiplied by the visibility, alpha kept (so baking twice
-///                 darkens twice).
+///                 of the node (of a skin: the joints) turns it into world space. Zero where there
+///                 is none, and where the mesh is flattened so that no direction is left.
+///   COLOR_0       as options.colors says: VEC4 unsigned short, normalised, linear unless
+///                 options.encoding is srgb. Alpha is the file's own, 1 where it has none; bent
+///                 normals are those of world space, as in a .ply
+///   _OWN_COLOR    where COLOR_0 is ours and the file had one: the accessor that it had
+///
+/// VertexColors::automatic shows the occlusion in every primitive, in the way that leaves its looks
+/// alone:
+///   - without colours (or all white) and without textures of colour, emission or occlusion:
+///     COLOR_0 = visibility, which viewers multiply with the material's colour
+///   - else: an `occlusionTexture`, where the specification puts ambient occlusion. The picture is
+///     a ramp from 0 to 1, and a new set TEXCOORD_n (u: unsigned short, normalised; v = .5), the
+///     first that is free, looks up the visibility in it, exactly. The material becomes a copy
+///     where others use it too
+///   - a material that has an occlusionTexture keeps it
+/// A note counts the last two kinds. Where colours or textures are added, primitives without a
+/// material get a plain one, white and no metal: without one Blender shows no colours, and others
+/// show metal. occlusionTexture darkens ambient light only. three.js follows any of the first four
+/// sets; Godot two, and before its change 96748 only the first, where the file's own coordinates
+/// stand: there and in Blender, which shows none, ask for `shaded`.
 ///
 /// Everything else is handed back: materials, textures, animations, nodes, extensions, extras,
 /// unknown GLB chunks; keys of JSON objects come out sorted. A mesh that several nodes use is
@@ -72,18 +87,21 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
 /// stand where they stood (gltf_uses.h).
 ///
 /// .glb: one file with one binary chunk; external buffers move into it, external images as well
-/// where they lie in the model's folder (another image keeps its uri).
-/// .gltf: the new data stand in the file as a data URI. Beside the original the other buffers and
-/// images stay where they are; in another folder they become data URIs too, so that the file opens.
+/// where they lie in the model's folder or below.
+/// .gltf: the new data stand in the file as a data URI; other buffers and images stay where they
+/// are. In another folder their URIs are turned so that they are found from there; a buffer that
+/// this reader would refuse from there (gltf_uri.h) becomes a data URI. URIs that remain come out
+/// well formed (no backslashes, no blanks); those of files that are not there stay as they are, and
+/// a note names them.
 ///
-/// What an earlier bake has added is replaced (gltf_old_results.h): baking twice gives the same
-/// file as baking once, but for colours.
+/// What an earlier bake has added is taken out first (gltf_old_results.h): a bake of a result gives
+/// the bytes that a bake of the original gives, whatever the colours of the first.
 ///
 /// options.mark stands as the string `surfelao` in asset.extras (maker_mark.h).
 ///
 /// Equal input gives equal bytes. Throws InputError when the scene did not come from glTF, when a
 /// colour to be multiplied is not finite, and when a .glb would exceed the format's 4 GiB.
-[[nodiscard]] std::string gltf_contents(const std::filesystem::path& path, const Scene& scene,
+[[nodiscard]] WrittenFile gltf_contents(const std::filesystem::path& path, const Scene& scene,
                                         std::span<const Occlusion> occlusion,
                                         const WriteOptions& options = {});
 

@@ -188,14 +188,16 @@ private:
     void find_colors(const tinygltf::Primitive& primitive, std::size_t vertex_count,
                      const std::string& element)
     {
-        const int index = attribute(primitive.attributes, "COLOR_0");
-        if (index == kNone)
-            return;
-        const NamedAccessor named = resolver_.resolve(index, element + " COLOR_0");
-        if (named.accessor.dimension != 3 && named.accessor.dimension != 4)
-            resolver_.fail(named.element, "is neither of type VEC3 nor VEC4");
-        resolver_.check_count(named, vertex_count);
-        colors_.insert_or_assign(static_cast<std::size_t>(index), named.accessor);
+        for (const char* name : {"COLOR_0", "_OWN_COLOR"}) {
+            const int index = attribute(primitive.attributes, name);
+            if (index == kNone)
+                continue;
+            const NamedAccessor named = resolver_.resolve(index, element + ' ' + name);
+            if (named.accessor.dimension != 3 && named.accessor.dimension != 4)
+                resolver_.fail(named.element, "is neither of type VEC3 nor VEC4");
+            resolver_.check_count(named, vertex_count);
+            colors_.insert_or_assign(static_cast<std::size_t>(index), named.accessor);
+        }
     }
 
     const tinygltf::Model& model_;

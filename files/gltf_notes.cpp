@@ -1,5 +1,7 @@
 #include "files/gltf_notes.h"
 
+#include "files/gltf_json.h"
+
 #include <nlohmann/json.hpp>
 
 #include <set>
@@ -16,16 +18,6 @@ std::string counted(std::size_t count, const std::string& noun, const std::strin
     return std::to_string(count) + ' ' + noun + (count == 1 ? " " + one : "s " + many);
 }
 
-/// Member of an object; null where there is none.
-const json& member(const json& object, const char* key)
-{
-    static const json none;
-    if (!object.is_object())
-        return none;
-    const auto found = object.find(key);
-    return found == object.end() ? none : *found;
-}
-
 /// What the meshes in the scene hold.
 struct Kinds {
     std::size_t without_triangles = 0;       ///< primitives of points and lines
@@ -34,7 +26,6 @@ struct Kinds {
 
 Kinds find_kinds(const GltfAsset& asset, const PlacedNodes& nodes)
 {
-    const json& materials = member(*asset.document, "materials");
     Kinds kinds;
     std::set<std::size_t> seen;
     for (const MeshNode& use : nodes.mesh_nodes) {
@@ -48,10 +39,7 @@ Kinds find_kinds(const GltfAsset& asset, const PlacedNodes& nodes)
                 continue;
             }
             const json& material = member(primitives[p], "material");
-            if (!material.is_number_unsigned() || !materials.is_array() ||
-                material.get<std::size_t>() >= materials.size())
-                continue;
-            const json& mode = member(materials[material.get<std::size_t>()], "alphaMode");
+            const json& mode = member(entry(*asset.document, "materials", material), "alphaMode");
             if (mode == "MASK" || mode == "BLEND")
                 kinds.see_through.insert(material.get<std::size_t>());
         }

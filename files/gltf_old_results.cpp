@@ -1,12 +1,17 @@
 #include "files/gltf_old_results.h"
 
+#include "files/gltf_added.h"
+#include "files/gltf_json.h"
 #include "files/maker_mark.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <optional>
+#include <iterator>
+#include <map>
 #include <set>
+#include <string>
+#include <string_view>
 
 namespace surfelao {
 namespace {
@@ -19,34 +24,113 @@ constexpr std::size_t kPadding = 3;
 
 bool was_baked(const json& document)
 {
-    const json::json_pointer place = json::json_pointer("/asset/extras") / kMarkKey;
-    return document.contains(place) && document[place].is_string() &&
-           command_of_mark(document[place].get_ref<const std::string&>()) == "bake";
+    const json& mark = member(member(member(document, "asset"), "extras"), kMarkKey);
+    return mark.is_string() && command_of_mark(mark.get_ref<const std::string&>()) == "bake";
 }
 
-/// Accessors of results; nothing when a mesh that the scene does not use has some.
-std::optional<Indices> old_accessors(const json& document, const Scene& scene)
+/// Takes the attributes of results off; returns their accessors.
+Indices take_attributes(json& document)
 {
-    std::set<std::int32_t> used;
-    for (const Part& part : scene.parts)
-        used.insert(part.mesh);
+    const bool baked = was_baked(document);
     Indices accessors;
-    std::int32_t index = 0;
-    for (const json& mesh : document.value("meshes", json::array())) {
-        const bool is_used = used.contains(index++);
-        for (const json& primitive : mesh.value("primitives", json::array())) {
-            const json attributes = primitive.value("attributes", json::object());
-            for (const char* name : {"_OCCLUSION", "_BENT_NORMAL"}) {
-                const auto accessor = attributes.find(name);
-                if (accessor == attributes.end())
+    const auto is_old = [&](const std::string& name, const json& accessor) {
+        return is_added(entry(document, "accessors", accessor)) ||
+               (baked && (name == "_OCCLUSION" || name == "_BENT_NORMAL"));
+    };
+    for (json& mesh : document["meshes"]) {
+        for (json& primitive : mesh["primitives"]) {
+            if (!primitive.contains("attributes"))
+                continue;
+            json& attributes = primitive["attributes"];
+            for (auto attribute = attributes.begin(); attribute != attributes.end();) {
+                if (!is_old(attribute.key(), attribute.value())) {
+                    ++attribute;
                     continue;
-                if (!is_used || !accessor->is_number_unsigned())
-                    return std::nullopt;
-                accessors.insert(accessor->get<std::size_t>());
+                }
+                if (attribute.value().is_number_unsigned())
+                    accessors.insert(attribute.value().get<std::size_t>());
+                attribute = attributes.erase(attribute);
+            }
+            if (attributes.contains("_OWN_COLOR")) {
+                attributes["COLOR_0"] = attributes["_OWN_COLOR"];
+                attributes.erase("_OWN_COLOR");
             }
         }
     }
     return accessors;
+}
+
+void keep_first(json& list, std::size_t count)
+{
+    list.erase(list.begin() + static_cast<std::ptrdiff_t>(count), list.end());
+}
+
+/// Takes occlusion textures of results off the materials, and primitives back to the materials that
+/// theirs are copies of, or to none; drops what nobody uses then.
+void take_materials(json& document)
+{
+    if (!member(document, "materials").is_array())
+        return;
+    json& materials = document["materials"];
+    std::map<std::size_t, json> original_of;  // null: none
+    for (std::size_t m = 0; m < materials.size(); ++m) {
+        if (is_added(materials[m]))
+            original_of[m] = nullptr;
+        const json info = member(materials[m], "occlusionTexture");
+        if (!is_added(entry(document, "textures", member(info, "index"))))
+            continue;
+        materials[m].erase("occlusionTexture");
+        const json& original = member(member(info, "extras"), kMarkKey);
+        // another program may have moved the materials about
+        if (original.is_number_unsigned() && original < m &&
+            materials[m] == materials[original.get<std::size_t>()])
+            original_of[m] = original;
+    }
+    for (json& mesh : document["meshes"]) {
+        for (json& primitive : mesh["primitives"]) {
+            const json& material = member(primitive, "material");
+            const auto copy = material.is_number_unsigned()
+                                  ? original_of.find(material.get<std::size_t>())
+                                  : original_of.end();
+            if (copy == original_of.end())
+                continue;
+            if (copy->second.is_null())
+                primitive.erase("material");
+            else
+                primitive["material"] = copy->second;
+        }
+    }
+    while (original_of.contains(materials.size() - 1) &&
+           !uses(document["meshes"], "material", materials.size() - 1))
+        keep_first(materials, materials.size() - 1);
+    if (materials.empty())
+        document.erase("materials");
+}
+
+/// Drops the picture of results with its texture and sampler; returns its buffer view.
+Indices take_picture(json& document)
+{
+    struct List {
+        const char* name;
+        const char* user;  ///< the list whose entries use its own,
+        const char* key;   ///< under this key
+    };
+    constexpr List kLists[] = {{"textures", "materials", "index"},
+                               {"images", "textures", "source"},
+                               {"samplers", "textures", "sampler"}};
+    Indices views;
+    for (const List& list : kLists) {
+        const json& entries = member(document, list.name);
+        if (!entries.is_array() || entries.empty() || !is_added(entries.back()) ||
+            uses(member(document, list.user), list.key, entries.size() - 1))
+            continue;
+        if (const json& view = member(entries.back(), "bufferView"); view.is_number_unsigned())
+            views.insert(view.get<std::size_t>());
+        keep_first(document[list.name], entries.size() - 1);
+        if (entries.empty())
+            document.erase(list.name);
+    }
+    return views;
 }
 
 /// Whether the indices are the last ones of a list of this size.
@@ -56,40 +140,37 @@ bool are_last(const Indices& indices, std::size_t size)
            *indices.begin() == size - indices.size();
 }
 
-/// Whether a number in [first, ...) stands under this key anywhere in the value.
-bool uses(const json& value, const std::string& key, std::size_t first)
+/// Whether anything has an accessor in [first, ...).
+bool have_accessor(const json& value, std::size_t first)
 {
-    for (const auto& [name, member] : value.items()) {
-        if (name == key && member.is_number_unsigned() && member.get<std::size_t>() >= first)
+    const auto is_one = [&](const json& index) {
+        return index.is_number_unsigned() && index.get<std::size_t>() >= first;
+    };
+    constexpr std::string_view kKeys[] = {"indices", "inverseBindMatrices", "input", "output"};
+    for (const auto& [key, inner] : value.items()) {
+        if ((key == "attributes" || key == "targets") && inner.is_structured()) {
+            if (std::ranges::any_of(inner.flatten(), is_one))
+                return true;
+        } else if (inner.is_structured()
+                       ? have_accessor(inner, first)
+                       : is_one(inner) && std::ranges::find(kKeys, key) != std::end(kKeys)) {
             return true;
-        if (member.is_structured() && uses(member, key, first))
-            return true;
+        }
     }
     return false;
 }
 
-void keep_first(json& list, std::size_t count)
+/// Drops the views and their bytes, when they are the last ones, and the accessors with them.
+void take_data(json& document, std::vector<GltfBuffer>& buffers, const Indices& old_accessors,
+               Indices old_views)
 {
-    list.erase(list.begin() + static_cast<std::ptrdiff_t>(count), list.end());
-}
-
-}  // namespace
-
-void drop_old_results(json& document, std::vector<GltfBuffer>& buffers, const Scene& scene)
-{
-    if (!was_baked(document) || !document.contains("accessors") ||
-        !document.contains("bufferViews"))
-        return;
-    const std::optional<Indices> old = old_accessors(document, scene);
     json& accessors = document["accessors"];
     json& views = document["bufferViews"];
-    if (!old || !are_last(*old, accessors.size()))
+    if (!are_last(old_accessors, accessors.size()) ||
+        have_accessor(document, *old_accessors.begin()))
         return;
-
-    // their views: the last ones, and nobody else's
-    Indices old_views;
-    for (const std::size_t accessor : *old) {
-        const json& view = accessors[accessor].value("bufferView", json());
+    for (const std::size_t accessor : old_accessors) {
+        const json& view = member(accessors[accessor], "bufferView");
         if (!view.is_number_unsigned())
             return;
         old_views.insert(view.get<std::size_t>());
@@ -97,7 +178,7 @@ void drop_old_results(json& document, std::vector<GltfBuffer>& buffers, const Sc
     if (!are_last(old_views, views.size()))
         return;
     json others = document;
-    keep_first(others["accessors"], *old->begin());
+    keep_first(others["accessors"], *old_accessors.begin());
     if (uses(others, "bufferView", *old_views.begin()))
         return;
 
@@ -121,13 +202,23 @@ void drop_old_results(json& document, std::vector<GltfBuffer>& buffers, const Sc
         end + kPadding < buffers[buffer].bytes.size() ||
         (is_whole_buffer && (buffer == 0 || buffer != buffers.size() - 1)))
         return;
-    keep_first(accessors, *old->begin());
+    keep_first(accessors, *old_accessors.begin());
     keep_first(views, *old_views.begin());
     buffers[buffer].bytes = buffers[buffer].bytes.substr(0, begin);
+    document["buffers"][buffer]["byteLength"] = begin;
     if (is_whole_buffer) {
         buffers.pop_back();
         keep_first(document["buffers"], buffer);
     }
+}
+
+}  // namespace
+
+void drop_old_results(json& document, std::vector<GltfBuffer>& buffers)
+{
+    const Indices accessors = take_attributes(document);
+    take_materials(document);
+    take_data(document, buffers, accessors, take_picture(document));
 }
 
 }  // namespace surfelao

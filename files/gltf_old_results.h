@@ -1,5 +1,5 @@
-/// gltf_old_results.h: takes what an earlier bake added out of a glTF, so that baking twice gives
-/// the file that baking once does. Internal to the glTF writer.
+/// gltf_old_results.h: takes what an earlier bake added out of a glTF, so that baking a baked file
+/// is baking the original. Internal to the glTF writer.
 #pragma once
 
 #include "files/gltf_asset.h"
@@ -10,13 +10,14 @@
 
 namespace surfelao {
 
-/// Removes the accessors of `_OCCLUSION` and `_BENT_NORMAL`, their buffer views and bytes from the
-/// document and its buffers, where the document carries the mark of a bake (maker_mark.h) and they
-/// are the last of their kind, as the writer left them, and used by nothing else. Otherwise, as
-/// where COLOR_0 was written with them or another program has added to the file since, nothing is
-/// done and they stay as unused bytes. The attributes themselves stay: the scene's parts get new
-/// ones, and a mesh outside them is a reason to do nothing.
-void drop_old_results(nlohmann::json& document, std::vector<GltfBuffer>& buffers,
-                      const Scene& scene);
+/// Takes the attributes and occlusion textures of an earlier bake off all meshes and materials:
+/// `_OCCLUSION` and `_BENT_NORMAL` where the document carries the mark of a bake (maker_mark.h),
+/// and what has a name by which an AddedData and GltfLooks tell their own (gltf_added.h). COLOR_0
+/// becomes what `_OWN_COLOR` is. Primitives get back the material that theirs is a copy of.
+///
+/// Accessors, views, bytes, textures and materials that nobody uses then are removed where they are
+/// the last of their kind, as the writer left them. Where another program has added to the file
+/// since, they stay, unused.
+void drop_old_results(nlohmann::json& document, std::vector<GltfBuffer>& buffers);
 
 }  // namespace surfelao

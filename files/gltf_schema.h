@@ -10,9 +10,9 @@
 namespace surfelao {
 
 /// As JSON text, a document with the scenes, nodes (their visibility and instances too), skins,
-/// meshes (positions, normals, COLOR_0, joints and weights, morph targets, indices), accessors and
-/// buffer views of `document`, and of those only the fields that geometry needs. What stands in it
-/// is of the type that the specification asks for, nothing required is missing, whole
+/// meshes (positions, normals, COLOR_0 and _OWN_COLOR, joints and weights, morph targets, indices),
+/// accessors and buffer views of `document`, and of those only the fields that geometry needs. What
+/// stands in it is of the type that the specification asks for, nothing required is missing, whole
 /// numbers are not written as fractions, every index lies inside the section it points into, and no
 /// number is too large for what tinygltf stores it in. Entries keep their indices.
 ///

@@ -1,5 +1,7 @@
 #include "files/gltf_uri.h"
 
+#include "surfels/extension.h"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -73,22 +75,59 @@ std::optional<std::string> decode_percent(std::string_view uri)
     return decoded;
 }
 
-}  // namespace
-
-std::optional<fs::path> resolve_uri(const fs::path& folder, std::string_view uri)
+/// What a relative URI says, with the slashes of this system.
+std::optional<fs::path> path_of(std::string_view uri)
 {
-    const std::optional<std::string> name = decode_percent(uri);
-    if (!name || name->empty() || name->find('\\') != name->npos ||
+    std::optional<std::string> name = decode_percent(uri);
+    if (!name || name->empty() ||
         std::ranges::any_of(*name, [](unsigned char c) { return std::iscntrl(c); }))
         return std::nullopt;
+    std::ranges::replace(*name, '\\', '/');
     // a colon in front of the first slash ends a scheme or a drive
     if (name->substr(0, name->find('/')).find(':') != name->npos)
         return std::nullopt;
     const fs::path relative(*name);
-    if (relative.is_absolute() ||
-        std::find(relative.begin(), relative.end(), fs::path("..")) != relative.end())
+    return relative.is_absolute() ? std::nullopt : std::optional(relative);
+}
+
+/// Characters of a path that stand in a URI as they are, beside letters and digits.
+constexpr std::string_view kUnescaped = "/-._~!$&'()*+,;=@";
+
+}  // namespace
+
+std::optional<fs::path> locate_uri(const fs::path& folder, std::string_view uri)
+{
+    const std::optional<fs::path> path = path_of(uri);
+    return path ? std::optional(folder / *path) : std::nullopt;
+}
+
+std::optional<fs::path> resolve_uri(const fs::path& folder, std::string_view uri)
+{
+    const std::optional<fs::path> path = path_of(uri);
+    if (!path || std::find(path->begin(), path->end(), fs::path("..")) != path->end())
         return std::nullopt;
-    return folder / relative;
+    return folder / *path;
+}
+
+std::optional<fs::path> resolve_buffer_uri(const fs::path& folder, std::string_view uri)
+{
+    std::optional<fs::path> file = locate_uri(folder, uri);
+    return file && lower_extension(*file) == ".bin" ? file : resolve_uri(folder, uri);
+}
+
+std::string encode_uri(std::string_view path)
+{
+    std::string uri;
+    for (const unsigned char c : path) {
+        if (std::isalnum(c) || kUnescaped.find(static_cast<char>(c)) != kUnescaped.npos) {
+            uri.push_back(static_cast<char>(c));
+            continue;
+        }
+        uri.push_back('%');
+        for (const int digit : {c >> 4, c & 15})
+            uri.push_back("0123456789ABCDEF"[digit]);
+    }
+    return uri;
 }
 
 bool is_data_uri(std::string_view uri)

@@ -68,15 +68,7 @@ std::string mark_of_obj(std::string_view text)
 {
     if (text.starts_with(kByteOrderMark))
         text.remove_prefix(kByteOrderMark.size());
-    return std::string(mark_behind("# ", first_line(text)));
-}
-
-std::string mark_of_off(std::string_view text)
-{
-    while (!text.empty() && kLineEnds.find(text.back()) != kLineEnds.npos)
-        text.remove_suffix(1);
-    const std::size_t end = text.find_last_of(kLineEnds);
-    return std::string(mark_behind("# ", end == text.npos ? text : text.substr(end + 1)));
+    return std::string(obj_mark(text).mark);
 }
 
 std::string mark_of_html(std::string_view text)
@@ -123,14 +115,22 @@ std::string_view command_of_mark(std::string_view text)
     return command.find(' ') == command.npos ? command : std::string_view();
 }
 
-std::size_t obj_mark_size(std::string_view text)
+MarkLine obj_mark(std::string_view text)
 {
     const std::string_view line = first_line(text);
-    if (mark_behind("# ", line).empty())
-        return 0;
-    return line.size() +
-           std::min<std::size_t>(text.size() - line.size(),
-                                 text.substr(line.size()).starts_with("\r\n") ? 2 : 1);
+    const std::string_view mark = mark_behind("# ", line);
+    if (mark.empty())
+        return {};
+    const bool two = text.substr(line.size()).starts_with(kLineEnds);
+    return {text.substr(0, line.size() + (two ? 2 : 1)), mark};
+}
+
+MarkLine off_mark(std::string_view text)
+{
+    const std::size_t end = text.find_last_not_of(kLineEnds) + 1;  // npos + 1 is 0
+    const std::size_t begin = text.substr(0, end).find_last_of(kLineEnds) + 1;
+    const std::string_view mark = mark_behind("# ", text.substr(begin, end - begin));
+    return mark.empty() ? MarkLine() : MarkLine{text.substr(begin), mark};
 }
 
 std::string read_mark(const fs::path& path)
@@ -141,7 +141,7 @@ std::string read_mark(const fs::path& path)
         case FileType::obj:
             return mark_of_obj(part_of(path, false));
         case FileType::off:
-            return mark_of_off(part_of(path, true));
+            return std::string(off_mark(part_of(path, true)).mark);
         case FileType::gltf:
         case FileType::glb:
             return mark_of_gltf(path);

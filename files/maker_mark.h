@@ -34,8 +34,12 @@ namespace surfelao {
 /// The key of the mark in a glTF's asset.extras.
 inline constexpr const char* kMarkKey = "surfelao";
 
-/// The bytes of the first line of an OBJ with its end where that is a mark; else 0. The text
-/// begins behind a byte order mark.
-[[nodiscard]] std::size_t obj_mark_size(std::string_view text);
+/// The line of an OBJ or OFF that is its mark, with its end, and the mark in it; empty without one.
+/// An OBJ's text begins behind a byte order mark.
+struct MarkLine {
+    std::string_view line, mark;
+};
+[[nodiscard]] MarkLine obj_mark(std::string_view text);
+[[nodiscard]] MarkLine off_mark(std::string_view text);
 
 }  // namespace surfelao

@@ -124,10 +124,4 @@ std::size_t face_count(const Scene& scene)
     return polygons ? polygons->count() : scene.triangles.size();
 }
 
-std::uint8_t grey(const Occlusion& occlusion)
-{
-    return static_cast<std::uint8_t>(
-        std::lround(255.0 * (1.0 - static_cast<double>(occlusion.occlusion))));
-}
-
 }  // namespace surfelao

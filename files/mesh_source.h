@@ -2,10 +2,10 @@
 /// out, and back.
 #pragma once
 
-#include "surfels/occlusion.h"
 #include "surfels/scene.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -40,7 +40,8 @@ void close_polygon(Polygons& polygons, std::uint32_t size);
 /// file itself.
 class MeshSource : public SourceAsset {
 public:
-    Polygons polygons;  ///< empty when the file's faces are the scene's triangles
+    Polygons polygons;             ///< empty when the file's faces are the scene's triangles
+    std::filesystem::path folder;  ///< where the files lie that it names
 };
 
 /// The largest coordinate that a reader accepts: squares and sums of it stay inside a double.
@@ -62,9 +63,6 @@ void for_each_face(const Scene& scene, const Visit& visit);
 
 /// How many times for_each_face calls.
 [[nodiscard]] std::size_t face_count(const Scene& scene);
-
-/// Visibility as a colour channel of 8 bits.
-[[nodiscard]] std::uint8_t grey(const Occlusion& occlusion);
 
 // ------------------------------------------------------------------------------------------------
 

@@ -1,22 +1,12 @@
 #include "files/obj_io.h"
 
-#include "files/maker_mark.h"
-#include "files/mesh_source.h"
-#include "files/text_cursor.h"
+#include "files/obj_file.h"
 #include "surfels/errors.h"
-#include "surfels/number_text.h"
 
 #include <algorithm>
 
 namespace surfelao {
 namespace {
-
-constexpr TextRules kObjRules{.comment = '#', .continuation = true};
-
-class ObjSource : public MeshSource {
-public:
-    std::string text;
-};
 
 /// What the corners of faces name by number: vertices, and normals.
 struct Numbered {
@@ -26,7 +16,7 @@ struct Numbered {
     std::uint64_t farthest_line = 0;
 };
 
-glm::dvec3 read_vertex(TextCursor& cursor)
+glm::dvec3 read_vertex(TextCursor& cursor, ObjSource& source)
 {
     glm::dvec3 position;
     for (int axis = 0; axis < 3; ++axis)
@@ -38,6 +28,7 @@ glm::dvec3 read_vertex(TextCursor& cursor)
         cursor.fail("the vertex has " + std::to_string(3 + more) +
                     " numbers, but x y z, w and a colour are 3, 4, 6 or 7");
     }
+    source.has_colors = source.has_colors || more > 2;
     return position;
 }
 
@@ -144,13 +135,14 @@ private:
 Scene read_obj(const std::string& file_name, std::string contents)
 {
     const auto source = std::make_shared<ObjSource>();
+    source->folder = std::filesystem::absolute(file_name).parent_path();
     source->text = std::move(contents);
     Reader reader;
     TextCursor cursor(file_name, source->text, kObjRules);
     while (cursor.next_line()) {
         const std::string_view statement = cursor.word();
         if (statement == "v") {
-            reader.positions.push_back(read_vertex(cursor));
+            reader.positions.push_back(read_vertex(cursor, *source));
         } else if (statement == "f" || statement == "fo") {
             reader.read_face(cursor);
         } else if (statement == "vn") {
@@ -158,88 +150,9 @@ Scene read_obj(const std::string& file_name, std::string contents)
         }
     }
     reader.finish(file_name);
+    source->vertex_count = reader.positions.size();
     return make_mesh_scene(file_name, std::move(reader.positions), std::move(reader.polygons),
                            source, std::move(reader.normals));
-}
-
-namespace {
-
-void append_grey(std::string& text, const Occlusion& occlusion)
-{
-    const double visibility = 1.0 - static_cast<double>(occlusion.occlusion);
-    for (int channel = 0; channel < 3; ++channel) {
-        text += ' ';
-        append_fixed(text, visibility, 6);
-    }
-}
-
-/// The mark as the first line, which ends as the first line of `like` does.
-void append_mark_line(std::string& text, std::string_view mark, std::string_view like)
-{
-    if (mark.empty())
-        return;
-    const std::string_view end = like.substr(std::min(like.find_first_of("\r\n"), like.size()));
-    text.append("# ").append(mark);
-    if (end.empty())
-        text += '\n';
-    else
-        text.append(end.substr(0, end.starts_with("\r\n") ? 2 : 1));
-}
-
-std::string with_new_vertex_lines(const std::string& old, std::span<const Occlusion> occlusion,
-                                  std::string_view mark)
-{
-    std::string text;
-    text.reserve(old.size() + mark.size() + occlusion.size() * 28);
-    std::size_t copied = old.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
-    text.append(old, 0, copied);
-    append_mark_line(text, mark, old);
-    copied += obj_mark_size(std::string_view(old).substr(copied));
-    std::size_t vertex = 0;
-    TextCursor cursor("", old, kObjRules);
-    while (cursor.next_line()) {
-        if (cursor.word() != "v")
-            continue;
-        for (int axis = 0; axis < 3; ++axis)
-            cursor.word();
-        text.append(old, copied, cursor.offset() - copied);
-        append_grey(text, occlusion[vertex++]);
-        while (!cursor.at_line_end())
-            cursor.word();
-        copied = cursor.offset();
-        if (copied < old.size() && old[copied] == kObjRules.comment)
-            text += ' ';
-    }
-    return text.append(old, copied);
-}
-
-}  // namespace
-
-std::string obj_contents(const Scene& scene, std::span<const Occlusion> occlusion,
-                         std::string_view mark)
-{
-    if (const auto* source = dynamic_cast<const ObjSource*>(scene.asset.get()))
-        return with_new_vertex_lines(source->text, occlusion, mark);
-    std::string text;
-    append_mark_line(text, mark, {});
-    for (std::size_t v = 0; v < scene.positions.size(); ++v) {
-        text += 'v';
-        for (int axis = 0; axis < 3; ++axis) {
-            text += ' ';
-            append_shortest(text, scene.positions[v][axis]);
-        }
-        append_grey(text, occlusion[v]);
-        text += '\n';
-    }
-    for_each_face(scene, [&](std::span<const std::uint32_t> corners) {
-        text += 'f';
-        for (const std::uint32_t corner : corners) {
-            text += ' ';
-            append_integer(text, std::int64_t{corner} + 1);
-        }
-        text += '\n';
-    });
-    return text;
 }
 
 }  // namespace surfelao

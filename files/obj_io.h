@@ -1,17 +1,17 @@
 /// obj_io.h: Wavefront OBJ.
 ///
-/// Read: `v x y z`, also with w (a weight of rational curves: no part of a position) and with a
-/// colour; `vn x y z` (any numbers, also nan; what else stands on its line is passed over); `f` and
-/// its old name `fo` in the forms v, v/vt, v//vn, v/vt/vn, counted from 1 or backwards from the
-/// last vertex or normal so far; comments, continued lines, any line ends. A face may use vertices
-/// and normals that come later, and have normals at some corners only. Texture indices must be
-/// numbers and are not looked up; points, lines, curves, groups, materials and unknown statements
-/// are no surface and are passed over (a material file need not be there).
+/// Read: `v x y z`, also with w (a weight of rational curves: no part of a position) or with a
+/// colour and alpha; `vn x y z` (any numbers, also nan; what else stands on its line is passed
+/// over); `f` and its old name `fo` in the forms v, v/vt, v//vn, v/vt/vn, counted from 1 or
+/// backwards from the last vertex or normal so far; comments, continued lines, any line ends. A
+/// face may use vertices and normals that come later, and have normals at some corners only.
+/// Texture indices must be numbers and are not looked up; points, lines, curves, groups, materials
+/// and unknown statements are no surface and are passed over (a material file need not be there).
 #pragma once
 
-#include "surfels/occlusion.h"
-#include "surfels/scene.h"
+#include "files/scene_io.h"
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,11 +22,16 @@ namespace surfelao {
 /// lines, in order; normals those of the `vn` lines, if a face uses any. Faults name the line.
 [[nodiscard]] Scene read_obj(const std::string& file_name, std::string contents);
 
-/// The scene as OBJ with the visibility as the grey colour of each vertex (`v x y z grey grey
-/// grey`, six decimals). A scene that came from OBJ gives the text of its file with nothing changed
-/// but the `v` lines, whose coordinates stay as they are written (w and former colours go).
-/// mark: a comment as the first line, in the place of an older one (maker_mark.h); empty: none.
-[[nodiscard]] std::string obj_contents(const Scene& scene, std::span<const Occlusion> occlusion,
-                                       std::string_view mark = {});
+/// The scene as OBJ with colours (vertex_colors.h), `v x y z r g b` with six decimals; `automatic`
+/// shades those of the file. They are numbers up to 1, or to 255 where one of the file is above 2;
+/// of seven numbers of a vertex the last is alpha, of four a weight, which goes.
+///
+/// A scene that came from OBJ gives the text of its file with nothing changed but the colours of
+/// the `v` lines and, seen from the folder of `path`, the names behind `mtllib`. Where the file's
+/// own colours are not kept, they stand in comments behind everything else, `# own R G B`.
+/// options.mark: a comment as the first line, in the place of an older one (maker_mark.h).
+[[nodiscard]] WrittenFile obj_contents(const std::filesystem::path& path, const Scene& scene,
+                                       std::span<const Occlusion> occlusion,
+                                       const WriteOptions& options = {});
 
 }  // namespace surfelao

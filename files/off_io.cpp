@@ -1,21 +1,15 @@
 #include "files/off_io.h"
 
-#include "files/mesh_source.h"
-#include "files/text_cursor.h"
+#include "files/off_file.h"
 #include "surfels/errors.h"
-#include "surfels/number_text.h"
 
 namespace surfelao {
 namespace {
 
+using Header = OffHeader;
+
 /// x y z, normal, colour, texture coordinates.
 constexpr int kMostVertexNumbers = 3 + 3 + 4 + 2;
-
-struct Header {
-    std::uint64_t vertices = 0;  ///< how many
-    std::uint64_t faces = 0;
-    bool has_normals = false;  ///< behind the coordinates, where a vertex has so many numbers
-};
 
 /// The cursor stands on a line with a word left, or moves to the next.
 void next_word_line(TextCursor& cursor, const std::string& wanted)
@@ -57,11 +51,13 @@ Header read_header(const std::string& file_name, TextCursor& cursor)
         std::string_view prefix = keyword;
         if (!prefix.ends_with("OFF"))
             cursor.fail("begins with " + quoted(keyword) + ", but must begin with OFF");
+        header.keyword = prefix;
         prefix.remove_suffix(3);
         for (const std::string_view known : {"ST", "C", "N"}) {
             if (!prefix.starts_with(known))
                 continue;
             prefix.remove_prefix(known.size());
+            header.has_textures |= known == "ST";
             header.has_normals = known == "N";
         }
         if (!prefix.empty())
@@ -83,11 +79,12 @@ Header read_header(const std::string& file_name, TextCursor& cursor)
     if (!cursor.at_line_end())
         cursor.fail(quoted(cursor.word()) + " stands behind the counts");
     check_room(cursor, header);
+    header.end = cursor.offset();
     return header;
 }
 
 /// Its normal goes into `normals`, which are as many as the vertices as soon as one has any.
-glm::dvec3 read_vertex(TextCursor& cursor, std::uint64_t vertex, const Header& header,
+glm::dvec3 read_vertex(TextCursor& cursor, std::uint64_t vertex, Header& header,
                        std::vector<glm::vec3>& normals)
 {
     if (!cursor.next_line())
@@ -110,8 +107,10 @@ glm::dvec3 read_vertex(TextCursor& cursor, std::uint64_t vertex, const Header& h
             normals[vertex] = normal;
         }
     }
+    const int first = numbers;
     for (; !cursor.at_line_end(); ++numbers)
         cursor.number({});
+    header.has_colors |= header.color_words(numbers - first) > 0;
     if (numbers > kMostVertexNumbers)
         cursor.fail("vertex " + std::to_string(vertex) + " has " + std::to_string(numbers) +
                     " numbers, but at most " + std::to_string(kMostVertexNumbers) +
@@ -147,8 +146,11 @@ void read_face(TextCursor& cursor, std::uint64_t face, const Header& header, Pol
 
 Scene read_off(const std::string& file_name, std::string contents)
 {
-    TextCursor cursor(file_name, contents, {.comment = '#'});
-    const Header header = read_header(file_name, cursor);
+    const auto source = std::make_shared<OffSource>();
+    source->text = std::move(contents);
+    TextCursor cursor(file_name, source->text, kOffRules);
+    Header& header = source->header;
+    header = read_header(file_name, cursor);
     std::vector<glm::dvec3> positions;
     positions.reserve(header.vertices);
     PolygonNormals normals;
@@ -157,40 +159,8 @@ Scene read_off(const std::string& file_name, std::string contents)
     Polygons polygons;
     for (std::uint64_t face = 0; face < header.faces; ++face)
         read_face(cursor, face, header, polygons);
-    return make_mesh_scene(file_name, std::move(positions), std::move(polygons),
-                           std::make_shared<MeshSource>(), std::move(normals));
-}
-
-std::string off_contents(const Scene& scene, std::span<const Occlusion> occlusion,
-                         std::string_view mark)
-{
-    std::string text = "COFF\n";
-    append_integer(text, static_cast<std::int64_t>(scene.positions.size()));
-    text += ' ';
-    append_integer(text, static_cast<std::int64_t>(face_count(scene)));
-    text += " 0\n";
-    for (std::size_t v = 0; v < scene.positions.size(); ++v) {
-        for (int axis = 0; axis < 3; ++axis) {
-            append_shortest(text, scene.positions[v][axis]);
-            text += ' ';
-        }
-        for (int channel = 0; channel < 3; ++channel) {
-            append_integer(text, grey(occlusion[v]));
-            text += ' ';
-        }
-        text += "255\n";
-    }
-    for_each_face(scene, [&](std::span<const std::uint32_t> corners) {
-        append_integer(text, static_cast<std::int64_t>(corners.size()));
-        for (const std::uint32_t corner : corners) {
-            text += ' ';
-            append_integer(text, corner);
-        }
-        text += '\n';
-    });
-    if (!mark.empty())
-        text.append("# ").append(mark) += '\n';
-    return text;
+    return make_mesh_scene(file_name, std::move(positions), std::move(polygons), source,
+                           std::move(normals));
 }
 
 }  // namespace surfelao

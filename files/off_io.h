@@ -8,8 +8,7 @@
 /// files are refused.
 #pragma once
 
-#include "surfels/occlusion.h"
-#include "surfels/scene.h"
+#include "files/scene_io.h"
 
 #include <span>
 #include <string>
@@ -20,11 +19,14 @@ namespace surfelao {
 /// file_name is what faults are reported of; contents is the file. Faults name the line.
 [[nodiscard]] Scene read_off(const std::string& file_name, std::string contents);
 
-/// The scene as COFF: vertices with the visibility as grey (`x y z g g g 255`, g in 0..255), the
-/// polygons of its source where it has them. Normals, texture coordinates and face colours of an
-/// OFF source are not carried over.
-/// mark: a comment as the last line (maker_mark.h); empty: none.
-[[nodiscard]] std::string off_contents(const Scene& scene, std::span<const Occlusion> occlusion,
-                                       std::string_view mark = {});
+/// The scene as OFF with colours (vertex_colors.h), `x y z r g b a` of bytes; `automatic` shades
+/// those of the file, which are numbers up to 1, or to 255 where one of the file is above 2.
+///
+/// A scene that came from OFF gives the text of its file with nothing changed but the keyword and
+/// the colours of the vertices (and numbers there that have no meaning: they go). Where the file's
+/// own colours are not kept, they stand in comments behind everything else, `# own R G B A`.
+/// options.mark: a comment as the last line, in the place of an older one (maker_mark.h).
+[[nodiscard]] WrittenFile off_contents(const Scene& scene, std::span<const Occlusion> occlusion,
+                                       const WriteOptions& options = {});
 
 }  // namespace surfelao

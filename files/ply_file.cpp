@@ -45,7 +45,8 @@ Property read_property(TextCursor& cursor, const Element& element, Names& names)
     if (name.empty())
         cursor.fail("the property has no name");
     if (!names.insert(name).second)
-        cursor.fail("element " + quoted(element.name) + " has two properties " + quoted(name));
+        cursor.fail("element " + surfelao::quoted(element.name) + " has two properties " +
+                    quoted(name));
     property.name = name;
     return property;
 }
@@ -61,7 +62,7 @@ Element read_element(TextCursor& cursor, Names& names)
     element.name = name;
     const std::int64_t count = cursor.integer("the count of the element");
     if (count < 0)
-        cursor.fail("element " + quoted(element.name) + " has the negative count " +
+        cursor.fail("element " + surfelao::quoted(element.name) + " has the negative count " +
                     std::to_string(count));
     element.count = static_cast<std::uint64_t>(count);
     return element;
@@ -93,6 +94,11 @@ std::string newline_at(std::string_view contents, std::size_t offset)
 
 }  // namespace
 
+std::string_view name_of(Type type)
+{
+    return kTypeNames[static_cast<std::size_t>(type)].name;  // the first ones, in their order
+}
+
 std::size_t line_after(std::string_view contents, std::size_t offset)
 {
     return offset + newline_at(contents, offset).size();
@@ -100,7 +106,7 @@ std::size_t line_after(std::string_view contents, std::size_t offset)
 
 std::string row_name(const Element& element, std::uint64_t row)
 {
-    const std::string name = quoted(element.name);
+    const std::string name = surfelao::quoted(element.name);
     return name.substr(1, name.size() - 2) + " " + std::to_string(row);
 }
 
@@ -108,6 +114,14 @@ const Element* find_element(const Header& header, std::string_view name)
 {
     const auto found = std::ranges::find(header.elements, name, &Element::name);
     return found == header.elements.end() ? nullptr : &*found;
+}
+
+std::size_t find_scalar(const Element& element, std::string_view name)
+{
+    const auto found = std::ranges::find(element.properties, name, &Property::name);
+    if (found == element.properties.end() || found->count_type)
+        return element.properties.size();
+    return static_cast<std::size_t>(found - element.properties.begin());
 }
 
 Header read_header(const std::string& file_name, std::string_view contents)

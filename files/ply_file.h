@@ -7,10 +7,13 @@
 #include "surfels/errors.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -61,11 +64,38 @@ struct Header {
 /// Null when there is none.
 [[nodiscard]] const Element* find_element(const Header& header, std::string_view name);
 
+/// Which property of the element is the scalar of this name; none: past the last.
+[[nodiscard]] std::size_t find_scalar(const Element& element, std::string_view name);
+
 /// The byte behind the end of a line (LF, CRLF or CR) that stands at `offset`.
 [[nodiscard]] std::size_t line_after(std::string_view contents, std::size_t offset);
 
 /// "face 12", also for names that are too long or too strange for a sentence.
 [[nodiscard]] std::string row_name(const Element& element, std::uint64_t row);
+
+/// red, green, blue among the properties of the vertex.
+using Channels = std::array<std::size_t, 3>;
+
+/// Where the colours of the vertices stand.
+///
+/// A result has the visibility behind its other properties (`bent_nz red green blue`) where its
+/// source had no colours; else in their place, and the source's behind its own properties
+/// (`bent_nz own_red own_green own_blue`). So the order tells whose they are.
+struct ColorPlaces {
+    /// Scalars `red green blue`, also `diffuse_red ...`, `r ...`, `diffuse_r ...`. None where a
+    /// result made them of nothing.
+    std::optional<Channels> shown;
+    /// The file's own: those that are shown, or `own_red own_green own_blue` of the same types.
+    std::optional<Channels> own;
+    std::optional<std::size_t> alpha;  ///< if there are any
+};
+[[nodiscard]] ColorPlaces color_places(const Element& vertices);
+
+/// What white is for numbers of this type. largest: of the file's numbers.
+[[nodiscard]] double white_of(Type type, double largest);
+
+/// "uchar"
+[[nodiscard]] std::string_view name_of(Type type);
 
 /// The file itself, for the writer.
 class PlySource : public MeshSource {
@@ -79,6 +109,17 @@ public:
     {
         return std::string_view(contents).substr(header.data_begin);
     }
+    [[nodiscard]] std::string_view vertex_rows() const
+    {
+        return data().substr(vertices_begin, vertices_end - vertices_begin);
+    }
+
+    struct Own {
+        std::vector<glm::vec4> colors;  ///< own_colors()
+        double largest = 0.0;           ///< of the numbers in the file
+    };
+    [[nodiscard]] Own own() const;
+    [[nodiscard]] std::vector<glm::vec4> own_colors() const override { return own().colors; }
 };
 
 /// Rows of numbers in an ascii file: one row, one line.
@@ -120,6 +161,15 @@ public:
     {
         demand_word();
         return cursor_.integer({});
+    }
+    /// nan for what is no number.
+    double loose_number(Type)
+    {
+        demand_word();
+        const std::string_view word = cursor_.word();
+        double value = std::numeric_limits<double>::quiet_NaN();
+        std::from_chars(word.data(), word.data() + word.size(), value);
+        return value;
     }
     void skip(Type, std::uint64_t count)
     {
@@ -184,6 +234,7 @@ public:
                 return static_cast<double>(integer(type));
         }
     }
+    double loose_number(Type type) { return any_number(type); }
     double number(Type type)
     {
         const double value = any_number(type);

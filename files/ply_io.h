@@ -8,12 +8,12 @@
 /// ignored. A header line that begins with `Created` is a comment: Blender 2.47 wrote it so.
 #pragma once
 
-#include "surfels/occlusion.h"
-#include "surfels/scene.h"
+#include "files/scene_io.h"
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -27,18 +27,22 @@ namespace surfelao {
 [[nodiscard]] Scene read_ply(const std::string& file_name, std::string contents);
 
 /// The scene as PLY with the vertex properties `float occlusion`, `float bent_nx bent_ny bent_nz`
-/// and `uchar red green blue` (the visibility as grey).
+/// and colours (vertex_colors.h); `automatic` keeps those of the file, all of them white: shades.
 ///
-/// A scene that came from PLY gives its own file with these properties put behind the others of the
+/// A scene that came from PLY gives its own file with the new properties behind the others of the
 /// vertex (old ones of the same names go) and nothing else changed: same format, order, comments,
-/// other properties and elements.
-/// Any other scene gives binary_little_endian with the polygons of its source. Coordinates are
-/// float, or double where rounding to float would move some vertex by more than kFloatSlack of the
-/// bounding box's diagonal (small things far from the origin).
-/// mark: a comment behind the line `format`, in the place of an older one (maker_mark.h); empty:
-/// none.
-[[nodiscard]] std::string ply_contents(const Scene& scene, std::span<const Occlusion> occlusion,
-                                       std::string_view mark = {});
+/// other properties and elements. The file's own colours (`red green blue`, `diffuse_red ...`, `r g
+/// b`, `diffuse_r ...` of any type: of 0 to 255, ushort 65535, float and double 1, or 255 where one
+/// is above 2) keep their place and their type; where others are shown there, they stand last, as
+/// `own_red own_green own_blue`. Alpha is left alone. A file without any gets `uchar red green
+/// blue`. Seen from the folder of `path`, comments `TextureFile` name the same files as before.
+/// Any other scene gives binary_little_endian with the polygons of its source and its colours.
+/// Coordinates are float, or double where rounding to float would move some vertex by more than
+/// kFloatSlack of the bounding box's diagonal (small things far from the origin).
+/// options.mark: a comment behind the line `format`, in the place of an older one (maker_mark.h).
+[[nodiscard]] WrittenFile ply_contents(const std::filesystem::path& path, const Scene& scene,
+                                       std::span<const Occlusion> occlusion,
+                                       const WriteOptions& options = {});
 
 /// What stands at the vertices of a new file behind their coordinates.
 struct PlyValues {

@@ -19,22 +19,14 @@ std::size_t index_list(const std::string& file_name, const Element& element)
         if (property.name != "vertex_indices" && property.name != "vertex_index")
             continue;
         if (!property.count_type || !is_integer(property.type)) {
-            throw InputError(file_name + ": property " + quoted(property.name) + " of element " +
-                             quoted(element.name) + " is not a list of integers");
+            throw InputError(file_name + ": property " + surfelao::quoted(property.name) +
+                             " of element " + surfelao::quoted(element.name) +
+                             " is not a list of integers");
         }
         return p;
     }
-    throw InputError(file_name + ": element " + quoted(element.name) +
+    throw InputError(file_name + ": element " + surfelao::quoted(element.name) +
                      " has no list \"vertex_indices\"");
-}
-
-/// Which property of the element is the scalar of this name; none: past the last.
-std::size_t scalar(const Element& element, std::string_view name)
-{
-    const auto found = std::ranges::find(element.properties, name, &Property::name);
-    if (found == element.properties.end() || found->count_type)
-        return element.properties.size();
-    return static_cast<std::size_t>(found - element.properties.begin());
 }
 
 template <class Data>
@@ -82,7 +74,7 @@ private:
         // the last row of an ascii file may go without the end of its line
         if (least > 0 && element.count > (data_.remaining() + 1) / least) {
             throw InputError(file_name_ + ": the header says " + std::to_string(element.count) +
-                             " of element " + quoted(element.name) +
+                             " of element " + surfelao::quoted(element.name) +
                              ", but the file is too short for that");
         }
     }
@@ -94,15 +86,15 @@ private:
         std::vector<Role> roles(count);
         constexpr std::string_view kAxes[] = {"x", "y", "z"};
         for (int axis = 0; axis < 3; ++axis) {
-            const std::size_t property = scalar(element, kAxes[axis]);
+            const std::size_t property = find_scalar(element, kAxes[axis]);
             if (property == count) {
                 throw InputError(file_name_ + ": element \"vertex\" has no scalar property " +
                                  quoted(kAxes[axis]));
             }
             roles[property] = {Role::position, axis};
         }
-        const std::size_t normal[] = {scalar(element, "nx"), scalar(element, "ny"),
-                                      scalar(element, "nz")};
+        const std::size_t normal[] = {find_scalar(element, "nx"), find_scalar(element, "ny"),
+                                      find_scalar(element, "nz")};
         if (std::ranges::find(normal, count) == std::end(normal)) {
             for (int axis = 0; axis < 3; ++axis)
                 roles[normal[axis]] = {Role::normal, axis};
@@ -223,6 +215,7 @@ Scene read_with(const std::string& file_name, std::shared_ptr<PlySource> source)
 Scene read_ply(const std::string& file_name, std::string contents)
 {
     auto source = std::make_shared<PlySource>();
+    source->folder = std::filesystem::absolute(file_name).parent_path();
     source->contents = std::move(contents);
     source->header = read_header(file_name, source->contents);
     if (source->header.format == Format::ascii)

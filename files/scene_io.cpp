@@ -11,6 +11,7 @@
 #include "surfels/errors.h"
 
 #include <string>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -44,6 +45,21 @@ Scene read_any(const fs::path& path)
     }
 }
 
+WrittenFile contents_for(const fs::path& path, const Scene& scene,
+                         std::span<const Occlusion> occlusion, const WriteOptions& options)
+{
+    switch (type_of(path)) {
+        case FileType::obj:
+            return obj_contents(path, scene, occlusion, options);
+        case FileType::off:
+            return off_contents(scene, occlusion, options);
+        case FileType::ply:
+            return ply_contents(path, scene, occlusion, options);
+        default:
+            return gltf_contents(path, scene, occlusion, options);
+    }
+}
+
 }  // namespace
 
 Scene read_scene(const fs::path& path)
@@ -68,8 +84,9 @@ void check_output(const fs::path& input, const fs::path& output)
     check_writable(output);
 }
 
-void write_scene(const fs::path& path, const Scene& scene, std::span<const Occlusion> occlusion,
-                 const WriteOptions& options)
+std::vector<std::string> write_scene(const fs::path& path, const Scene& scene,
+                                     std::span<const Occlusion> occlusion,
+                                     const WriteOptions& options)
 {
     require(occlusion.size() == scene.positions.size(),
             "writing takes one answer per vertex: there are " +
@@ -81,16 +98,9 @@ void write_scene(const fs::path& path, const Scene& scene, std::span<const Occlu
     if (!covered)
         throw InputError(path.string() + ": the scene's parts do not cover its vertices");
     check_output(path, path);
-    switch (type_of(path)) {
-        case FileType::obj:
-            return write_atomically(path, obj_contents(scene, occlusion, options.mark));
-        case FileType::off:
-            return write_atomically(path, off_contents(scene, occlusion, options.mark));
-        case FileType::ply:
-            return write_atomically(path, ply_contents(scene, occlusion, options.mark));
-        default:
-            return write_atomically(path, gltf_contents(path, scene, occlusion, options));
-    }
+    WrittenFile written = contents_for(path, scene, occlusion, options);
+    write_atomically(path, written.contents);
+    return std::move(written.notes);
 }
 
 }  // namespace surfelao

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace surfelao {
 
@@ -27,6 +28,12 @@ struct WriteOptions {
     std::string mark = {};  ///< who made the file, and how (maker_mark.h); empty: it says nothing
 };
 
+/// A result as the writers of the formats make it.
+struct WrittenFile {
+    std::string contents;
+    std::vector<std::string> notes;  ///< as Scene::notes: what became of the file's own things
+};
+
 /// Throws InputError when a scene from `input` could not be written to `output` at all: unknown
 /// extension, STL, a glTF asked of a scene that is none, folder missing or not writable, output is
 /// a folder. For use before any work is done.
@@ -36,8 +43,10 @@ void check_output(const std::filesystem::path& input, const std::filesystem::pat
 /// name only when it is complete (written to a temporary name beside it, then renamed): on any
 /// error an existing file is untouched and nothing is left behind. Throws SettingsError when the
 /// number of answers is another one, InputError as check_output does, std::runtime_error when the
-/// machine refuses (disk full).
-void write_scene(const std::filesystem::path& path, const Scene& scene,
-                 std::span<const Occlusion> occlusion, const WriteOptions& options = {});
+/// machine refuses (disk full). Returns notes on the result: colours of the file that hide the
+/// occlusion or are shaded by it, other files that it names and that are not there.
+std::vector<std::string> write_scene(const std::filesystem::path& path, const Scene& scene,
+                                     std::span<const Occlusion> occlusion,
+                                     const WriteOptions& options = {});
 
 }  // namespace surfelao

@@ -3,6 +3,7 @@
 #include "files/file_type.h"
 #include "files/gltf_strings.h"
 #include "files/gltf_uri.h"
+#include "files/text_cursor.h"
 
 #include <algorithm>
 #include <fstream>
@@ -15,32 +16,51 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Longest name of a file, in words: options of a texture may stand in front of it.
-constexpr std::size_t kMostWords = 16;
-
 /// A comment of a PLY that names a file stands in its header, and few headers are so long.
 constexpr std::size_t kMostHeaderLines = 1000;
 
+/// Longest name of a file, in words.
+constexpr std::size_t kMostWords = 16;
+
+constexpr std::size_t kMostListed = 4;
+
 constexpr std::string_view kBlanks = " \t\r";
 
-/// Adds the files in `folder` that any run of words at the end, or any word, of `names` means.
+/// The file of this name, which may have been written with backslashes; empty where there is none.
+fs::path file_named(const fs::path& folder, std::string_view name)
+{
+    std::string slashed(name);
+    std::ranges::replace(slashed, '\\', '/');
+    for (const std::string_view spelling : {name, std::string_view(slashed)}) {
+        std::error_code error;
+        if (fs::is_regular_file(folder / spelling, error))
+            return folder / spelling;
+    }
+    return {};
+}
+
+/// The longest name at the beginning of `words` that is a file; else the first word.
+NamedFile first_named(const fs::path& folder, std::string_view words)
+{
+    std::vector<std::size_t> ends;
+    for (std::size_t end = 0; end < words.size() && ends.size() < kMostWords;) {
+        end = std::min(words.find_first_of(kBlanks, end), words.size());
+        ends.push_back(end);
+        end = std::min(words.find_first_not_of(kBlanks, end), words.size());
+    }
+    NamedFile found;
+    for (; !ends.empty() && found.file.empty(); ends.pop_back()) {
+        found.name = words.substr(0, ends.back());
+        found.file = file_named(folder, found.name);
+    }
+    return found;
+}
+
 void add_named(const fs::path& folder, std::string_view names, std::vector<fs::path>& files)
 {
-    const auto add = [&](std::string_view name) {
-        std::error_code error;
-        if (fs::is_regular_file(folder / name, error))
-            files.push_back(folder / name);
-    };
-    names = names.substr(0, std::min(names.find_last_not_of(kBlanks), names.size() - 1) + 1);
-    for (std::size_t word = 0; word < kMostWords; ++word) {
-        names.remove_prefix(std::min(names.find_first_not_of(kBlanks), names.size()));
-        if (names.empty())
-            return;
-        add(names);
-        const std::size_t end = std::min(names.find_first_of(kBlanks), names.size());
-        if (end < names.size())
-            add(names.substr(0, end));
-        names.remove_prefix(end);
+    for (const NamedFile& named : files_named(folder, names)) {
+        if (!named.file.empty())
+            files.push_back(named.file);
     }
 }
 
@@ -86,7 +106,7 @@ void add_of_ply(const fs::path& mesh, std::vector<fs::path>& files)
 {
     std::size_t lines = 0;
     for_each_line(mesh, [&](std::string_view keyword, std::string_view rest) {
-        if (keyword == "comment" && rest.find("TextureFile") != rest.npos)
+        if (keyword == "comment" && rest.find(kTextureKeyword) != rest.npos)
             add_named(mesh.parent_path(), rest, files);
         return keyword != "end_header" && ++lines < kMostHeaderLines;
     });
@@ -96,7 +116,7 @@ void add_of_gltf(const fs::path& mesh, std::vector<fs::path>& files)
 {
     visit_gltf_strings(mesh, [&](std::span<const std::string> keys, const std::string& text) {
         if (!keys.empty() && keys.back() == "uri" && !is_data_uri(text)) {
-            if (const std::optional<fs::path> file = resolve_uri(mesh.parent_path(), text))
+            if (const std::optional<fs::path> file = locate_uri(mesh.parent_path(), text))
                 files.push_back(*file);
         }
         return true;
@@ -104,6 +124,57 @@ void add_of_gltf(const fs::path& mesh, std::vector<fs::path>& files)
 }
 
 }  // namespace
+
+std::vector<NamedFile> files_named(const fs::path& folder, std::string_view names)
+{
+    std::vector<NamedFile> found;
+    while (true) {
+        names.remove_prefix(std::min(names.find_first_not_of(kBlanks), names.size()));
+        if (names.empty())
+            return found;
+        found.push_back(first_named(folder, names));
+        names.remove_prefix(found.back().name.size());
+    }
+}
+
+std::string path_from(const fs::path& folder, const fs::path& file)
+{
+    // of the folders only: what a link to a file stands beside is what its user sees
+    const fs::path way = fs::relative(fs::absolute(file).parent_path(), fs::absolute(folder));
+    return (way / file.filename()).lexically_normal().generic_string();
+}
+
+std::string names_from(const fs::path& to, const fs::path& from, std::string_view names,
+                       std::vector<std::string>& missing)
+{
+    std::error_code error;
+    if (fs::equivalent(to.empty() ? "." : to, from, error))
+        return std::string(names);
+    std::string text;
+    std::size_t copied = 0;
+    for (const NamedFile& named : files_named(from, names)) {
+        if (named.file.empty())
+            missing.emplace_back(named.name);
+        if (named.file.empty() || fs::path(named.name).is_absolute())
+            continue;
+        const std::size_t begin = static_cast<std::size_t>(named.name.data() - names.data());
+        text.append(names.substr(copied, begin - copied)).append(path_from(to, named.file));
+        copied = begin + named.name.size();
+    }
+    return text.append(names.substr(copied));
+}
+
+void note_missing(const std::vector<std::string>& missing, std::vector<std::string>& notes)
+{
+    if (missing.empty())
+        return;
+    std::string note = "named in the file and not found: ";
+    for (std::size_t i = 0; i < std::min(missing.size(), kMostListed); ++i)
+        note.append(i > 0 ? ", " : "").append(surfelao::quoted(missing[i]));
+    if (missing.size() > kMostListed)
+        note += " and " + std::to_string(missing.size() - kMostListed) + " more";
+    notes.push_back(std::move(note));
+}
 
 std::vector<fs::path> sidecars_of(const fs::path& mesh)
 {

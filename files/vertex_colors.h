@@ -4,18 +4,22 @@
 /// like by itself is the user's: its own colours are never lost unasked. Where a result replaces or
 /// shades them, they stand in it a second time, under a name that says so:
 ///
-///   .ply          the vertex properties `own_red own_green own_blue` (and `own_alpha`)
-///   .obj .off     a comment behind each vertex' line, `# own R G B`, in the file's own numbers
+///   .ply          the vertex properties `own_red own_green own_blue`
+///   .obj .off     comments behind everything else, one for each vertex, `# own R G B`, in the
+///                 file's own words
 ///   .gltf .glb    the attribute `_OWN_COLOR`, the accessor that COLOR_0 had
 ///
-/// A file that carries them (and the mark of a bake, maker_mark.h) is read as if they were its
-/// colours, and one whose colours an earlier bake made as if it had none: a bake of a baked file is
-/// a bake of the original.
+/// A file that carries them is read as if they were its colours, and one whose colours an earlier
+/// bake made as if it had none: a bake of a baked file is a bake of the original, whatever colours
+/// were asked for. By what a bake's colours are known: in .ply by their place (ply_file.h), in .obj
+/// and .off by the mark (maker_mark.h); written without one they count as the file's own next time.
+/// Alpha is kept. Colours that are all white say nothing: `automatic` shades them.
 ///
 /// Encoding: a colour is meant in linear light (visibility .25 reflects a quarter of the light).
 /// Readers take numbers of glTF as linear (its specification) and those of .ply, .obj and .off as
 /// sRGB (Blender since 3.2, three.js since r152, and whoever puts bytes on a screen as they are):
-/// there .25 is written as .537, byte 137.
+/// there .25 is written as .537, byte 137. The file's own colours are always taken so; another
+/// encoding is only for what is written anew.
 #pragma once
 
 #include "surfels/occlusion.h"

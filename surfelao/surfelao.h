@@ -16,7 +16,8 @@
 ///                            vertices first, receivers_at() anywhere on the surface, or your own
 ///     Solution               an Occlusion for each receiver, in their order, as often as you like:
 ///                            solve(prepared, receivers, settings)
-///     file                   write_scene("out.ply", scene, solution.occlusion), if you want one
+///     file                   write_scene("out.ply", scene, solution.occlusion), if you want one;
+///                            what its colours show: files/vertex_colors.h
 ///
 /// What is measured. surfels/occlusion.h is the definition: 0 is open, 1 is closed; the bent normal
 /// points to the middle of what is open. Lengths (positions of receivers, offsets, max_distance)

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include <cstdint>
 #include <memory>
@@ -46,6 +47,9 @@ struct CornerNormals {
 class SourceAsset {
 public:
     virtual ~SourceAsset() = default;
+    /// The file's own colours for a writer of another format: one per scene vertex in linear light
+    /// and alpha, 0 to 1, white where a vertex has none; empty where the file has none. O(bytes).
+    [[nodiscard]] virtual std::vector<glm::vec4> own_colors() const { return {}; }
 };
 
 struct Scene {

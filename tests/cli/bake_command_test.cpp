@@ -176,6 +176,41 @@ TEST_F(BakeCommand, OneFailingFileDoesNotStopTheBatch)
     EXPECT_TRUE(json[1].contains("error"));
 }
 
+TEST_F(BakeCommand, ColoursAreAsAskedForAndABakeOfABakeIsABakeOfTheOriginal)
+{
+    std::ofstream(folder_ / "scan.obj")
+        << "mtllib scan.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nv 0 0 1 1 1 0\n"
+           "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    std::ofstream(folder_ / "scan.mtl") << "newmtl cloth\n";
+    const auto bake = [&](const fs::path& input, const fs::path& output,
+                          const std::vector<std::string>& colors) {
+        std::vector<std::string> arguments = {"bake", input, "-o", output};
+        arguments.insert(arguments.end(), colors.begin(), colors.end());
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return outcome.out;
+    };
+    bake(folder_ / "scan.obj", folder_ / "scan.ply", {"--colors", "keep"});
+    bake(folder_ / "scan.obj", folder_ / "scan.off", {"--colors", "keep"});
+    const std::vector<std::string> shaded = {"--colors", "shaded", "--encoding", "linear"};
+    for (const std::string name : {"scan.obj", "scan.off", "scan.ply"}) {
+        const std::string told = bake(folder_ / name, folder_ / ("out/" + name), {});
+        const std::string sentence = name == "scan.ply" ? "colours of the file kept; --colors"
+                                                        : "colours of the file shaded";
+        EXPECT_NE(told.find("note: " + sentence), told.npos) << told;
+        const auto out = [&](const std::string& which) {
+            return folder_ / ("out/" + which + name);
+        };
+        bake(out(""), out("again_"), {});
+        EXPECT_EQ(contents_of(out("again_")), contents_of(out("")));
+        bake(out("again_"), out("shaded_"), shaded);
+        bake(folder_ / name, out("once_"), shaded);
+        EXPECT_EQ(contents_of(out("shaded_")), contents_of(out("once_")));
+    }
+    EXPECT_NE(contents_of(folder_ / "out/scan.obj").find("mtllib ../scan.mtl\n"),
+              std::string::npos);
+}
+
 TEST_F(BakeCommand, ResumeSkipsWhatIsFinishedAndRedoesWhatIsOlderOrHasOtherSettings)
 {
     const fs::path result = folder_ / "out/a.obj";

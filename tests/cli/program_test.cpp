@@ -39,8 +39,8 @@ TEST_F(ProgramTest, HelpAndVersionAreResultsAndExitZero)
     EXPECT_EQ(bake.code, 0);
     for (const char* word :
          {"--engine", "--quality", "--rays", "--passes", "--strength", "--max-distance",
-          "--falloff", "--kernel", "--colors", "--threads", "--json", "--resume", "--output",
-          "--normals", "--crease", "--values", "--offset"})
+          "--falloff", "--kernel", "--colors", "--encoding", "--threads", "--json", "--resume",
+          "--output", "--normals", "--crease", "--values", "--offset"})
         EXPECT_NE(bake.out.find(word), std::string::npos) << word;
     const Outcome compare = run({"compare", "--help"});
     EXPECT_EQ(compare.code, 0);
@@ -88,6 +88,9 @@ TEST_F(ProgramTest, WrongUsageIsRefusedBeforeAnyWorkWithExitTwo)
         {"bake", in(), "-o", out(), "--values", "mean"},
         {"bake", in(), "-o", out(), "--offset", "0"},
         {"bake", in(), "-o", out(), "--offset", "-1%"},
+        {"bake", in(), "-o", out(), "--colors"},
+        {"bake", in(), "-o", out(), "--colors", "red"},
+        {"bake", in(), "-o", out(), "--encoding", "gamma"},
         {"bake", in(), "-o", out(), "--threads", "0"},
         {"bake", in(), "-o", in()},
         {"bake", in(), in(), "-o", folder_.path()},

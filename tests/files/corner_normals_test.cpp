@@ -185,7 +185,7 @@ TEST(CornerNormalsOfObj, ThatAreNoNumbersAreRefused)
 TEST(CornerNormalsOfObj, SurviveTheWriting)
 {
     const Scene scene = obj(kCubeObj);
-    expect_same_normals(obj(obj_contents(scene, open_answers(scene))), scene);
+    expect_same_normals(obj(obj_contents("x.obj", scene, open_answers(scene)).contents), scene);
 }
 
 // ---- PLY
@@ -258,7 +258,9 @@ TEST(CornerNormalsOfPly, AreReadInBothByteOrdersAndSurviveTheWriting)
         EXPECT_EQ(scene.normals.values,
                   (Normals{{0.5, -0.25, 300}, {1.5, -0.25, 299}, {2.5, -0.25, 298}}));
         EXPECT_TRUE(scene.normals.corners.empty());
-        expect_same_normals(read_ply("test.ply", ply_contents(scene, open_answers(scene))), scene);
+        expect_same_normals(
+            read_ply("test.ply", ply_contents("x.ply", scene, open_answers(scene)).contents),
+            scene);
     }
 }
 

@@ -114,6 +114,11 @@ inline nlohmann::json& primitive(GltfMaker& maker)
     return maker.document["meshes"][0]["primitives"][0];
 }
 
+inline const nlohmann::json& primitive(const GltfMaker& maker)
+{
+    return maker.document["meshes"][0]["primitives"][0];
+}
+
 /// The 36 bytes of one_triangle(): 1.0f is 00 00 80 3F, at bytes 12 and 28.
 inline constexpr const char* kTriangleUri =
     "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";

@@ -419,36 +419,44 @@ const Malformed kMalformed[] = {
      [](GltfMaker& m) { m.document["buffers"][0]["byteLength"] = 40; }},
     {"UriIsNumber", "buffer 0 has a uri that is not a string",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = 1; }},
-    {"UriIsEmpty", "buffer 0 uri \"\" is not the relative path of a file in the model's own folder",
+    {"UriIsEmpty",
+     "buffer 0 uri \"\" is not the relative path of a file in the model's own folder, or of a .bin",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = ""; }},
     {"UriClimbs",
-     "buffer 0 uri \"../secret.bin\" is not the relative path of a file in the model's own folder",
-     [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "../secret.bin"; }},
+     "buffer 0 uri \"../secret\" is not the relative path of a file in the model's own folder, or "
+     "of a .bin",
+     [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "../secret"; }},
     {"UriClimbsInside",
-     "buffer 0 uri \"a/../../b\" is not the relative path of a file in the model's own folder",
+     "buffer 0 uri \"a/../../b\" is not the relative path of a file in the model's own folder, or "
+     "of a .bin",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "a/../../b"; }},
     {"UriClimbsEncoded",
-     "buffer 0 uri \"%2e%2E/secret.bin\" is not the relative path of a file in the model's own "
-     "folder",
-     [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "%2e%2E/secret.bin"; }},
+     "buffer 0 uri \"%2e%2E/secret\" is not the relative path of a file in the model's own folder, "
+     "or of a .bin",
+     [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "%2e%2E/secret"; }},
     {"UriAbsolute",
-     "buffer 0 uri \"/etc/passwd\" is not the relative path of a file in the model's own folder",
+     "buffer 0 uri \"/etc/passwd\" is not the relative path of a file in the model's own folder, "
+     "or of a .bin",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "/etc/passwd"; }},
     {"UriWithScheme",
      "buffer 0 uri \"file:///etc/passwd\" is not the relative path of a file in the model's own "
-     "folder",
+     "folder, or of a .bin",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "file:///etc/passwd"; }},
     {"UriWithHost",
-     "buffer 0 uri \"http://host/a\" is not the relative path of a file in the model's own folder",
+     "buffer 0 uri \"http://host/a\" is not the relative path of a file in the model's own folder, "
+     "or of a .bin",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "http://host/a"; }},
     {"UriWithBackslash",
-     "buffer 0 uri \"..\\a.bin\" is not the relative path of a file in the model's own folder",
-     [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "..\\a.bin"; }},
+     "buffer 0 uri \"..\\a\" is not the relative path of a file in the model's own folder, or of a "
+     ".bin",
+     [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "..\\a"; }},
     {"UriWithNull",
-     "buffer 0 uri \"a%00.bin\" is not the relative path of a file in the model's own folder",
+     "buffer 0 uri \"a%00.bin\" is not the relative path of a file in the model's own folder, or "
+     "of a .bin",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "a%00.bin"; }},
     {"UriBadlyEncoded",
-     "buffer 0 uri \"a%2\" is not the relative path of a file in the model's own folder",
+     "buffer 0 uri \"a%2\" is not the relative path of a file in the model's own folder, or of a "
+     ".bin",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "a%2"; }},
     {"UriOfAFolder", "buffer 0 uri \".\": is a folder, not a file",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "."; }},

@@ -397,7 +397,7 @@ TEST(GltfNotes, ASentenceForEachKind)
 std::string written(const Scene& scene)
 {
     const std::vector<Occlusion> occlusion(scene.positions.size(), {0.5f, {0, 0, 1}});
-    return gltf_contents("out.gltf", scene, occlusion);
+    return gltf_contents("out.gltf", scene, occlusion).contents;
 }
 
 TEST(GltfWorld, WhatIsWrittenStandsWhereItStood)
@@ -464,7 +464,7 @@ TEST(GltfWorld, BentNormalsOfSkinnedVerticesAreTakenBackEachByItself)
     const glm::vec3 world = glm::normalize(glm::vec3(1, 2, 3));
     const std::vector<Occlusion> occlusion(scene.positions.size(), {0.5f, world});
     // the attribute as NORMAL: reading it brings it to the world
-    json document = json::parse(gltf_contents("out.gltf", scene, occlusion));
+    json document = json::parse(gltf_contents("out.gltf", scene, occlusion).contents);
     json& attributes = document["meshes"][0]["primitives"][0]["attributes"];
     attributes["NORMAL"] = attributes["_BENT_NORMAL"];
     const Scene again = read_gltf("out.gltf", document.dump());

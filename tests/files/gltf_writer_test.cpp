@@ -1,8 +1,10 @@
 #include "gltf_maker.h"
 #include "temporary_folder.h"
+#include "written_gltf.h"
 
 #include "files/gltf_io.h"
 #include "files/gltf_uri.h"
+#include "files/maker_mark.h"
 #include "files/scene_io.h"
 #include "surfels/errors.h"
 
@@ -20,77 +22,13 @@ namespace {
 using nlohmann::json;
 using test::bytes_of;
 using test::GltfMaker;
-using test::kTriangleUri;
+using test::number_at;
 using test::one_triangle;
+using test::pattern;
+using test::round_trip;
 using test::square;
-
-/// Written bytes taken apart: an independent way to look at them.
-struct Written {
-    json document;
-    std::string bin;  ///< of a .glb, or of the last buffer's data URI
-
-    std::vector<float> floats(const json& attribute) const
-    {
-        const json& accessor = document["accessors"][attribute.get<std::size_t>()];
-        const json& view = document["bufferViews"][accessor["bufferView"].get<std::size_t>()];
-        const std::size_t dimension = accessor["type"] == "SCALAR" ? 1
-                                      : accessor["type"] == "VEC3" ? 3
-                                                                   : 4;
-        std::vector<float> values(accessor["count"].get<std::size_t>() * dimension);
-        const std::size_t at =
-            view["byteOffset"].get<std::size_t>() + accessor["byteOffset"].get<std::size_t>();
-        EXPECT_LE(at + values.size() * sizeof(float), bin.size());
-        std::memcpy(values.data(), bin.data() + at, values.size() * sizeof(float));
-        return values;
-    }
-
-    const json& attributes(std::size_t mesh, std::size_t primitive = 0) const
-    {
-        return document["meshes"][mesh]["primitives"][primitive]["attributes"];
-    }
-};
-
-std::uint32_t number_at(const std::string& bytes, std::size_t offset)
-{
-    std::uint32_t value = 0;
-    std::memcpy(&value, bytes.data() + offset, sizeof value);
-    return value;
-}
-
-Written take_apart(const std::string& bytes)
-{
-    Written written;
-    if (!bytes.starts_with("glTF")) {
-        written.document = json::parse(bytes);
-        const std::string& uri = written.document["buffers"].back()["uri"].get_ref<std::string&>();
-        written.bin = decode_data_uri(uri).value_or("");
-        return written;
-    }
-    EXPECT_EQ(number_at(bytes, 8), bytes.size());
-    const std::size_t text_size = number_at(bytes, 12);
-    EXPECT_EQ(text_size % 4, 0u);
-    written.document = json::parse(bytes.substr(20, text_size));
-    const std::size_t bin_size = number_at(bytes, 20 + text_size);
-    EXPECT_EQ(bin_size % 4, 0u);
-    written.bin = bytes.substr(28 + text_size, bin_size);
-    return written;
-}
-
-/// A different value at each vertex: 0, 0.25, 0.5, 0.75, 0, ...; bent normals up.
-std::vector<Occlusion> pattern(const Scene& scene)
-{
-    std::vector<Occlusion> occlusion(scene.positions.size());
-    for (std::size_t i = 0; i < occlusion.size(); ++i)
-        occlusion[i] = {static_cast<float>(i % 4) * 0.25f, {0, 0, 1}};
-    return occlusion;
-}
-
-/// Read and written again as .glb, with the pattern.
-Written round_trip(const GltfMaker& maker, const WriteOptions& options = {})
-{
-    const Scene scene = read_gltf("in.glb", maker.glb());
-    return take_apart(gltf_contents("out.glb", scene, pattern(scene), options));
-}
+using test::take_apart;
+using test::Written;
 
 TEST(GltfWriter, AttributesComeBack)
 {
@@ -100,7 +38,6 @@ TEST(GltfWriter, AttributesComeBack)
               (std::vector<float>{0, 0.25f, 0.5f, 0.75f}));
     EXPECT_EQ(written.floats(attributes["_BENT_NORMAL"]),
               (std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}));
-    EXPECT_FALSE(attributes.contains("COLOR_0"));
 }
 
 TEST(GltfWriter, TheRestIsUntouched)
@@ -111,7 +48,7 @@ TEST(GltfWriter, TheRestIsUntouched)
     maker.document["extensions"] = {{"ACME_paint", {{"hue", {1, 2.5, "x"}}}}};
     maker.document["animations"] = {{{"channels", json::array()}}};
     maker.document["asset"]["generator"] = "by hand";
-    Written written = round_trip(maker);
+    Written written = round_trip(maker, {.colors = VertexColors::keep});
 
     EXPECT_EQ(written.bin.substr(0, maker.bin.size()), maker.bin);
     json& document = written.document;
@@ -131,7 +68,7 @@ TEST(GltfWriter, UnknownChunksStay)
     const auto size = static_cast<std::uint32_t>(glb.size());
     std::memcpy(glb.data() + 8, &size, sizeof size);
     const Scene scene = read_gltf("in.glb", glb);
-    const std::string written = gltf_contents("out.glb", scene, pattern(scene));
+    const std::string written = gltf_contents("out.glb", scene, pattern(scene)).contents;
     EXPECT_TRUE(written.ends_with(chunk));
     EXPECT_EQ(number_at(written, 8), written.size());
 }
@@ -140,8 +77,8 @@ TEST(GltfWriter, EqualInputGivesEqualBytes)
 {
     const Scene scene = read_gltf("in.glb", square().glb());
     for (const char* path : {"out.glb", "out.gltf"})
-        EXPECT_EQ(gltf_contents(path, scene, pattern(scene)),
-                  gltf_contents(path, scene, pattern(scene)));
+        EXPECT_EQ(gltf_contents(path, scene, pattern(scene)).contents,
+                  gltf_contents(path, scene, pattern(scene)).contents);
 }
 
 TEST(GltfWriter, WhatIsWrittenIsTheSameSceneAgain)
@@ -152,7 +89,7 @@ TEST(GltfWriter, WhatIsWrittenIsTheSameSceneAgain)
         {{"mesh", 0}, {"rotation", {0, 0, 1, 1}}, {"translation", {1, 2, 3}}}};
     const Scene scene = read_gltf("in.glb", maker.glb());
     for (const char* path : {"out.glb", "elsewhere/out.gltf"}) {
-        const Scene again = read_gltf(path, gltf_contents(path, scene, pattern(scene)));
+        const Scene again = read_gltf(path, gltf_contents(path, scene, pattern(scene)).contents);
         EXPECT_EQ(again.positions, scene.positions) << path;
         EXPECT_EQ(again.triangles, scene.triangles) << path;
     }
@@ -170,7 +107,7 @@ TEST(GltfWriter, BentNormalsAreNormalsOfMeshSpace)
     const Scene scene = read_gltf("in.glb", maker.glb());
     const glm::vec3 world = glm::normalize(glm::vec3(1, 2, 3));
     const std::vector<Occlusion> occlusion(scene.positions.size(), {0.5f, world});
-    const Written written = take_apart(gltf_contents("out.glb", scene, occlusion));
+    const Written written = take_apart(gltf_contents("out.glb", scene, occlusion).contents);
     const std::vector<float> values = written.floats(written.attributes(0)["_BENT_NORMAL"]);
     const glm::dvec3 attribute(values[0], values[1], values[2]);
     EXPECT_NEAR(glm::length(attribute), 1.0, 1e-6);
@@ -203,7 +140,7 @@ TEST(GltfWriter, EachUseOfAMeshHasItsOwnAttributes)
     const Scene scene = read_gltf("in.glb", maker.glb());
     std::vector<Occlusion> occlusion(8, {0.25f, {0, 0, 1}});
     std::fill(occlusion.begin() + 4, occlusion.end(), Occlusion{0.75f, {0, 1, 0}});
-    const Written written = take_apart(gltf_contents("out.glb", scene, occlusion));
+    const Written written = take_apart(gltf_contents("out.glb", scene, occlusion).contents);
     ASSERT_EQ(written.document["meshes"].size(), 2u);
     EXPECT_EQ(written.document["nodes"][0]["mesh"], 0);
     EXPECT_EQ(written.document["nodes"][1]["mesh"], 1);
@@ -233,55 +170,6 @@ TEST(GltfWriter, PrimitivesThatShareVerticesShareAttributes)
     const Written written = round_trip(maker);
     EXPECT_EQ(written.attributes(0, 0)["_OCCLUSION"], written.attributes(0, 1)["_OCCLUSION"]);
     EXPECT_FALSE(written.attributes(0, 2).contains("_OCCLUSION"));
-}
-
-// ---- colours
-
-TEST(GltfWriter, ColorsAreTheVisibility)
-{
-    const Written written = round_trip(square(), {.colors = VertexColors::shaded});
-    EXPECT_EQ(
-        written.floats(written.attributes(0)["COLOR_0"]),
-        (std::vector<float>{1, 1, 1, 0.75f, 0.75f, 0.75f, 0.5f, 0.5f, 0.5f, 0.25f, 0.25f, 0.25f}));
-}
-
-GltfMaker coloured_square()
-{
-    GltfMaker maker = square();
-    const int colors = maker.add_accessor(
-        maker.add_view(bytes_of<std::uint8_t>(
-            {255, 0, 51, 255, 255, 0, 51, 255, 255, 0, 51, 255, 255, 0, 51, 102})),
-        5121, "VEC4", 4);
-    maker.document["accessors"][static_cast<std::size_t>(colors)]["normalized"] = true;
-    maker.document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = colors;
-    return maker;
-}
-
-TEST(GltfWriter, ExistingColorsAreDarkenedAndKeepTheirAlpha)
-{
-    const Written written = round_trip(coloured_square(), {.colors = VertexColors::shaded});
-    const std::vector<float> values = written.floats(written.attributes(0)["COLOR_0"]);
-    ASSERT_EQ(values.size(), 16u);
-    EXPECT_FLOAT_EQ(values[4], 0.75f);
-    EXPECT_FLOAT_EQ(values[5], 0.0f);
-    EXPECT_FLOAT_EQ(values[6], 0.2f * 0.75f);
-    EXPECT_FLOAT_EQ(values[7], 1.0f);
-    EXPECT_FLOAT_EQ(values[15], 0.4f);
-}
-
-TEST(GltfWriter, ExistingColorsStayWhenNoneAreAskedFor)
-{
-    const GltfMaker maker = coloured_square();
-    EXPECT_EQ(round_trip(maker).attributes(0)["COLOR_0"], 2);
-}
-
-TEST(GltfWriter, PrimitivesWithColorsOfTheirOwnAreDarkenedApart)
-{
-    GltfMaker maker = coloured_square();
-    maker.document["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}});
-    const Written written = round_trip(maker, {.colors = VertexColors::shaded});
-    EXPECT_EQ(written.floats(written.attributes(0, 0)["COLOR_0"]).size(), 16u);
-    EXPECT_EQ(written.floats(written.attributes(0, 1)["COLOR_0"]).size(), 12u);
 }
 
 // ---- from one container to another
@@ -336,23 +224,62 @@ TEST(GltfWriter, BesideTheOriginalFilesStayWhereTheyAre)
     EXPECT_EQ(read_scene(folder / "out.gltf").positions, scene.positions);
 }
 
-TEST(GltfWriter, InAnotherFolderATextFileStandsAlone)
+/// The URIs of all buffers and images that are no data.
+std::vector<std::string> uris_of(const std::filesystem::path& path)
+{
+    const json document = json::parse(contents_of(path));
+    std::vector<std::string> uris;
+    for (const char* list : {"buffers", "images"}) {
+        for (const json& entry : document[list]) {
+            if (!is_data_uri(entry["uri"].get<std::string>()))
+                uris.push_back(entry["uri"].get<std::string>());
+        }
+    }
+    return uris;
+}
+
+// A bake of a result in a third folder still names the original's files.
+TEST(GltfWriter, InAnotherFolderATextFileFindsTheFiles)
 {
     const TemporaryFolder folder;
-    const Scene scene = read_scene(save_with_files(folder));
-    std::filesystem::create_directory(folder / "there");
-    write_scene(folder / "there/out.gltf", scene, pattern(scene));
-    const json document = json::parse(contents_of(folder / "there/out.gltf"));
-    EXPECT_EQ(decode_data_uri(document["images"][0]["uri"].get<std::string>()),
-              "\x89PNG\r\n\x1A\n and so on");
-    EXPECT_EQ(document["images"][1]["uri"], "absent.png");
-    EXPECT_EQ(read_scene(folder / "there/out.gltf").positions, scene.positions);
+    for (const char* name : {"my model", "my model/maps", "there", "there/deep"})
+        std::filesystem::create_directory(folder / name);
+    GltfMaker maker = square();
+    folder.file("my model/square.bin", maker.bin);
+    folder.file("my model/other.buffer", maker.bin);
+    folder.file("my model/maps/50%.png", "");
+    folder.file("beside.png", "");
+    maker.document["buffers"] = {{{"byteLength", maker.bin.size()}, {"uri", "square.bin"}},
+                                 {{"byteLength", maker.bin.size()}, {"uri", "other.buffer"}}};
+    for (const char* uri :
+         {"maps\\50%25.png", "../beside.png", "absent\\1.png", "http://host/a.png"})
+        maker.add("images", {{"uri", uri}});
+    const auto in = folder.file("my model/in.gltf", maker.document.dump());
+    const auto bake = [](const std::filesystem::path& from, const std::filesystem::path& to) {
+        const Scene scene = read_scene(from);
+        return write_scene(to, scene, pattern(scene), {.mark = make_mark("bake", "x")});
+    };
+
+    const std::vector<std::string> notes = {"named in the file and not found: \"absent\\1.png\""};
+    EXPECT_EQ(bake(in, folder / "my model/out.gltf"), notes);
+    EXPECT_EQ(bake(in, folder / "there/out.gltf"), notes);
+    EXPECT_EQ(bake(folder / "there/out.gltf", folder / "there/deep/out.gltf"), notes);
+    EXPECT_EQ(uris_of(folder / "my model/out.gltf"),
+              (std::vector<std::string>{"square.bin", "other.buffer", "maps/50%25.png",
+                                        "../beside.png", "absent\\1.png", "http://host/a.png"}));
+    EXPECT_EQ(uris_of(folder / "there/out.gltf"),  // only a .bin is read from elsewhere
+              (std::vector<std::string>{"../my%20model/square.bin", "../my%20model/maps/50%25.png",
+                                        "../beside.png", "absent\\1.png", "http://host/a.png"}));
+    EXPECT_EQ(
+        uris_of(folder / "there/deep/out.gltf"),
+        (std::vector<std::string>{"../../my%20model/square.bin", "../../my%20model/maps/50%25.png",
+                                  "../../beside.png", "absent\\1.png", "http://host/a.png"}));
 }
 
 TEST(GltfWriter, ABinaryFileBecomesText)
 {
     const Scene scene = read_gltf("in.glb", square().glb());
-    const std::string text = gltf_contents("out.gltf", scene, pattern(scene));
+    const std::string text = gltf_contents("out.gltf", scene, pattern(scene)).contents;
     const Written written = take_apart(text);
     EXPECT_EQ(written.document["buffers"].size(), 2u);
     EXPECT_EQ(written.floats(written.attributes(0)["_OCCLUSION"])[1], 0.25f);
@@ -367,9 +294,9 @@ TEST(GltfWriter, ImagesOutsideTheModelsFolderAreNotTakenIn)
     GltfMaker maker = square();
     maker.document["images"] = {{{"uri", "../secret.png"}}};
     const Scene scene = read_gltf(folder / "model/in.glb", maker.glb());
-    const std::string written = gltf_contents(folder / "out.glb", scene, pattern(scene));
-    EXPECT_EQ(written.find("secret\""), std::string::npos);
-    EXPECT_EQ(take_apart(written).document["images"][0]["uri"], "../secret.png");
+    const std::string written = gltf_contents(folder / "out.glb", scene, pattern(scene)).contents;
+    EXPECT_EQ(written.find("PNG secret"), std::string::npos);
+    EXPECT_EQ(take_apart(written).document["images"][0]["uri"], "secret.png");
 }
 
 TEST(GltfWriter, FilesThatAreNoImagesAreNotTakenIn)
@@ -379,7 +306,7 @@ TEST(GltfWriter, FilesThatAreNoImagesAreNotTakenIn)
     GltfMaker maker = square();
     maker.document["images"] = {{{"uri", "passwords"}}};
     const Scene scene = read_gltf(folder / "in.glb", maker.glb());
-    const std::string written = gltf_contents(folder / "out.glb", scene, pattern(scene));
+    const std::string written = gltf_contents(folder / "out.glb", scene, pattern(scene)).contents;
     EXPECT_EQ(written.find("root:x"), std::string::npos);
 }
 
@@ -388,7 +315,8 @@ TEST(GltfWriter, ASceneMadeInCodeIsRefused)
     Scene scene;
     scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     scene.triangles = {{0, 1, 2}};
-    EXPECT_THROW(static_cast<void>(gltf_contents("out.glb", scene, pattern(scene))), InputError);
+    EXPECT_THROW(static_cast<void>(gltf_contents("out.glb", scene, pattern(scene)).contents),
+                 InputError);
 }
 
 // ---- another program's opinion
@@ -411,6 +339,7 @@ std::string assimp_info(const std::filesystem::path& path)
     return kept;
 }
 
+// Without colours, as it makes one of meshes that are equal.
 TEST(GltfWriter, AssimpFindsTheSameModel)
 {
     const std::filesystem::path model =
@@ -423,7 +352,7 @@ TEST(GltfWriter, AssimpFindsTheSameModel)
     EXPECT_NE(expected.find("Vertices:"), std::string::npos);
     const Scene scene = read_scene(model);
     for (const char* name : {"out.glb", "out.gltf"}) {
-        write_scene(folder / name, scene, pattern(scene));
+        write_scene(folder / name, scene, pattern(scene), {.colors = VertexColors::keep});
         EXPECT_EQ(assimp_info(folder / name), expected) << name;
     }
 }

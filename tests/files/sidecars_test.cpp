@@ -49,6 +49,29 @@ TEST(Sidecars, OfPlyAreItsTextureComments)
               (std::set<std::string>{"t.png"}));
 }
 
+// The longest run of words that is a file is a name; what is not there and what is absolute stays.
+TEST(Sidecars, NamesAreFoundFromAnotherFolder)
+{
+    const TemporaryFolder folder;
+    for (const char* name : {"in", "in/sub", "an out", "an out/deep"})
+        std::filesystem::create_directory(folder / name);
+    for (const char* name : {"in/a.mtl", "in/b c.mtl", "in/sub/d.mtl"})
+        folder.file(name, "");
+    const auto in = folder / "in", out = folder / "an out", deep = folder / "an out/deep";
+    const std::string absolute = (folder / "in/a.mtl").string();
+    const std::string names = " a.mtl  none.mtl b c.mtl\tsub\\d.mtl " + absolute;
+    std::vector<std::string> missing;
+    const std::string there = names_from(out, in, names, missing);
+    EXPECT_EQ(there, " ../in/a.mtl  none.mtl ../in/b c.mtl\t../in/sub/d.mtl " + absolute);
+    EXPECT_EQ(missing, (std::vector<std::string>{"none.mtl"}));
+    // from there on, and back
+    EXPECT_EQ(names_from(deep, out, there, missing),
+              " ../../in/a.mtl  none.mtl ../../in/b c.mtl\t../../in/sub/d.mtl " + absolute);
+    EXPECT_EQ(names_from(in, out, there, missing),
+              " a.mtl  none.mtl b c.mtl\tsub/d.mtl " + absolute);
+    EXPECT_EQ(path_from(in, out / "x y.png"), "../an out/x y.png");
+}
+
 TEST(Sidecars, NoneForWhatCannotBeRead)
 {
     const TemporaryFolder folder;

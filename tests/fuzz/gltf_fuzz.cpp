@@ -17,7 +17,7 @@ void check_round_trip(const Scene& scene)
 {
     const std::vector<Occlusion> occlusion(scene.positions.size(), {0.5f, {0.0f, 0.0f, 1.0f}});
     for (const char* path : {"/no folder/a.glb", "/no folder/a.gltf"}) {
-        const Scene again = read_gltf(path, gltf_contents(path, scene, occlusion));
+        const Scene again = read_gltf(path, gltf_contents(path, scene, occlusion).contents);
         SURFELAO_CHECK(again.positions == scene.positions);
         SURFELAO_CHECK(again.triangles == scene.triangles);
         SURFELAO_CHECK(again.normals.values == scene.normals.values);

@@ -4,6 +4,7 @@
 
 #include "scene_checks.h"
 
+#include "files/maker_mark.h"
 #include "files/obj_io.h"
 #include "files/off_io.h"
 #include "files/ply_io.h"
@@ -34,6 +35,22 @@ inline void check_same_normals(const CornerNormals& again, const CornerNormals& 
                                                   sizeof(glm::vec3) * normals.values.size()) == 0);
 }
 
+/// What was baked with shaded colours and is baked again with the file's own is as if baked once.
+template <class Read, class Write>
+void check_baked_twice(const Scene& scene, std::span<const Occlusion> occlusion, const Read& read,
+                       const Write& write)
+{
+    const auto options_of = [](VertexColors colors) {
+        return WriteOptions{colors, Encoding::automatic,
+                            make_mark("bake", "colors=" + name_of(colors))};
+    };
+    const WriteOptions keep = options_of(VertexColors::keep);
+    const Scene shaded =
+        read("baked", write(scene, occlusion, options_of(VertexColors::shaded)).contents);
+    SURFELAO_CHECK(write(shaded, occlusion, keep).contents ==
+                   write(scene, occlusion, keep).contents);
+}
+
 enum class From { obj, ply, other };
 
 /// What came from OBJ or PLY keeps its normals there.
@@ -42,18 +59,23 @@ inline void check_round_trips(const Scene& scene, From from)
     std::vector<Occlusion> occlusion(scene.positions.size());
     for (std::size_t v = 0; v < occlusion.size(); ++v)
         occlusion[v] = {static_cast<float>(v % 8) / 7.0f, {0.0f, 0.0f, 1.0f}};
-    const Scene from_obj = read_obj("obj", obj_contents(scene, occlusion));
+    const Scene from_obj = read_obj("obj", obj_contents("x.obj", scene, occlusion).contents);
     check_same(from_obj, scene, false);
     if (from == From::obj)
         check_same_normals(from_obj.normals, scene.normals);
-    check_same(read_off("off", off_contents(scene, occlusion)), scene, false);
-    const std::string ply = ply_contents(scene, occlusion);
+    check_same(read_off("off", off_contents(scene, occlusion).contents), scene, false);
+    const std::string ply = ply_contents("x.ply", scene, occlusion).contents;
     const Scene again = read_ply("ply", ply);
     check_same(again, scene, from != From::ply);
     if (from == From::ply)
         check_same_normals(again.normals, scene.normals);
     // what we wrote is replaced, not added to
-    SURFELAO_CHECK(ply_contents(again, occlusion).size() == ply.size());
+    SURFELAO_CHECK(ply_contents("x.ply", again, occlusion).contents.size() == ply.size());
+    check_baked_twice(scene, occlusion, read_off, off_contents);
+    check_baked_twice(scene, occlusion, read_obj,
+                      [](auto&&... rest) { return obj_contents("x.obj", rest...); });
+    check_baked_twice(scene, occlusion, read_ply,
+                      [](auto&&... rest) { return ply_contents("x.ply", rest...); });
 }
 
 template <class Read>
