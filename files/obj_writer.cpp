@@ -79,10 +79,12 @@ public:
         TextCursor cursor("", old, kObjRules);
         while (cursor.next_line()) {
             const std::string_view statement = cursor.word();
-            if (statement == "v")
-                replace_color(cursor, vertex, occlusion[vertex]), ++vertex;
-            else if (statement == "mtllib")
+            if (statement == "v") {
+                replace_color(cursor, vertex, occlusion[vertex]);
+                ++vertex;
+            } else if (statement == "mtllib") {
                 replace_names(cursor);
+            }
         }
         copy_to(old.size());
         if (plan_.replaces())

@@ -10,8 +10,8 @@ namespace {
 
 /// What stands behind the coordinates and the normal of a vertex.
 struct VertexRest {
-    bool lacks_normal = false;  ///< although the others have one
-    std::vector<std::string_view> color, texture;
+    bool lacks_normal = false;                     ///< although the others have one
+    std::vector<std::string_view> color, texture;  ///< 0 0 where it lacks one
 };
 
 /// Calls visit(begin, end, rest) for each vertex: the bytes of its rest in the text.
@@ -36,8 +36,11 @@ void for_each_vertex(const OffHeader& header, std::string_view text, const Visit
             words.push_back(cursor.word());
         const int colors = header.color_words(static_cast<int>(words.size()));
         rest.color.assign(words.begin(), words.begin() + colors);
-        const bool is_textured = header.has_textures && words.size() >= 2;
-        rest.texture.assign(words.end() - (is_textured ? 2 : 0), words.end());
+        rest.texture.clear();
+        if (header.has_textures && words.size() >= 2)
+            rest.texture.assign(words.end() - 2, words.end());
+        else if (header.has_textures)
+            rest.texture = {"0", "0"};
         visit(header.end + begin, header.end + cursor.offset(), rest);
     }
 }

@@ -37,6 +37,20 @@ void for_each_word(std::string_view line, const Visit& visit)
     }
 }
 
+/// A vertex' comment: no number, or those of a colour.
+bool is_own_comment(std::string_view line)
+{
+    if (line == kOwn)
+        return true;
+    int numbers = 0;
+    bool are_numbers = line.starts_with(kOwn) && line[kOwn.size()] == ' ';
+    for_each_word(line.substr(std::min(kOwn.size(), line.size())), [&](std::string_view word) {
+        are_numbers = are_numbers && number_in(word);
+        ++numbers;
+    });
+    return are_numbers && (numbers == 3 || numbers == 4);
+}
+
 bool is_white(const glm::vec4& color)
 {
     return color.x == 1.0f && color.y == 1.0f && color.z == 1.0f;
@@ -47,6 +61,17 @@ bool is_white(const glm::vec4& color)
 double white_of(double largest)
 {
     return largest > kLargestOfUnit ? 255.0 : 1.0;
+}
+
+std::optional<double> number_in(std::string_view word)
+{
+    if (word.size() > 1 && word[0] == '+' && word[1] != '-')
+        word.remove_prefix(1);
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error == std::errc::invalid_argument || end != word.data() + word.size())
+        return std::nullopt;
+    return number;
 }
 
 float linear_of(double number)
@@ -146,8 +171,8 @@ std::vector<glm::vec4> ColorWords::linear() const
     for (std::size_t vertex = 0; vertex < size(); ++vertex) {
         int channel = 0;
         for_each_word((*this)[vertex], [&](std::string_view word) {
-            double& number = numbers[vertex][channel++];
-            std::from_chars(word.data(), word.data() + word.size(), number);
+            const double number = number_in(word).value_or(kNone);
+            numbers[vertex][channel++] = number;
             if (std::isfinite(number))
                 largest = std::max(largest, number);
         });
@@ -182,18 +207,16 @@ std::string_view ColorWords::take_comments(std::string_view text, std::size_t ve
         const std::string_view rest = without_line_end(before);
         const std::size_t begin = rest.find_last_of(kLineEnd) + 1;  // npos + 1 is 0
         const std::string_view line = rest.substr(begin);
-        if (line != kOwn && !line.starts_with(std::string(kOwn) + ' '))
+        if (!is_own_comment(line))
             return text;
         lines.push_back(line.substr(kOwn.size()));
         before = rest.substr(0, begin);
     }
     std::ranges::reverse(lines);
+    std::vector<std::string_view> words;
     for (const std::string_view line : lines) {
-        std::vector<std::string_view> words;
-        for_each_word(line, [&](std::string_view word) {
-            if (words.size() < 4)
-                words.push_back(word);
-        });
+        words.clear();
+        for_each_word(line, [&](std::string_view word) { words.push_back(word); });
         add(words);
     }
     const bool is_closed = without_line_end(text).size() < text.size();

@@ -8,6 +8,7 @@
 #include <glm/vec4.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,6 +21,9 @@ inline constexpr double kLargestOfUnit = 2.0;
 
 /// 1 or 255: what white is in a file whose largest number is this.
 [[nodiscard]] double white_of(double largest);
+
+/// The number that makes up all of a word, nan and infinite ones too; none where it is no number.
+[[nodiscard]] std::optional<double> number_in(std::string_view word);
 
 /// Linear light of a number of sRGB, white being 1: at least 0, at most 1; 1 for what is no number.
 [[nodiscard]] float linear_of(double number);
@@ -80,8 +84,8 @@ public:
     /// Appends the comments. The text ends with the end of a line afterwards if it did before.
     void append_comments(std::string& text) const;
 
-    /// If `text` ends with comments for so many vertices, adds their colours and returns the text
-    /// before them, which append_comments() makes the same again; else all of it.
+    /// If `text` ends with such comments for so many vertices, adds their colours and returns the
+    /// text before them, which append_comments() makes the same again; else all of it.
     std::string_view take_comments(std::string_view text, std::size_t vertices);
 
 private:

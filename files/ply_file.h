@@ -3,13 +3,13 @@
 #pragma once
 
 #include "files/mesh_source.h"
+#include "files/own_colors.h"
 #include "files/text_cursor.h"
 #include "surfels/errors.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -166,10 +166,7 @@ public:
     double loose_number(Type)
     {
         demand_word();
-        const std::string_view word = cursor_.word();
-        double value = std::numeric_limits<double>::quiet_NaN();
-        std::from_chars(word.data(), word.data() + word.size(), value);
-        return value;
+        return number_in(cursor_.word()).value_or(std::numeric_limits<double>::quiet_NaN());
     }
     void skip(Type, std::uint64_t count)
     {
