@@ -548,4 +548,5 @@ def constant(figures, name):
     raise KeyError(name)
 
 
-import mask_views  # noqa: E402, F401 - more views, in a file of their own
+import mask_views  # noqa: E402, F401 - more views, in files of their own
+import viewer_views  # noqa: E402, F401

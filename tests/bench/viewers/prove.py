@@ -5,8 +5,9 @@
 
 Bakes two meshes (the scan data/models/bunny.obj and a corner of a room) to .glb, .gltf, .ply and
 .obj with default options, opens each in three.js (in chromium) and in Blender, and compares the
-mean light of the picture with the mean visibility that the result holds for the same pixels; with
---before also as another version of the program writes them. And:
+mean light of the picture with the mean visibility that the result holds for the same pixels: exit 1
+where they differ by more than .01. With --before also as another version of the program writes
+them. And:
 
     others     the scan's .glb in Godot and in <model-viewer>, which only lights
     textured   the corner with a texture, before and after: is its colour its own unlit and under
@@ -37,6 +38,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent.parent
 SIZE = 480
 FORMATS = ("glb", "gltf", "ply", "obj")
+TOLERANCE = 0.01  # of a mean visibility on the screen
 MODULES = ("three", "puppeteer-core", "@google/model-viewer")
 PROGRAMS = ("blender", "chromium", "godot3", "node", "npm", "xvfb-run")
 PAGES = {"three": "three.html", "model-viewer": "model_viewer.html"}
@@ -125,8 +127,9 @@ class Proof:
         version = re.search(r"v([\d.]+)\.", run(*command, env=home, timeout=300)).group(1)
         return [{"picture": job["picture"], "program": f"Godot {version}"} for job in jobs]
 
-    def row(self, picture, truth, **others):
-        return {"program": self.said[picture]["program"], **others, **pictures.against(picture, truth)}
+    def row(self, picture, truth, bare=None, **others):
+        return {"program": self.said[picture]["program"], **others,
+                **pictures.against(picture, truth, bare)}
 
 
 # ---- parts: each notes its pictures and returns a function that judges them once they are drawn
@@ -152,7 +155,7 @@ def part_formats(proof, name, mesh, camera, before):
                   for when in ("before", "after") if (when, "glb") in results}
         wanted = proof.out / f"pictures/{name}-holds.png"
         pictures.save_grey(truths["after"], wanted)
-        pictures.sheet(proof.out / f"formats_{name}.png", [
+        pictures.sheet(proof.out / f"{name}.png", [
             (f"{when}\n{program}", [*((form, drawn[when, program, form]) for form in FORMATS),
                                     ("what it holds", wanted)])
             for when in truths for program in ("three", "blender")], side=160)
@@ -164,6 +167,7 @@ def part_formats(proof, name, mesh, camera, before):
 
 def part_others(proof, source, result, camera):
     """Godot as imported and with its switch; <model-viewer>, lit, the source beside the result."""
+    bare = proof.draw("godot", source, "imported", camera)
     godot = {show: proof.draw("godot", result, show, camera) for show in ("imported", "albedo")}
     viewer = {name: proof.draw("model-viewer", file, "lit", camera)
               for name, file in (("source", source), ("result", result))}
@@ -173,8 +177,8 @@ def part_others(proof, source, result, camera):
         pictures.sheet(proof.out / "others.png", [("", [
             ("Godot, as imported", godot["imported"]), ("Godot, Use As Albedo", godot["albedo"]),
             ("model-viewer, source", viewer["source"]), ("model-viewer, result", viewer["result"])])])
-        return {"others": [*(proof.row(picture, truth, show=show) for show, picture in godot.items()),
-                           {"program": "model-viewer", "show": "lit",
+        return {"others": [*(proof.row(picture, truth, bare, show=show) for show, picture in godot.items()),
+                           {"program": proof.said[viewer["result"]]["program"], "show": "lit",
                             "changed": pictures.difference(*viewer.values())}]}
 
     return judge
@@ -198,14 +202,11 @@ def part_textured(proof, scene, camera):
         for program, show in ((program, show) for program in shows for show in shows[program]):
             picture = drawn[program, show, "result"]
             bare = drawn.get((program, "imported" if show == "uv2" else show, "source"))
-            row = {"program": proof.said[picture]["program"], "show": show}
-            if show == "occlusion":
-                row |= pictures.against(picture, truth)
-            elif show in ("ambient", "imported", "uv2"):
-                row |= pictures.against(picture, truth, bare)
+            if show in ("occlusion", "ambient", "imported", "uv2"):
+                rows.append(proof.row(picture, truth, bare, show=show))
             else:
-                row["changed"] = pictures.difference(picture, bare)
-            rows.append(row)
+                rows.append({"program": proof.said[picture]["program"], "show": show,
+                             "changed": pictures.difference(picture, bare)})
         pictures.sheet(proof.out / "textured.png", [
             (name, [(f"{program} {show}", drawn.get((program, show, name)))
                     for program, of_program in shows.items() for show in of_program])
@@ -261,7 +262,12 @@ def main():
             shown.setdefault(part, []).extend(rows)
     (proof.out / "viewers.json").write_text(json.dumps(shown, indent=1))
     print(json.dumps(shown, indent=1))
-    return 0
+    wrong = [row for row in shown["formats"]
+             if row["when"] == "after" and abs(row["difference"]) > TOLERANCE]
+    for row in wrong:
+        print(f"prove.py: {row['model']}.{row['format']} in {row['program']}: {row['screen']:.3f} instead "
+              f"of {row['truth']:.3f}", file=sys.stderr)
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":
