@@ -31,18 +31,23 @@ void enter(const StageProgress& progress, std::string_view stage)
 }
 
 /// What the engine built is gone afterwards: what follows needs the memory.
-Solution solve_once(const Geometry& geometry, std::span<const Receiver> receivers,
-                    const StageProgress& progress, BakeReport& report)
+VertexBake answer(const Mesh& mesh, const VertexTarget& target, const StageProgress& progress,
+                  BakeReport& report)
 {
-    const EngineSettings& engine = report.settings.engine;
-    const Prepared prepared = prepare(geometry, engine);
-    Solution solution = solve(prepared, receivers, engine,
-                              [&](double done) { return !progress || progress("solve", done); });
-    report.surfels = prepared.surfel_count();
-    report.seconds.surfels = prepared.seconds().surfels;
-    report.seconds.tree = prepared.seconds().tree;
-    report.seconds.solve = solution.seconds;
-    return solution;
+    const BakeSettings& settings = report.settings;
+    const Offset offset = offset_of(settings.target, mesh.geometry.frame);
+    VertexBake bake = settings.error ? bake_to_error(mesh, target, settings.engine, offset,
+                                                     *settings.error, settings.check, progress)
+                                     : bake_vertices(mesh, target, settings.engine, offset,
+                                                     settings.check, progress);
+    report.settings.engine = bake.engine;
+    report.surfels = bake.surfels;
+    report.residual = bake.residual;
+    report.error = bake.error;
+    report.trials = bake.trials;
+    report.is_met = bake.is_met;
+    static_cast<VertexBakeSeconds&>(report.seconds) = bake.seconds;
+    return bake;
 }
 
 }  // namespace
@@ -65,25 +70,20 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     const VertexTarget target(mesh, settings.target);
     report.seconds.read = stage.lap();
 
-    enter(progress, "build");
-    const Solution solution = solve_once(geometry, target.receivers(), progress, report);
-
-    enter(progress, "fit");
-    stage.lap();
-    const std::vector<Occlusion> values = target.values(solution.occlusion);
-    report.seconds.fit = stage.lap();
+    const VertexBake baked = answer(*mesh, target, progress, report);
 
     enter(progress, "write");
+    stage.lap();
     std::vector<std::string> written_notes;
     tbb::parallel_invoke(
         [&] {
-            written_notes = write_scene(settings.output, scene, values,
+            written_notes = write_scene(settings.output, scene, baked.values,
                                         {settings.colors, settings.encoding, mark_of(settings)});
         },
         [&] {  // a writer leaves cores idle
-            report.misfit = target.misfit(solution.occlusion, values);
-            report.notes = notes_of(
-                {*mesh, analyse_topology(geometry), engine.definition, values, report.misfit});
+            report.misfit = target.misfit(baked.answers, baked.values);
+            report.notes = notes_of({*mesh, analyse_topology(geometry), engine.definition,
+                                     baked.values, report.misfit});
         });
     report.notes.insert(report.notes.end(), written_notes.begin(), written_notes.end());
     report.seconds.write = stage.lap();
@@ -96,8 +96,7 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     report.receivers = target.receivers().size();
     report.corners_from_file = mesh->surface.corners_from_file;
     report.replaced_corners = mesh->surface.replaced_corners;
-    report.residual = solution.residual;
-    report.mean_occlusion = mean_occlusion_of(mesh->surface, values);
+    report.mean_occlusion = mean_occlusion_of(mesh->surface, baked.values);
     report.seconds.total = whole.lap();
     report.peak_rss_bytes = peak_rss_bytes();
     return report;
@@ -115,16 +114,22 @@ std::string mark_of(const BakeSettings& settings)
 {
     const EngineSettings& engine = settings.engine;
     const DistanceLimit& limit = settings.max_distance;
-    std::string text = "engine=" + name_of(engine.engine) +
-                       " device=" + (engine.device == Device::gpu ? "gpu" : "cpu");
+    std::string text;
     const auto add = [&](const char* name, auto value) { append_shortest(text += name, value); };
-    if (engine.engine == Engine::rays)
-        text += " rays=" + std::to_string(engine.rays);
-    else
-        add(" quality=", engine.quality);
-    if (engine.engine == Engine::disks) {
-        text += " passes=" + std::to_string(engine.passes);
-        add(" strength=", engine.strength);
+    if (settings.error) {
+        add("error=", *settings.error);
+        add(" check=", settings.check);
+    } else {
+        text = "engine=" + name_of(engine.engine) +
+               " device=" + (engine.device == Device::gpu ? "gpu" : "cpu");
+        if (engine.engine == Engine::rays)
+            text += " rays=" + std::to_string(engine.rays);
+        else
+            add(" quality=", engine.quality);
+        if (engine.engine == Engine::disks) {
+            text += " passes=" + std::to_string(engine.passes);
+            add(" strength=", engine.strength);
+        }
     }
     if (engine.instructions == Instructions::avx2)
         text += " instructions=avx2";

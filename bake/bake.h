@@ -1,6 +1,7 @@
 /// bake.h: the job: a mesh file in, the same mesh with occlusion at every vertex out.
 #pragma once
 
+#include "bake/vertex_bake.h"
 #include "bake/vertex_target.h"
 #include "engines/engine.h"
 #include "files/vertex_colors.h"
@@ -23,17 +24,17 @@ struct BakeSettings {
     DistanceLimit max_distance;
     Kernel kernel = Kernel::cosine;
     TargetSettings target;
+    std::uint32_t check = kCheckPoints;  ///< points at which the result is measured; 0: not at all
+    /// The engine is then the cheapest whose stated error lies below it (bake_to_error): > 0, and
+    /// check >= 1. Of `engine` only the instructions count.
+    std::optional<double> error = {};
     VertexColors colors = VertexColors::automatic;
     Encoding encoding = Encoding::automatic;
 };
 
 /// Wall-clock seconds of each stage.
-struct BakeSeconds {
-    double read = 0.0;     ///< the file, and the clean geometry
-    double surfels = 0.0;  ///< what the engine makes of it first
-    double tree = 0.0;
-    double solve = 0.0;
-    double fit = 0.0;    ///< from the answers to the values at vertices
+struct BakeSeconds : VertexBakeSeconds {
+    double read = 0.0;   ///< the file, and the clean geometry
     double write = 0.0;  ///< the file, and the notes meanwhile
     double total = 0.0;
 };
@@ -54,11 +55,11 @@ struct BakeReport {
     std::uint64_t corners_from_file = 0;  ///< corners shaded with the file's normals
     std::uint64_t replaced_corners = 0;   ///< the file's were not usable there
     std::optional<Misfit> misfit;         ///< of the values at vertices, as displayed
+    std::optional<StatedError> error;     ///< as displayed
+    std::vector<Trial> trials;            ///< of settings.error
+    bool is_met = false;                  ///< settings.error is kept
     std::vector<std::string> notes;       ///< bake/notes.h, then those of write_scene()
 };
-
-/// Told the stage at hand ("read", "solve", ...) and how much of it is done; false stops the job.
-using StageProgress = std::function<bool(std::string_view stage, double done)>;
 
 /// Reads, solves, writes. The output appears complete or not at all: after any exception an older
 /// file is still there untouched. Throws InputError, std::runtime_error, Cancelled.

@@ -58,6 +58,32 @@ Json json_of(const std::optional<Misfit>& misfit)
     return misfit ? Json{{"rms", misfit->rms}, {"share", misfit->share}} : Json();
 }
 
+Json json_of(const std::optional<StatedError>& error)
+{
+    if (!error)
+        return {};
+    return {{"rmse", error->rmse},
+            {"low", error->low},
+            {"high", error->high},
+            {"bias", error->bias},
+            {"p95", error->p95},
+            {"floor", error->floor ? Json(*error->floor) : Json()},
+            {"points", error->points},
+            {"rays", error->rays},
+            {"ill_defined", error->ill_defined}};
+}
+
+/// What was asked with an error, and what was tried.
+Json search_json_of(const BakeReport& report)
+{
+    Json trials = Json::array();
+    for (const Trial& trial : report.trials)
+        trials.push_back({{"engine", name_of(trial.engine.engine)},
+                          {"setting", setting_of(trial.engine)},
+                          {"error", json_of(std::optional(trial.error))}});
+    return {{"error", *report.settings.error}, {"met", report.is_met}, {"trials", trials}};
+}
+
 Json json_of(const BatchEntry& entry)
 {
     Json json;
@@ -83,10 +109,10 @@ Json json_of(const BatchEntry& entry)
     add(json["settings"], report.settings.target);
     json["settings"]["colors"] = name_of(report.settings.colors);
     json["settings"]["encoding"] = name_of(report.settings.encoding);
-    json["seconds"] = {{"read", seconds.read},  {"surfels", seconds.surfels},
-                       {"tree", seconds.tree},  {"solve", seconds.solve},
-                       {"fit", seconds.fit},    {"write", seconds.write},
-                       {"total", seconds.total}};
+    json["seconds"] = {{"read", seconds.read},   {"surfels", seconds.surfels},
+                       {"tree", seconds.tree},   {"solve", seconds.solve},
+                       {"fit", seconds.fit},     {"check", seconds.check},
+                       {"write", seconds.write}, {"total", seconds.total}};
     json["receivers"] = report.receivers;
     json["corners_from_file"] = report.corners_from_file;
     json["replaced_corners"] = report.replaced_corners;
@@ -94,6 +120,8 @@ Json json_of(const BatchEntry& entry)
     json["residual"] = report.residual ? Json(*report.residual) : Json();
     json["mean_occlusion"] = report.mean_occlusion;
     json["misfit"] = json_of(report.misfit);
+    json["error"] = json_of(report.error);
+    json["asked"] = report.settings.error ? search_json_of(report) : Json();
     json["notes"] = report.notes;
     return json;
 }

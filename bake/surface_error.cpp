@@ -11,14 +11,6 @@
 namespace surfelao {
 namespace {
 
-double area_at(const Geometry& geometry, std::size_t triangle)
-{
-    const glm::uvec3 t = geometry.triangles[triangle];
-    const glm::dvec3 a(geometry.positions[t.x]);
-    return 0.5 * glm::length(glm::cross(glm::dvec3(geometry.positions[t.y]) - a,
-                                        glm::dvec3(geometry.positions[t.z]) - a));
-}
-
 /// The top 53 bits as a number in [0, 1).
 double unit_of(std::uint64_t bits)
 {
@@ -59,24 +51,37 @@ std::uint32_t floor_rays(std::size_t receivers, std::uint32_t truth_rays)
 
 std::vector<SurfacePoint> surface_points(const Geometry& geometry, std::uint64_t count)
 {
+    return surface_points(triangle_areas(geometry), count);
+}
+
+std::vector<SurfacePoint> surface_points(std::span<const double> measure, std::uint64_t count)
+{
     std::vector<SurfacePoint> points;
-    double area = 0.0;
-    for (std::size_t t = 0; t < geometry.triangles.size(); ++t)
-        area += area_at(geometry, t);
-    if (!(area > 0.0))
-        return points;
-    points.reserve(count);
-    std::uint32_t triangle = 0;
-    const auto last = static_cast<std::uint32_t>(geometry.triangles.size() - 1);
-    double end = area_at(geometry, 0);
+    for (const std::uint32_t triangle : stratified(measure, count))
+        points.push_back({triangle, place_in_triangle(points.size())});
+    return points;
+}
+
+std::vector<std::uint32_t> stratified(std::span<const double> measure, std::uint64_t count)
+{
+    std::vector<std::uint32_t> indices;
+    double whole = 0.0;
+    for (const double part : measure)
+        whole += part;
+    if (!(whole > 0.0))
+        return indices;
+    indices.reserve(count);
+    std::uint32_t index = 0;
+    const auto last = static_cast<std::uint32_t>(measure.size() - 1);
+    double end = measure[0];
     for (std::uint64_t i = 0; i < count; ++i) {
         const double at =
-            area * (static_cast<double>(i) + unit_of(hash_of(i))) / static_cast<double>(count);
-        while (at >= end && triangle < last)
-            end += area_at(geometry, ++triangle);
-        points.push_back({triangle, place_in_triangle(i)});
+            whole * (static_cast<double>(i) + unit_of(hash_of(i))) / static_cast<double>(count);
+        while (at >= end && index < last)
+            end += measure[++index];
+        indices.push_back(index);
     }
-    return points;
+    return indices;
 }
 
 SurfaceTruth trace_truth(const Mesh& mesh, const TruthSettings& settings, const Progress& progress)

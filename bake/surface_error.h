@@ -41,6 +41,16 @@ inline constexpr std::uint64_t kSurfacePoints = 20'000;
 [[nodiscard]] std::vector<SurfacePoint> surface_points(const Geometry& geometry,
                                                        std::uint64_t count);
 
+/// The same for another measure than the area, one per triangle, >= 0: in each triangle points are
+/// as many as it has of it.
+[[nodiscard]] std::vector<SurfacePoint> surface_points(std::span<const double> measure,
+                                                       std::uint64_t count);
+
+/// The indices, rising, on which `count` points fall when the measures lie one behind the other and
+/// each of as many equal stretches has one. None where all are 0.
+[[nodiscard]] std::vector<std::uint32_t> stratified(std::span<const double> measure,
+                                                    std::uint64_t count);
+
 struct TruthSettings {
     Definition definition = {};
     Offset offset;                          ///< of the points: that of the target (offset_of)

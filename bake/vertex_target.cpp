@@ -90,36 +90,62 @@ std::vector<Occlusion> VertexTarget::values(std::span<const Occlusion> answers) 
     return values;
 }
 
+/// Of the samples in each triangle.
+struct VertexTarget::Residuals {
+    std::vector<double> squares;  ///< summed
+    std::vector<std::uint32_t> counts;
+
+    [[nodiscard]] double mean_square(std::size_t triangle) const
+    {
+        return counts[triangle] > 0 ? squares[triangle] / counts[triangle] : 0.0;
+    }
+};
+
+VertexTarget::Residuals VertexTarget::residuals(std::span<const Occlusion> answers,
+                                                std::span<const Occlusion> values) const
+{
+    const std::size_t triangles = mesh_->geometry.triangles.size();
+    Residuals residuals{std::vector<double>(triangles, 0.0),
+                        std::vector<std::uint32_t>(triangles, 0)};
+    if (!fit_)
+        return residuals;
+    const std::vector<SurfacePoint>& points = fit_->samples().points;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double error = answers[i].occlusion - displayed(mesh_->geometry, values, points[i]);
+        residuals.squares[points[i].triangle] += error * error;
+        ++residuals.counts[points[i].triangle];
+    }
+    return residuals;
+}
+
 std::optional<Misfit> VertexTarget::misfit(std::span<const Occlusion> answers,
                                            std::span<const Occlusion> values) const
 {
-    if (!fit_)
-        return {};
-    const Geometry& geometry = mesh_->geometry;
-    const std::vector<SurfacePoint>& points = fit_->samples().points;
-    std::vector<double> squares(geometry.triangles.size(), 0.0);
-    std::vector<std::uint32_t> counts(squares.size(), 0);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const double error = answers[i].occlusion - displayed(geometry, values, points[i]);
-        squares[points[i].triangle] += error * error;
-        ++counts[points[i].triangle];
-    }
+    const Residuals found = residuals(answers, values);
+    const std::vector<double> areas = triangle_areas(mesh_->geometry);
     double sum = 0.0, coarse = 0.0, whole = 0.0;
-    for (std::size_t t = 0; t < squares.size(); ++t) {
-        if (counts[t] == 0)
+    for (std::size_t t = 0; t < areas.size(); ++t) {
+        if (found.counts[t] == 0)
             continue;
-        const glm::uvec3 v = geometry.triangles[t];
-        const glm::vec3 a = geometry.positions[v.x];
-        const double area =
-            glm::length(glm::cross(geometry.positions[v.y] - a, geometry.positions[v.z] - a));
-        const double square = squares[t] / counts[t];
-        sum += area * square;
-        coarse += counts[t] > 1 && square > kCoarse * kCoarse ? area : 0.0;
-        whole += area;
+        const double square = found.mean_square(t);
+        sum += areas[t] * square;
+        coarse += found.counts[t] > 1 && square > kCoarse * kCoarse ? areas[t] : 0.0;
+        whole += areas[t];
     }
     if (!(whole > 0.0))
         return {};
     return Misfit{std::sqrt(sum / whole), coarse / whole};
+}
+
+std::vector<float> VertexTarget::triangle_misfits(std::span<const Occlusion> answers,
+                                                  std::span<const Occlusion> values) const
+{
+    const Residuals found = residuals(answers, values);
+    std::vector<float> misfits;
+    misfits.reserve(found.counts.size());
+    for (std::size_t t = 0; t < found.counts.size(); ++t)
+        misfits.push_back(static_cast<float>(std::sqrt(found.mean_square(t))));
+    return misfits;
 }
 
 std::vector<Occlusion> VertexTarget::mean_of_wedges(std::span<const Occlusion> answers) const

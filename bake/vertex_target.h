@@ -79,7 +79,20 @@ public:
     [[nodiscard]] std::optional<Misfit> misfit(std::span<const Occlusion> answers,
                                                std::span<const Occlusion> values) const;
 
+    /// The same for each triangle by itself: RMS over its samples, 0 where it has none.
+    [[nodiscard]] std::vector<float> triangle_misfits(std::span<const Occlusion> answers,
+                                                      std::span<const Occlusion> values) const;
+
+    /// What the receivers stand for, one for each of the first; null for VertexValues::point.
+    [[nodiscard]] const SurfaceSamples* samples() const
+    {
+        return fit_ ? &fit_->samples() : nullptr;
+    }
+
 private:
+    struct Residuals;
+    Residuals residuals(std::span<const Occlusion> answers,
+                        std::span<const Occlusion> values) const;
     std::vector<Occlusion> mean_of_wedges(std::span<const Occlusion> answers) const;
 
     std::shared_ptr<const Mesh> mesh_;

@@ -25,6 +25,8 @@ struct BakeOptions {
     MeasureOptions measure;
     SurfaceOptions surface;
     ColorOptions colors;
+    std::uint32_t check = kCheckPoints;
+    std::optional<double> error;
     bool resume = false;
     bool overwrite = false;
     std::optional<std::string> json;
@@ -78,6 +80,41 @@ std::string question_of(const BakeReport& report)
     return text;
 }
 
+/// "error 0.0041 (0.0037 to 0.0046), bias -0.0006, 95 % within 0.0101, floor 0.0038; 400 points"
+std::string statement_of(const StatedError& error)
+{
+    std::string text = "error " + fixed(error.rmse, 4) + " (" + fixed(error.low, 4) + " to " +
+                       fixed(error.high, 4) + "), bias " + (error.bias < 0.0 ? "" : "+") +
+                       fixed(error.bias, 4) + ", 95 % within " + fixed(error.p95, 4);
+    if (error.floor)
+        text += ", floor " + fixed(*error.floor, 4);
+    text += "; " + std::to_string(error.points) + " points";
+    if (error.ill_defined > 0)
+        text += ", " + std::to_string(error.ill_defined) + " ill-defined left out";
+    return text;
+}
+
+/// What was tried for --error, and whether that was enough.
+std::string search_of(const BakeReport& report)
+{
+    std::string text = "error asked " + exact(*report.settings.error) + ":";
+    for (const Trial& trial : report.trials)
+        text += " " + name_of(trial.engine.engine) + " " + setting_of(trial.engine) + " " +
+                fixed(trial.error.rmse, 4) + ",";
+    text.back() = ';';
+    if (report.is_met)
+        return text + " met by the last";
+    const StatedError& last = *report.error;
+    if (last.floor && *last.floor > *report.settings.error)
+        return text + " not met: values at these vertices err by " + fixed(*last.floor, 4) +
+               " whoever answers (floor); a finer mesh helps";
+    if (last.floor && last.high > 0.0 &&
+        *last.floor * last.high > *report.settings.error * last.rmse)
+        return text + " not met for sure: the floor of these vertices, " + fixed(*last.floor, 4) +
+               ", is too near; more points (--check) or a finer mesh help";
+    return text + " not met";
+}
+
 void print(const BakeReport& report)
 {
     const BakeSeconds& seconds = report.seconds;
@@ -92,10 +129,14 @@ void print(const BakeReport& report)
               << fixed(report.mean_occlusion, 4);
     if (report.residual)
         std::cout << ", residual " << fixed(*report.residual, 4);
+    if (report.settings.error && report.error)
+        std::cout << "\n  " << search_of(report);
+    if (report.error)
+        std::cout << "\n  " << statement_of(*report.error);
     std::cout << "\n  read " << time(seconds.read) << ", surfels " << time(seconds.surfels)
               << ", tree " << time(seconds.tree) << ", solve " << time(seconds.solve) << ", fit "
-              << time(seconds.fit) << ", write " << time(seconds.write) << ", total "
-              << time(seconds.total) << "; " << report.threads
+              << time(seconds.fit) << ", check " << time(seconds.check) << ", write "
+              << time(seconds.write) << ", total " << time(seconds.total) << "; " << report.threads
               << (report.threads == 1 ? " thread, " : " threads, ")
               << report.peak_rss_bytes / (1024 * 1024) << " MiB\n";
     for (const std::string& note : report.notes)
@@ -111,6 +152,8 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
     settings.target = target_settings_of(options.surface);
+    settings.check = options.check;
+    settings.error = options.error;
     settings.colors = colors_of(options.colors);
     settings.encoding = encoding_of(options.colors);
     return settings;
@@ -205,6 +248,24 @@ void add_bake_command(CLI::App& app, Work& work)
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
     add_color_options(*command, options->colors);
+    command
+        ->add_option("--check", options->check,
+                     "Points of the surface at which the result is measured against rays; 0: none")
+        ->check(CLI::Range(0u, kMostCheckPoints))
+        ->type_name("N")
+        ->default_str(std::to_string(kCheckPoints))
+        ->group("Error");
+    CLI::Option* error =
+        command
+            ->add_option(
+                "--error", options->error,
+                "Take the cheapest setting of masks or rays whose error, as seen, is below "
+                "this with its whole interval (0.01); instead of --engine and --quality")
+            ->check(CLI::Range(1e-6, 1.0))
+            ->type_name("E")
+            ->group("Error");
+    for (const char* other : {"--engine", "--quality", "--rays", "--passes", "--strength"})
+        error->excludes(command->get_option(other));
     command->add_flag(
         "--resume", options->resume,
         "Skip files whose result is not older than they are and says that it was "
@@ -221,6 +282,10 @@ void add_bake_command(CLI::App& app, Work& work)
         static_cast<void>(distance_limit_of(options->measure));
         static_cast<void>(target_settings_of(options->surface));
         check_kernel(engine.engine, kernel_of(options->measure));
+        if (options->error && options->check == 0)
+            throw UsageError("--error needs the points of --check.");
+        if (options->error && kernel_of(options->measure) != Kernel::cosine)
+            throw UsageError("--error tries masks, which know --kernel cosine only.");
         work = [options, jobs = jobs_of(*options)] { return run(*options, jobs); };
     });
 }

@@ -323,9 +323,11 @@ RayScene::RayScene(const Geometry& geometry, Build build, Isa isa) : impl_(std::
     const RTCDevice device = device_for(isa);
     impl_->wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
     impl_->scene = rtcNewScene(device);
-    rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_MEDIUM);
+    const RTCBuildQuality quality =
+        build == Build::quick ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
+    rtcSetSceneBuildQuality(impl_->scene, quality);
     rtcSetSceneFlags(impl_->scene,
-                     build == Build::robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+                     build == Build::fast ? RTC_SCENE_FLAG_NONE : RTC_SCENE_FLAG_ROBUST);
     if (!geometry.triangles.empty()) {
         const RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
         void* vertices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -337,6 +339,7 @@ RayScene::RayScene(const Geometry& geometry, Build build, Isa isa) : impl_(std::
                       static_cast<glm::vec3*>(vertices));
             std::copy(geometry.triangles.begin(), geometry.triangles.end(),
                       static_cast<glm::uvec3*>(indices));
+            rtcSetGeometryBuildQuality(mesh, quality);
             rtcCommitGeometry(mesh);
             rtcAttachGeometry(impl_->scene, mesh);
         }

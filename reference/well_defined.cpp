@@ -7,7 +7,8 @@
 namespace surfelao {
 
 std::vector<float> placement_change(const RayScene& scene, std::span<const Receiver> receivers,
-                                    const Definition& definition, const Progress& progress)
+                                    const Definition& definition, const Progress& progress,
+                                    std::uint32_t rays)
 {
     // in the receiver's own frame: sideways, in diagonals, and along the normal, in its offset
     constexpr float kSin120 = 0.8660254f;
@@ -23,7 +24,7 @@ std::vector<float> placement_change(const RayScene& scene, std::span<const Recei
     };
     RayOptions options;
     options.definition = definition;
-    options.rays = 256;
+    options.rays = rays;
 
     std::vector<float> low(receivers.size(), 1.0f), high(receivers.size(), 0.0f);
     std::vector<Receiver> moved(receivers.size());

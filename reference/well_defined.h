@@ -21,6 +21,7 @@
 #include "surfels/progress.h"
 #include "surfels/receiver.h"
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -37,13 +38,12 @@ inline constexpr float kSidestep = 5e-7f;
 /// its rays that hit within kSidestep if that is more; it is ill-defined when that is above
 /// kIllDefined. 0 for receivers without a normal.
 ///
-/// scene: Build::robust. The five places share
-/// their directions, so that their noise mostly cancels. Costs five times 256 rays a receiver, and
-/// as many very short ones.
-/// Throws Cancelled.
+/// scene: a robust one. The five places share their directions, so that their noise mostly
+/// cancels. Costs five times `rays` a receiver, and as many very short ones. Throws Cancelled.
 [[nodiscard]] std::vector<float> placement_change(const RayScene& scene,
                                                   std::span<const Receiver> receivers,
                                                   const Definition& definition,
-                                                  const Progress& progress = {});
+                                                  const Progress& progress = {},
+                                                  std::uint32_t rays = 256);
 
 }  // namespace surfelao

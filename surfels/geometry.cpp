@@ -255,4 +255,16 @@ Geometry make_geometry(const Scene& scene)
     return geometry;
 }
 
+std::vector<double> triangle_areas(const Geometry& geometry)
+{
+    std::vector<double> areas;
+    areas.reserve(geometry.triangles.size());
+    for (const glm::uvec3 t : geometry.triangles) {
+        const glm::dvec3 a(geometry.positions[t.x]);
+        areas.push_back(0.5 * glm::length(glm::cross(glm::dvec3(geometry.positions[t.y]) - a,
+                                                     glm::dvec3(geometry.positions[t.z]) - a)));
+    }
+    return areas;
+}
+
 }  // namespace surfelao

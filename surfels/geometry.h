@@ -60,4 +60,7 @@ inline constexpr double kZeroAreaRatio = 1e-12;
 /// InputError as check_scene does.
 [[nodiscard]] Geometry make_geometry(const Scene& scene);
 
+/// Of each triangle, in the unit frame.
+[[nodiscard]] std::vector<double> triangle_areas(const Geometry& geometry);
+
 }  // namespace surfelao

@@ -50,12 +50,16 @@ TEST(Bake, WritesTheFileAndReportsEveryStage)
         EXPECT_EQ(report.triangles, 12u * 64);
         EXPECT_GT(report.mean_occlusion, 0.01);
         EXPECT_LT(report.mean_occlusion, 0.3);
-        EXPECT_EQ(stages, (std::vector<std::string>{"read", "build", "solve", "fit", "write"}));
+        EXPECT_EQ(stages,
+                  (std::vector<std::string>{"read", "build", "solve", "fit", "check", "write"}));
         EXPECT_GE(report.seconds.total, report.seconds.read + report.seconds.solve);
         EXPECT_GT(report.seconds.fit, 0.0);
         EXPECT_GT(report.receivers, report.triangles);
         ASSERT_TRUE(report.misfit.has_value());
         EXPECT_GT(report.misfit->rms, 0.0);
+        ASSERT_TRUE(report.error.has_value());
+        EXPECT_GT(report.error->rmse, 0.0);
+        EXPECT_GT(report.seconds.check, 0.0);
         EXPECT_GT(report.peak_rss_bytes, 1u << 20);
         EXPECT_EQ(report.residual.has_value(), engine == Engine::disks);
     }
@@ -66,7 +70,7 @@ TEST(Bake, CancelledAtAnyStageLeavesTheOldFile)
     const TemporaryFolder folder;
     write_obj(folder / "in.obj", scenes::bumpy_sphere(8));
     std::ofstream(folder / "out.ply") << "old";
-    for (const std::string stop : {"read", "build", "solve", "fit", "write"}) {
+    for (const std::string stop : {"read", "build", "solve", "fit", "check", "write"}) {
         EXPECT_THROW(
             static_cast<void>(bake(settings_for(folder / "in.obj", folder / "out.ply"),
                                    [&](std::string_view stage, double) { return stage != stop; })),
@@ -212,6 +216,9 @@ TEST(Batch, MarksNameTheSettingsOfTheEngineAtHand)
         << mark_of(settings);
     settings.engine.engine = Engine::rays;
     EXPECT_NE(mark_of(settings).find("engine=rays device=gpu rays=16 kernel"), std::string::npos);
+    settings.error = 0.01;  // which then says who answers
+    EXPECT_NE(mark_of(settings).find(" bake: error=0.01 check=400 kernel="), std::string::npos)
+        << mark_of(settings);
 }
 
 TEST(Threads, TheLimitLivesAsLongAsItsObject)

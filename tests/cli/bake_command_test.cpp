@@ -111,6 +111,52 @@ TEST_F(BakeCommand, OptionsReachTheReport)
         EXPECT_TRUE(json.contains(key)) << key;
 }
 
+TEST_F(BakeCommand, EveryResultStatesItsErrorAndTheStatementChangesNoByte)
+{
+    std::vector<std::string> bytes;
+    for (const char* points : {"0", "50", "400"}) {
+        const Outcome outcome = run({"bake", folder_ / "a.obj", "-o", folder_ / "x.ply", "--check",
+                                     points, "--json", folder_ / "report.json"});
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        bytes.push_back(contents_of(folder_ / "x.ply"));
+        const Json error = Json::parse(contents_of(folder_ / "report.json"))["error"];
+        const bool is_stated = std::string(points) != "0";
+        EXPECT_EQ(outcome.out.find(" points\n") != std::string::npos, is_stated) << outcome.out;
+        EXPECT_EQ(error.is_object(), is_stated);
+        for (const char* key : {"rmse", "low", "high", "bias", "p95", "floor", "points", "rays"})
+            EXPECT_EQ(error.contains(key), is_stated) << key;
+        EXPECT_EQ(is_stated ? error["points"].get<int>() : 0, std::stoi(points));
+    }
+    EXPECT_EQ(bytes[0], bytes[1]);
+    EXPECT_EQ(bytes[0], bytes[2]);
+}
+
+TEST_F(BakeCommand, AnErrorThatIsAskedForIsSearched)
+{
+    for (const auto& [asked, met] : {std::pair("0.2", true), {"0.0001", false}}) {
+        const Outcome outcome = run({"bake", folder_ / "a.obj", "-o", folder_ / "x.ply", "--error",
+                                     asked, "--json", folder_ / "report.json"});
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        const Json json = Json::parse(contents_of(folder_ / "report.json"));
+        EXPECT_EQ(json["asked"]["met"], met) << asked;
+        EXPECT_EQ(json["asked"]["error"], std::stod(asked));
+        EXPECT_EQ(json["error"]["high"].get<double>() <= std::stod(asked), met);
+        EXPECT_NE(outcome.out.find(met ? "met by the last" : "not met"), std::string::npos);
+        EXPECT_GE(json["asked"]["trials"].size(), 1u);
+    }
+    for (const std::vector<std::string>& wrong :
+         {std::vector<std::string>{"--error", "0.01", "--check", "0"},
+          {"--error", "0.01", "--quality", "good"},
+          {"--error", "0.01", "--engine", "rays"},
+          {"--error", "0"},
+          {"--check", "-1"}}) {
+        std::vector<std::string> arguments = {"bake", folder_ / "a.obj", "-o", folder_ / "y.ply"};
+        arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+        EXPECT_EQ(run(arguments).code, 2) << wrong[1];
+        EXPECT_FALSE(fs::exists(folder_ / "y.ply"));
+    }
+}
+
 TEST_F(BakeCommand, TheGpuKnowsTheSameOptions)
 {
     for (const char* engine : {"masks", "disks"}) {

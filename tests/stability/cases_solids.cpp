@@ -1,6 +1,6 @@
+#include "tests/random.h"
 #include "tests/scenes.h"
 #include "tests/stability/cases.h"
-#include "tests/stability/random.h"
 
 #include <glm/geometric.hpp>
 

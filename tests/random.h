@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <numbers>
 
-namespace surfelao::stability {
+namespace surfelao {
 
 class Random {
 public:
@@ -43,4 +43,4 @@ private:
     std::uint64_t state_;
 };
 
-}  // namespace surfelao::stability
+}  // namespace surfelao

@@ -1,0 +1,78 @@
+/// vertex_bake.h: from a mesh to values at its vertices that say how wrong they are, by the engine
+/// that was asked for or by the cheapest that is exact enough.
+#pragma once
+
+#include "bake/stated_error.h"
+#include "bake/vertex_target.h"
+#include "engines/engine.h"
+#include "surfels/occlusion.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace surfelao {
+
+/// Told the stage at hand ("read", "solve", ...) and how much of it is done; false stops the job.
+using StageProgress = std::function<bool(std::string_view stage, double done)>;
+
+/// Wall-clock seconds of each stage; of several trials the sums.
+struct VertexBakeSeconds {
+    double surfels = 0.0;  ///< what the engine makes of the mesh first
+    double tree = 0.0;
+    double solve = 0.0;
+    double fit = 0.0;    ///< from the answers to the values at vertices
+    double check = 0.0;  ///< from the values to their error
+};
+
+/// A setting that was tried on the way to an error.
+struct Trial {
+    EngineSettings engine;
+    StatedError error;
+};
+
+struct VertexBake {
+    EngineSettings engine;           ///< who answered
+    std::vector<Occlusion> answers;  ///< one per receiver of the target
+    std::vector<Occlusion> values;   ///< one per vertex
+    std::optional<double> residual;  ///< of the disk engine's correction
+    std::uint64_t surfels = 0;
+    std::optional<StatedError> error;
+    std::vector<Trial> trials;  ///< of bake_to_error(), in the order of their costs
+    bool is_met = false;        ///< bake_to_error(): the interval lies below the error asked
+    VertexBakeSeconds seconds;
+};
+
+/// check: points of the statement of error; 0: none. The values are the same whatever it is.
+/// Throws as prepare() and solve(), and Cancelled where progress says so.
+[[nodiscard]] VertexBake bake_vertices(const Mesh& mesh, const VertexTarget& target,
+                                       const EngineSettings& engine, const Offset& offset,
+                                       std::uint32_t check, const StageProgress& progress = {});
+
+/// By the cheapest of masks at any quality and rays at any number whose error is below `error` with
+/// its whole interval. Costs are those that settings have on the median model, so that equal input
+/// takes the same one everywhere. Where values at these vertices cannot be so exact, whoever
+/// answers (the floor's own interval does not lie below `error`), the bake is that of masks at
+/// good, and is_met false. engine: definition and instructions are taken. check >= 1.
+[[nodiscard]] VertexBake bake_to_error(const Mesh& mesh, const VertexTarget& target,
+                                       const EngineSettings& engine, const Offset& offset,
+                                       double error, std::uint32_t check,
+                                       const StageProgress& progress = {});
+
+/// In the order in which bake_to_error() tries them: settings with what they take of the time of
+/// masks at good, median of 21 models (`docs/figures/frontier.json`). Rays that noise alone would
+/// make too wrong are passed over.
+struct Step {
+    Engine engine;
+    float setting;  ///< quality or rays
+    float cost;
+};
+inline constexpr Step kSteps[] = {
+    {Engine::masks, -1.0f, 0.5f},   {Engine::masks, 0.0f, 0.6f},   {Engine::rays, 16.0f, 0.7f},
+    {Engine::masks, 1.0f, 1.0f},    {Engine::masks, 2.0f, 1.8f},   {Engine::rays, 64.0f, 2.2f},
+    {Engine::masks, 3.0f, 3.2f},    {Engine::masks, 4.0f, 6.0f},   {Engine::rays, 256.0f, 7.3f},
+    {Engine::rays, 1024.0f, 23.0f}, {Engine::rays, 4096.0f, 81.0f}};
+
+}  // namespace surfelao
