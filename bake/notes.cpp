@@ -48,15 +48,6 @@ std::string closed_note(std::span<const Occlusion> values, const Topology& topol
 
 }  // namespace
 
-std::string count_text(std::uint64_t count, const std::string& noun)
-{
-    const std::size_t bar = noun.find('|');
-    std::string text = std::to_string(count) + ' ';
-    if (bar == std::string::npos)
-        return text + noun + (count == 1 ? "" : "s");
-    return text + (count == 1 ? noun.substr(0, bar) : noun.substr(bar + 1));
-}
-
 double mean_occlusion_of(const Surface& surface, std::span<const Occlusion> values)
 {
     double sum = 0.0;

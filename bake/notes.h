@@ -46,7 +46,4 @@ inline constexpr float kInteriorDistance = 0.1f;
 /// Over the vertices with a normal; 0 where there are none.
 [[nodiscard]] double mean_occlusion_of(const Surface& surface, std::span<const Occlusion> values);
 
-/// "3 triangles", "1 triangle"; an irregular noun gives both forms: "vertex|vertices".
-[[nodiscard]] std::string count_text(std::uint64_t count, const std::string& noun);
-
 }  // namespace surfelao

@@ -51,6 +51,10 @@ struct VertexBake {
                                        const EngineSettings& engine, const Offset& offset,
                                        std::uint32_t check, const StageProgress& progress = {});
 
+/// Points that an error is judged at, at most, where it is close to what was asked: the interval is
+/// then a quarter as wide as with kCheckPoints.
+inline constexpr std::uint32_t kMostSearchPoints = 6400;
+
 /// By the cheapest of masks at any quality and rays at any number whose error is below `error` with
 /// its whole interval. Costs are those that settings have on the median model, so that equal input
 /// takes the same one everywhere. Where values at these vertices cannot be so exact, whoever

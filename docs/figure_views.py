@@ -548,5 +548,74 @@ def constant(figures, name):
     raise KeyError(name)
 
 
+# ---- what bakes state of themselves
+
+
+def stated(figures, half, kind=None):
+    return [bake for bake in figures["stated"]["bakes"]
+            if half in ("all", bake["half"]) and kind in (None, bake["kind"])]
+
+
+def holds(bake):
+    return bake["low"] <= bake["truth"] <= bake["high"]
+
+
+def kept(bakes, asked):
+    """Of bakes that say to have met an error, those that have."""
+    met = [bake[asked] for bake in bakes if bake[asked]["met"]]
+    return met, [row for row in met if row["truth"] <= float(asked.split("_")[1])]
+
+
+@view
+def stated_kinds(figures):
+    """stated_kinds: the table of the family, kind by kind"""
+    kinds = list(dict.fromkeys(bake["kind"] for bake in figures["stated"]["bakes"]))
+    rows = []
+    for kind in kinds:
+        bakes = stated(figures, "all", kind)
+        row = [kind.replace("_", " "), short(quantile([bake["rmse"] for bake in bakes], 0.5), 4),
+               fixed(quantile([bake["high"] / max(bake["low"], 1e-4) for bake in bakes], 0.5), 2)]
+        for half in ("choosing", "judging"):
+            some = stated(figures, half, kind)
+            row.append(f"{sum(map(holds, some))} of {len(some)}")
+        for asked in ("asked_0.01", "asked_0.005"):
+            met, right = kept(bakes, asked)
+            row.append(f"{len(right)} of {len(met)}")
+        rows.append(row)
+    return table(["kind", "error at good, median", "high / low, median", "holds, chosen on",
+                  "holds, judged on", "--error .01 kept", "--error .005 kept"], rows)
+
+
+@view
+def stated_share(figures, half):
+    """stated_share all|choosing|judging: of the statements, how many per cent hold"""
+    bakes = stated(figures, half)
+    return fixed(100.0 * sum(map(holds, bakes)) / len(bakes), 0)
+
+
+@view
+def stated_kept(figures, asked):
+    """stated_kept 0.01|0.005: "98 of 100" bakes that say to have met an error have"""
+    met, right = kept(stated(figures, "all"), f"asked_{asked}")
+    return f"{len(right)} of {len(met)}"
+
+
+@view
+def stated_correction(figures):
+    """stated_correction: what correcting by the stated bias would do to the error, median, per cent"""
+    gains = [1.0 - bake["corrected"] / bake["truth"] for bake in stated(figures, "all")
+             if bake["truth"] > 0]
+    return fixed(100.0 * quantile(gains, 0.5), 1)
+
+
+@view
+def stated_cost(figures, least="0", most="1e9"):
+    """stated_cost [LEAST MOST]: the statement's share of a bake, models by triangles, per cent"""
+    shares = [cost["share"] for cost in figures["stated"]["costs"]
+              if float(least) <= cost["triangles"] <= float(most)]
+    low, high = (fixed(100.0 * share, 0) for share in (min(shares), max(shares)))
+    return low if low == high else f"{low} to {high}"
+
+
 import mask_views  # noqa: E402, F401 - more views, in files of their own
 import viewer_views  # noqa: E402, F401

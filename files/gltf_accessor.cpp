@@ -147,7 +147,7 @@ std::vector<double> read_numbers(const GltfAccessor& accessor)
     return numbers;
 }
 
-std::vector<glm::dvec3> read_vectors(const GltfAccessor& accessor, Finite finite)
+std::vector<glm::dvec3> read_vectors(const GltfAccessor& accessor)
 {
     static_assert(sizeof(glm::dvec3) == 3 * sizeof(double));
     SURFELAO_CHECK(accessor.dimension == 3);
@@ -155,8 +155,6 @@ std::vector<glm::dvec3> read_vectors(const GltfAccessor& accessor, Finite finite
     if (vectors.empty())
         return vectors;
     load_all(accessor, &vectors.front().x);
-    if (finite == Finite::must_be)
-        check_finite(accessor, &vectors.front().x);
     return vectors;
 }
 

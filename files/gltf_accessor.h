@@ -57,12 +57,9 @@ struct AccessorError : std::runtime_error {
 /// Throws AccessorError on a value that is not finite and on bad sparse indices.
 [[nodiscard]] std::vector<double> read_numbers(const GltfAccessor& accessor);
 
-enum class Finite { must_be, may_be };
-
-/// Asks for three components of any type. Throws AccessorError on bad sparse indices, and on a
-/// value that is not finite where it must be.
-[[nodiscard]] std::vector<glm::dvec3> read_vectors(const GltfAccessor& accessor,
-                                                   Finite finite = Finite::must_be);
+/// Asks for three components of any type; the values may be not finite. Throws AccessorError on bad
+/// sparse indices.
+[[nodiscard]] std::vector<glm::dvec3> read_vectors(const GltfAccessor& accessor);
 
 /// Asks for three components of any type (alpha is then 1) or four. Throws like read_numbers.
 [[nodiscard]] std::vector<glm::dvec4> read_colors(const GltfAccessor& accessor);

@@ -3,6 +3,7 @@
 #include "files/file_contents.h"
 #include "files/gltf_uri.h"
 #include "surfels/errors.h"
+#include "surfels/number_text.h"
 
 #include <nlohmann/json.hpp>
 
@@ -42,7 +43,17 @@ struct Container {
     std::string_view text;
     std::string_view bin;
     std::vector<std::string_view> other_chunks;
+    std::vector<std::string> notes;
 };
+
+/// Where the chunk behind one that ends at `chunk_end` begins. Chunks are padded to a multiple of
+/// four bytes; a writer may have forgotten to pad, or to count the padding.
+std::size_t next_chunk(std::string_view file, std::size_t chunk_end, std::size_t file_end)
+{
+    if (chunk_end + 8 <= file_end && little_endian_32(file, chunk_end + 4) == kBinChunk)
+        return chunk_end;
+    return std::min((chunk_end + 3) / 4 * 4, file_end);
+}
 
 Container open_glb(std::string_view file, const fs::path& path)
 {
@@ -53,23 +64,23 @@ Container open_glb(std::string_view file, const fs::path& path)
     if (version != 2)
         fail_gltf(path, "GLB header",
                   "has version " + std::to_string(version) + ", only 2 is read");
-    const std::uint32_t length = little_endian_32(file, 8);
-    if (length > file.size() || length < 12)
-        fail_gltf(path, "GLB header",
-                  "declares " + std::to_string(length) + " bytes, but the file has " +
-                      std::to_string(file.size()));
+    const std::size_t declared = little_endian_32(file, 8);
+    std::size_t end = declared < 12 || declared > file.size() ? file.size() : declared;
     Container container;
     bool has_text = false;
     bool has_bin = false;
+    std::size_t unpadded = 0;
     std::size_t at = 12;
-    for (int chunk = 0; at + 8 <= length; ++chunk) {
+    for (int chunk = 0; at + 8 <= end; ++chunk) {
         const std::size_t size = little_endian_32(file, at);
         const std::uint32_t type = little_endian_32(file, at + 4);
         at += 8;
-        if (size > length - at)
+        if (size > file.size() - at)
             fail_gltf(path, "GLB chunk " + std::to_string(chunk),
                       "declares " + std::to_string(size) + " bytes, but only " +
-                          std::to_string(length - at) + " follow");
+                          std::to_string(file.size() - at) + " follow");
+        if (size > end - at)  // the chunk is there, so what the header says is wrong
+            end = file.size();
         const std::string_view contents = file.substr(at, size);
         if (chunk == 0 && type != kJsonChunk)
             fail_gltf(path, "GLB chunk 0", "is not of type JSON");
@@ -82,9 +93,18 @@ Container open_glb(std::string_view file, const fs::path& path)
         } else {
             container.other_chunks.push_back(file.substr(at - 8, size + 8));
         }
-        // a chunk is padded to a multiple of four; one that ends the file may lack that
-        at = std::min<std::size_t>(at + (size + 3) / 4 * 4, length);
+        unpadded += size % 4 != 0;
+        at = next_chunk(file, at + size, end);
     }
+    if (unpadded > 0)
+        container.notes.push_back(count_text(unpadded, "chunk") +
+                                  " of the GLB of a length that is no multiple of 4");
+    if (end != declared)
+        container.notes.push_back("the GLB's header says " + count_text(declared, "byte") +
+                                  ", the file has " + std::to_string(file.size()));
+    else if (end < file.size())
+        container.notes.push_back(count_text(file.size() - end, "byte") +
+                                  " behind the end of the GLB passed over");
     if (!has_text)
         fail_gltf(path, "GLB", "has no JSON chunk");
     return container;
@@ -129,19 +149,26 @@ json parse_document(std::string_view text, const fs::path& path)
     }
 }
 
+/// A version as a string, or as the number that some write in its place; empty: neither.
+std::string version_text(const json& version)
+{
+    if (version.is_string())
+        return version.get<std::string>();
+    return version.is_number() ? version.dump() : std::string();
+}
+
 void check_version(const json& document, const fs::path& path)
 {
     const auto asset = document.find("asset");
     if (asset == document.end() || !asset->is_object())
         fail_gltf(path, "asset", "is missing: this is not glTF");
-    const auto version = asset->find("version");
-    if (version == asset->end() || !version->is_string())
+    const std::string version = version_text(asset->value("version", json()));
+    if (version.empty())
         fail_gltf(path, "asset", "has no version");
-    const auto& value = version->get_ref<const std::string&>();
-    if (!value.starts_with("2."))
-        fail_gltf(path, "asset", "is glTF version " + shortened(value) + ", only 2.x is read");
+    if (version != "2" && !version.starts_with("2."))
+        fail_gltf(path, "asset", "is glTF version " + shortened(version) + ", only 2.x is read");
     const auto minimum = asset->find("minVersion");
-    if (minimum != asset->end() && *minimum != "2.0")
+    if (minimum != asset->end() && version_text(*minimum) != "2" && version_text(*minimum) != "2.0")
         fail_gltf(
             path, "asset",
             "demands a reader of version " + shortened(minimum->dump()) + ", this one knows 2.0");
@@ -153,7 +180,7 @@ std::string load_uri(const std::string& uri, const fs::path& path, const std::st
     if (is_data_uri(uri)) {
         std::optional<std::string> bytes = decode_data_uri(uri);
         if (!bytes)
-            fail_gltf(path, element, "has a data URI that is not base64 or is broken");
+            fail_gltf(path, element, "has a data URI that is broken");
         return *std::move(bytes);
     }
     const std::string place = element + " uri \"" + shortened(uri) + '"';
@@ -203,10 +230,13 @@ void load_buffers(GltfAsset& asset)
         } else {
             continue;
         }
-        if (byte_length > static_cast<double>(buffer.bytes.size()))
+        // what is missing may be padding, which nobody reads
+        if (byte_length >= static_cast<double>(buffer.bytes.size() + kMostPadding))
             fail_gltf(asset.path, element,
                       "declares " + length->dump() + " bytes, but has " +
                           std::to_string(buffer.bytes.size()));
+        if (byte_length > static_cast<double>(buffer.bytes.size()))
+            asset.notes.push_back(element + " lacks its last bytes, which nothing uses");
         buffer.bytes = buffer.bytes.substr(0, static_cast<std::size_t>(byte_length));
     }
 }
@@ -265,10 +295,15 @@ void load_gltf_asset(const fs::path& path, std::string contents, GltfAsset& asse
     asset.file = std::move(contents);
     asset.byte_count = asset.file.size();
     const bool binary = asset.file.starts_with("glTF");
-    const Container container = binary ? open_glb(asset.file, path) : Container{asset.file, {}, {}};
-    *asset.document = parse_document(container.text, path);
+    Container container = binary ? open_glb(asset.file, path) : Container{asset.file, {}, {}, {}};
+    const std::size_t text_size = container.text.find_last_not_of('\0') + 1;
+    if (text_size < container.text.size())
+        container.notes.push_back(count_text(container.text.size() - text_size, "zero byte") +
+                                  " behind the JSON passed over");
+    *asset.document = parse_document(container.text.substr(0, text_size), path);
     asset.bin = container.bin;
     asset.other_chunks = container.other_chunks;
+    asset.notes = std::move(container.notes);
     if (!binary)
         asset.file = {};
     check_version(*asset.document, path);

@@ -23,6 +23,10 @@
 
 namespace surfelao {
 
+/// Padding is less than this. So many bytes a buffer may lack, and a view may end behind its
+/// buffer: some exporters count the padding, but do not write it.
+inline constexpr std::size_t kMostPadding = 4;
+
 /// One entry of the document's `buffers`.
 struct GltfBuffer {
     std::shared_ptr<const std::string> contents;  ///< of its uri; buffers with one file share it
@@ -64,6 +68,7 @@ struct GltfAsset : SourceAsset {
     std::unique_ptr<nlohmann::json> document;    ///< an object
     std::string_view bin;                        ///< the binary chunk of a GLB; empty without one
     std::vector<std::string_view> other_chunks;  ///< of a GLB: neither JSON nor BIN, with headers
+    std::vector<std::string> notes;  ///< what was let pass in all that, for Scene::notes
     std::vector<GltfBuffer> buffers;
     std::map<std::size_t, GltfAccessor> colors;  ///< COLOR_0, _OWN_COLOR by accessor, of all parts
     /// Per mesh that the scene uses and primitive: the first primitive that shares all its vertices
@@ -76,6 +81,9 @@ struct GltfAsset : SourceAsset {
 /// Takes the container apart, parses the document and loads all buffers into `asset`. A buffer
 /// without a uri that is not the binary chunk (its contents come from an extension) has no bytes;
 /// using it is the fault.
+///
+/// A GLB whose chunks are not padded, or whose header has another length than the file, is taken by
+/// its chunks: what is cut shows in them. Zeros behind the JSON are padding.
 ///
 /// Throws InputError: cut, not glTF 2, not JSON, nested deeper than 256 levels, a buffer that is
 /// missing, shorter than declared, or outside the file's folder (gltf_uri.h).

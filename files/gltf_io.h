@@ -26,6 +26,12 @@
 /// plain data), and any extension that the file requires unless it is known to leave triangles
 /// alone or to be read here (gltf_extensions.cpp lists them).
 ///
+/// Let pass and counted in Scene::notes is what breaks the specification and leaves the triangles
+/// clear: a GLB without padding or of another length than it says (gltf_asset.h); byteStride 0
+/// (taken as none), of indices, or beyond 252; views and buffers that count padding which is not
+/// there; float accessors that are normalized; primitives without POSITION or with fewer than three
+/// corners; positions that are not finite in no triangle (gltf_pose.h).
+///
 /// The file is taken as hostile: every index, offset, count, stride and type is checked before use,
 /// and what stands after the whole file has been multiplied by its nodes is bounded (see
 /// kInstancingBase).

@@ -108,7 +108,6 @@ private:
         if (named.accessor.component == GltfComponent::uint32)
             resolver_.fail(named.element,
                            "has componentType 5125 (unsigned int), which no position may have");
-        check_normalized(named);
         return named;
     }
 
@@ -123,15 +122,8 @@ private:
             resolver_.fail(named.element, "is not of type VEC3");
         if (is_index_type(named.accessor.component))
             resolver_.fail(named.element, "is of an unsigned type, which no normal may be");
-        check_normalized(named);
         resolver_.check_count(named, count);
         return named;
-    }
-
-    void check_normalized(const NamedAccessor& named) const
-    {
-        if (named.accessor.normalized && named.accessor.component == GltfComponent::float32)
-            resolver_.fail(named.element, "is float and normalized at once");
     }
 
     InfluenceSet influences(const tinygltf::Primitive& source, std::size_t set, std::size_t count,
@@ -147,7 +139,6 @@ private:
         for (const NamedAccessor* named : {&influences.joints, &influences.weights}) {
             if (named->accessor.dimension != 4)
                 resolver_.fail(named->element, "is not of type VEC4");
-            check_normalized(*named);
             resolver_.check_count(*named, count);
         }
         if (!is_index_type(influences.joints.accessor.component) ||
@@ -173,8 +164,6 @@ private:
                 resolver_.fail(indices.element, "is not of type SCALAR");
             if (!is_index_type(indices.accessor.component))
                 resolver_.fail(indices.element, "is not of an unsigned integer type");
-            if (indices.accessor.normalized)
-                resolver_.fail(indices.element, "is normalized, which no index may be");
             count = indices.accessor.count;
         }
         if (source.mode == TINYGLTF_MODE_TRIANGLES)
@@ -208,6 +197,13 @@ private:
 };
 
 }  // namespace
+
+std::size_t Primitive::corner_count() const
+{
+    if (mode == TINYGLTF_MODE_TRIANGLES)
+        return 3 * triangle_count;
+    return triangle_count == 0 ? 0 : triangle_count + 2;
+}
 
 std::vector<Group> resolve_mesh(const tinygltf::Model& model, std::size_t mesh, GltfAsset& asset)
 {

@@ -15,6 +15,10 @@ struct Primitive {
     std::optional<NamedAccessor> indices;  // without: the vertices in order
     int mode;
     std::size_t triangle_count;
+
+    /// Vertices, or indices of them, that the triangles are made of: a list may hold one or two
+    /// more.
+    [[nodiscard]] std::size_t corner_count() const;
 };
 
 /// Displacements; one for each vertex.

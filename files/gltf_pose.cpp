@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace surfelao {
 namespace {
@@ -31,30 +32,80 @@ void add_scaled(std::vector<glm::dvec3>& sums, const std::vector<glm::dvec3>& ve
         sums[i] += weight * vectors[i];
 }
 
+/// Which vertices the triangles of a group have. Indices out of range are refused elsewhere.
+std::vector<bool> used_vertices(const Group& group, const AccessorResolver& resolver)
+{
+    std::vector<bool> used(group.positions.accessor.count, false);
+    for (const Primitive& primitive : group.primitives) {
+        const std::size_t corners = primitive.corner_count();
+        if (!primitive.indices) {
+            std::fill_n(used.begin(), corners, true);
+            continue;
+        }
+        const std::vector<std::uint32_t> indices =
+            read_named(*primitive.indices, resolver, read_indices);
+        for (const std::uint32_t index : std::span(indices).first(corners)) {
+            if (index < used.size())
+                used[index] = true;
+        }
+    }
+    return used;
+}
+
+bool is_finite(const glm::dvec3& position)
+{
+    return std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z);
+}
+
+/// Positions, or displacements of them. What is not finite and no triangle has becomes zero and is
+/// noted in `lost`; the rest is refused.
+std::vector<glm::dvec3> read_places(const NamedAccessor& named, const Group& group,
+                                    const AccessorResolver& resolver, std::set<std::size_t>& lost)
+{
+    std::vector<glm::dvec3> places = read_named(named, resolver, read_vectors);
+    if (std::ranges::all_of(places, is_finite))
+        return places;
+    const std::vector<bool> used = used_vertices(group, resolver);
+    for (std::size_t v = 0; v < places.size(); ++v) {
+        if (is_finite(places[v]))
+            continue;
+        if (used[v])
+            resolver.fail(named.element + ":", "element " + std::to_string(v) + " is not finite");
+        places[v] = glm::dvec3(0.0);
+        lost.insert(v);
+    }
+    return places;
+}
+
 }  // namespace
 
 MeshVertices read_vertices(const Group& group, std::span<const double> weights,
                            const AccessorResolver& resolver)
 {
-    const auto positions = [](const GltfAccessor& accessor) { return read_vectors(accessor); };
-    // exporters leave NaN where triangles have no area: such a normal is none, no fault
-    const auto normals = [](const GltfAccessor& accessor) {
-        return read_vectors(accessor, Finite::may_be);
-    };
     MeshVertices vertices;
-    vertices.positions = read_named(group.positions, resolver, positions);
+    std::set<std::size_t> lost;
+    vertices.positions = read_places(group.positions, group, resolver, lost);
+    // exporters leave NaN where triangles have no area: such a normal is none, no fault
     if (group.normals)
-        vertices.normals = read_named(*group.normals, resolver, normals);
+        vertices.normals = read_named(*group.normals, resolver, read_vectors);
     for (std::size_t t = 0; t < std::min(weights.size(), group.targets.size()); ++t) {
         const MorphTarget& target = group.targets[t];
         if (weights[t] == 0.0)
             continue;
         if (target.positions)
-            add_scaled(vertices.positions, read_named(*target.positions, resolver, positions),
+            add_scaled(vertices.positions, read_places(*target.positions, group, resolver, lost),
                        weights[t]);
         if (target.normals && group.normals)
-            add_scaled(vertices.normals, read_named(*target.normals, resolver, normals),
+            add_scaled(vertices.normals, read_named(*target.normals, resolver, read_vectors),
                        weights[t]);
+    }
+    if (!lost.empty()) {
+        const std::vector<bool> used = used_vertices(group, resolver);
+        const auto first = std::ranges::find(used, true) - used.begin();
+        for (const std::size_t vertex : lost)
+            vertices.positions[vertex] =
+                vertices.positions[static_cast<std::size_t>(first) % used.size()];
+        vertices.lost_count = lost.size();
     }
     return vertices;
 }

@@ -18,11 +18,13 @@ namespace surfelao {
 struct MeshVertices {
     std::vector<glm::dvec3> positions;
     std::vector<glm::dvec3> normals;  ///< as stored, of any length, finite or not; may be empty
+    std::size_t lost_count = 0;       ///< positions that were not finite, in no triangle
 };
 
 /// The stored vertices plus the displacements of the targets times their weights; targets beyond
-/// the weights have none. Throws InputError where values are not finite. O(vertices * targets of a
-/// weight that is not 0).
+/// the weights have none. A vertex whose values are not finite and which no triangle of the group
+/// has stands where the first that has one stands; others make it throw InputError. O(vertices *
+/// targets of a weight that is not 0).
 [[nodiscard]] MeshVertices read_vertices(const Group& group, std::span<const double> weights,
                                          const AccessorResolver& resolver);
 

@@ -8,6 +8,7 @@
 #include "files/gltf_pose.h"
 #include "files/gltf_schema.h"
 #include "surfels/errors.h"
+#include "surfels/number_text.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
@@ -149,6 +150,9 @@ public:
         if (scene_.triangles.empty())
             fail("", "has meshes of points and lines only, no triangles");
         scene_.notes = gltf_notes(asset_, nodes_);
+        if (lost_count_ > 0)
+            scene_.notes.push_back(count_text(lost_count_, "vertex|vertices") +
+                                   " without a finite place, but in no triangle, passed over");
     }
 
 private:
@@ -220,6 +224,7 @@ private:
         part.first_vertex = static_cast<std::uint32_t>(scene_.positions.size());
         part.first_triangle = static_cast<std::uint32_t>(scene_.triangles.size());
         part.vertex_count = static_cast<std::uint32_t>(vertices.positions.size());
+        lost_count_ += vertices.lost_count;
         asset_.parts.push_back({asset_.uses.size() - 1, glm::dmat3(1.0), {}});
         // without joints the node moves the mesh, skin or not
         if (use.skin && !group.influences.empty()) {
@@ -355,6 +360,7 @@ private:
     AccessorResolver resolver_;
     PlacedNodes nodes_;
     bool has_normals_ = false;
+    std::uint64_t lost_count_ = 0;
     std::vector<std::optional<std::vector<Group>>> meshes_;       // those that are used
     std::vector<std::optional<std::vector<glm::dmat4>>> joints_;  // per skin that is used
 };

@@ -1,6 +1,9 @@
 #include "files/gltf_resolve.h"
 
 #include <tiny_gltf.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
 
 namespace surfelao {
 namespace {
@@ -32,14 +35,9 @@ NamedAccessor AccessorResolver::resolve(int index, const std::string& user) cons
 
     if (!accessor.zero) {
         const auto view = static_cast<std::size_t>(source.bufferView);
-        if (model_.bufferViews[view].byteStride != 0)
-            accessor.stride = model_.bufferViews[view].byteStride;
-        if (accessor.stride < element_size(accessor))
-            fail(named.element, "has elements of " + std::to_string(element_size(accessor)) +
-                                    " bytes, but " + numbered("bufferView", view) +
-                                    " has a byteStride of " + std::to_string(accessor.stride));
+        accessor.stride = stride_of(view, accessor, named.element);
         accessor.bytes = slice(view, source.byteOffset, accessor, named.element);
-    } else if (!source.sparse.isSparse) {
+    } else if (!source.sparse.isSparse && source.count > 0) {
         fail(named.element, "has neither a bufferView nor sparse values");
     }
     if (source.sparse.isSparse)
@@ -71,6 +69,22 @@ void AccessorResolver::resolve_sparse(int index, NamedAccessor& named) const
                                    named.element + " sparse values");
 }
 
+/// The view's byteStride, or that of elements close together where it has none or zero.
+std::size_t AccessorResolver::stride_of(std::size_t view, const GltfAccessor& accessor,
+                                        const std::string& element) const
+{
+    const nlohmann::json& source = (*asset_.document)["bufferViews"][view];
+    const auto stride = static_cast<std::size_t>(source.value("byteStride", 0.0));
+    const std::size_t size = element_size(accessor);
+    if (stride == 0)
+        return size;
+    if (stride < size || stride % size_of(accessor.component) != 0)
+        fail(element, "has elements of " + std::to_string(size) + " bytes, but " +
+                          numbered("bufferView", view) + " has a byteStride of " +
+                          std::to_string(stride));
+    return stride;
+}
+
 /// The bytes of a buffer view from `offset` on, which hold the elements of `layout`.
 std::string_view AccessorResolver::slice(std::size_t index, std::size_t offset,
                                          const GltfAccessor& layout,
@@ -78,21 +92,24 @@ std::string_view AccessorResolver::slice(std::size_t index, std::size_t offset,
 {
     const tinygltf::BufferView& view = model_.bufferViews[index];
     const std::string_view buffer = asset_.buffers[static_cast<std::size_t>(view.buffer)].bytes;
-    if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
+    // the last view may count padding that its buffer does not have
+    if (view.byteOffset > buffer.size() ||
+        view.byteLength >= buffer.size() - view.byteOffset + kMostPadding)
         fail(element + ":", numbered("bufferView", index) + " ends at byte " +
                                 std::to_string(view.byteOffset + view.byteLength) + ", but " +
                                 numbered("buffer", static_cast<std::size_t>(view.buffer)) +
                                 " has " + std::to_string(buffer.size()));
+    const std::size_t length = std::min(view.byteLength, buffer.size() - view.byteOffset);
     // count elements end at offset + stride * (count - 1) + size
     const std::size_t size = element_size(layout);
-    const bool fits = layout.count == 0 ||
-                      (offset <= view.byteLength && size <= view.byteLength - offset &&
-                       layout.count - 1 <= (view.byteLength - offset - size) / layout.stride);
+    const bool fits =
+        layout.count == 0 || (offset <= length && size <= length - offset &&
+                              layout.count - 1 <= (length - offset - size) / layout.stride);
     if (!fits)
         fail(element + ":", std::to_string(layout.count) + " elements from byte " +
                                 std::to_string(offset) + " on do not fit into " +
-                                numbered("bufferView", index) + " of " +
-                                std::to_string(view.byteLength) + " bytes");
+                                numbered("bufferView", index) + " of " + std::to_string(length) +
+                                " bytes");
     return layout.count == 0 ? std::string_view() : buffer.substr(view.byteOffset + offset);
 }
 

@@ -46,6 +46,8 @@ public:
 
 private:
     void resolve_sparse(int index, NamedAccessor& named) const;
+    [[nodiscard]] std::size_t stride_of(std::size_t view, const GltfAccessor& accessor,
+                                        const std::string& element) const;
     [[nodiscard]] std::string_view slice(std::size_t view, std::size_t offset,
                                          const GltfAccessor& layout,
                                          const std::string& element) const;

@@ -15,6 +15,11 @@ namespace fs = std::filesystem;
 constexpr std::string_view kBase64 =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
+bool is_blank_in_uri(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r' || c == '\n';
+}
+
 std::optional<std::string> decode_base64(std::string_view text)
 {
     static constexpr std::array<std::int8_t, 256> kValues = [] {
@@ -24,15 +29,14 @@ std::optional<std::string> decode_base64(std::string_view text)
             values[static_cast<unsigned char>(kBase64[i])] = static_cast<std::int8_t>(i);
         return values;
     }();
-    for (int padding = 0; padding < 2 && text.ends_with('='); ++padding)
-        text.remove_suffix(1);
-    if (text.size() % 4 == 1)
-        return std::nullopt;
+    text.remove_suffix(text.size() - (text.find_last_not_of("= \t\r\n") + 1));
     std::string bytes;
     bytes.reserve(text.size() / 4 * 3 + 2);
     std::uint32_t pending = 0;
     int bits = 0;
     for (const char c : text) {
+        if (is_blank_in_uri(c))
+            continue;
         const int value = kValues[static_cast<unsigned char>(c)];
         if (value < 0)
             return std::nullopt;
@@ -43,6 +47,8 @@ std::optional<std::string> decode_base64(std::string_view text)
             bytes.push_back(static_cast<char>(pending >> bits & 0xFF));
         }
     }
+    if (bits == 6)  // a letter alone is less than a byte
+        return std::nullopt;
     return bytes;
 }
 
@@ -57,18 +63,17 @@ int hex_value(char c)
     return -1;
 }
 
-std::optional<std::string> decode_percent(std::string_view uri)
+/// A '%' without two digits behind it is one that somebody forgot to encode.
+std::string decode_percent(std::string_view uri)
 {
     std::string decoded;
     for (std::size_t i = 0; i < uri.size(); ++i) {
-        if (uri[i] != '%') {
+        const int high = i + 1 < uri.size() ? hex_value(uri[i + 1]) : -1;
+        const int low = i + 2 < uri.size() ? hex_value(uri[i + 2]) : -1;
+        if (uri[i] != '%' || high < 0 || low < 0) {
             decoded.push_back(uri[i]);
             continue;
         }
-        const int high = i + 1 < uri.size() ? hex_value(uri[i + 1]) : -1;
-        const int low = i + 2 < uri.size() ? hex_value(uri[i + 2]) : -1;
-        if (high < 0 || low < 0)
-            return std::nullopt;
         decoded.push_back(static_cast<char>(high * 16 + low));
         i += 2;
     }
@@ -78,15 +83,14 @@ std::optional<std::string> decode_percent(std::string_view uri)
 /// What a relative URI says, with the slashes of this system.
 std::optional<fs::path> path_of(std::string_view uri)
 {
-    std::optional<std::string> name = decode_percent(uri);
-    if (!name || name->empty() ||
-        std::ranges::any_of(*name, [](unsigned char c) { return std::iscntrl(c); }))
+    std::string name = decode_percent(uri);
+    if (name.empty() || std::ranges::any_of(name, [](unsigned char c) { return std::iscntrl(c); }))
         return std::nullopt;
-    std::ranges::replace(*name, '\\', '/');
+    std::ranges::replace(name, '\\', '/');
     // a colon in front of the first slash ends a scheme or a drive
-    if (name->substr(0, name->find('/')).find(':') != name->npos)
+    if (name.substr(0, name.find('/')).find(':') != name.npos)
         return std::nullopt;
-    const fs::path relative(*name);
+    const fs::path relative(name);
     return relative.is_absolute() ? std::nullopt : std::optional(relative);
 }
 
@@ -138,9 +142,12 @@ bool is_data_uri(std::string_view uri)
 std::optional<std::string> decode_data_uri(std::string_view uri)
 {
     const std::size_t comma = uri.find(',');
-    if (!is_data_uri(uri) || comma == uri.npos || !uri.substr(0, comma).ends_with(";base64"))
+    if (!is_data_uri(uri) || comma == uri.npos)
         return std::nullopt;
-    return decode_base64(uri.substr(comma + 1));
+    const std::string bytes = decode_percent(uri.substr(comma + 1));
+    std::string how(uri.substr(0, comma));
+    std::ranges::transform(how, how.begin(), [](unsigned char c) { return std::tolower(c); });
+    return how.ends_with("base64") ? decode_base64(bytes) : bytes;
 }
 
 std::string make_data_uri(std::string_view media_type, std::string_view bytes)

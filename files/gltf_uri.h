@@ -29,7 +29,8 @@ namespace surfelao {
 
 [[nodiscard]] bool is_data_uri(std::string_view uri);
 
-/// The bytes of a base64 data URI of any media type; nothing when it is of another kind or broken.
+/// The bytes of a data URI of any media type, in base64 (blanks and percent signs in it are well)
+/// or as they are; nothing when it is broken.
 [[nodiscard]] std::optional<std::string> decode_data_uri(std::string_view uri);
 
 [[nodiscard]] std::string make_data_uri(std::string_view media_type, std::string_view bytes);

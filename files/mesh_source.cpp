@@ -2,6 +2,7 @@
 
 #include "files/triangulate.h"
 #include "surfels/errors.h"
+#include "surfels/number_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,22 +19,58 @@ constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
     throw InputError(std::string(file_name) + ": " + fault);
 }
 
-void check_positions(std::string_view file_name, const std::vector<glm::dvec3>& positions)
+bool has_place(const glm::dvec3& position)
 {
-    for (std::size_t v = 0; v < positions.size(); ++v) {
-        for (int axis = 0; axis < 3; ++axis) {
-            const double value = positions[v][axis];
-            if (std::abs(value) <= kLargestCoordinate)
-                continue;
-            std::ostringstream fault;
-            fault << "vertex " << v << " has the coordinate " << value;
-            if (std::isfinite(value))
-                fault << ", but the largest allowed is " << kLargestCoordinate;
-            else
-                fault << ", which is not finite";
-            refuse(file_name, fault.str());
+    // false for what is no number too
+    return std::abs(position.x) <= kLargestCoordinate &&
+           std::abs(position.y) <= kLargestCoordinate && std::abs(position.z) <= kLargestCoordinate;
+}
+
+[[noreturn]] void refuse_vertex(std::string_view file_name, std::uint32_t vertex,
+                                const glm::dvec3& position, std::size_t face)
+{
+    double value = position.x;
+    for (int axis = 1; axis < 3 && std::abs(value) <= kLargestCoordinate; ++axis)
+        value = position[axis];
+    std::ostringstream fault;
+    fault << "vertex " << vertex << " has the coordinate " << value;
+    if (std::isfinite(value))
+        fault << ", but the largest allowed is " << kLargestCoordinate;
+    else
+        fault << ", which is not finite";
+    fault << "; face " << face << " uses it";
+    refuse(file_name, fault.str());
+}
+
+void check_corners(std::string_view file_name, const std::vector<glm::dvec3>& positions,
+                   const Polygons& polygons)
+{
+    std::size_t first = 0;
+    for (std::size_t face = 0; face < polygons.count(); ++face) {
+        const std::size_t size = polygons.sizes.empty() ? 3 : polygons.sizes[face];
+        for (const std::uint32_t corner : std::span(&polygons.corners[first], size)) {
+            if (corner >= positions.size())
+                refuse(file_name, "face " + std::to_string(face) + " uses vertex " +
+                                      std::to_string(corner) + ", but there are " +
+                                      std::to_string(positions.size()) + " vertices");
+            if (!has_place(positions[corner]))
+                refuse_vertex(file_name, corner, positions[corner], face);
         }
+        first += size;
     }
+}
+
+/// Gives those without a place one that leaves the box of the scene as it is; returns how many.
+std::uint64_t place_unused(std::vector<glm::dvec3>& positions, std::uint32_t used)
+{
+    std::uint64_t count = 0;
+    for (glm::dvec3& position : positions) {
+        if (has_place(position))
+            continue;
+        position = positions[used];
+        ++count;
+    }
+    return count;
 }
 
 /// Where the only triangle of a polygon of three corners lies.
@@ -49,8 +86,20 @@ void append_triangles(std::span<const std::uint32_t> corners, std::span<const gl
 
 }  // namespace
 
+void add_note(std::vector<std::string>& notes, std::uint64_t count, const std::string& noun,
+              const std::string& rest)
+{
+    if (count > 0)
+        notes.push_back(count_text(count, noun) + ' ' + rest);
+}
+
 void close_polygon(Polygons& polygons, std::uint32_t size)
 {
+    if (size < 3) {
+        polygons.corners.resize(polygons.corners.size() - size);
+        ++polygons.small_count;
+        return;
+    }
     if (size == 3 && polygons.sizes.empty())
         return;
     if (polygons.sizes.empty())  // the first that is no triangle
@@ -63,16 +112,20 @@ Scene make_mesh_scene(std::string_view file_name, std::vector<glm::dvec3> positi
 {
     const std::size_t polygon_count = polygons.count();
     if (polygon_count == 0)
-        refuse(file_name, "has no faces");
+        refuse(file_name,
+               polygons.small_count > 0 ? "has no faces of three corners or more" : "has no faces");
     const std::size_t triangle_count = polygons.corners.size() - 2 * polygon_count;
     if (std::max({positions.size(), normals.values.size(), triangle_count}) > kMost)
         refuse(file_name,
                "has more than " + std::to_string(kMost) + " vertices, normals or triangles");
-    check_positions(file_name, positions);
+    check_corners(file_name, positions, polygons);
+    Scene scene;
+    add_note(scene.notes, polygons.small_count, "face", "of fewer than three corners passed over");
+    add_note(scene.notes, place_unused(positions, polygons.corners.front()), "vertex|vertices",
+             "without a finite place, but in no face, passed over");
     if (normals.values.size() == positions.size() && normals.corners == polygons.corners)
         normals.corners = {};
 
-    Scene scene;
     scene.triangles.reserve(triangle_count);
     if (!normals.corners.empty())
         scene.normals.corners.reserve(triangle_count);
@@ -81,12 +134,6 @@ Scene make_mesh_scene(std::string_view file_name, std::vector<glm::dvec3> positi
     for (std::size_t face = 0; face < polygon_count; ++face) {
         const std::size_t size = polygons.sizes.empty() ? 3 : polygons.sizes[face];
         const std::span<const std::uint32_t> corners(&polygons.corners[first], size);
-        for (const std::uint32_t corner : corners) {
-            if (corner >= positions.size())
-                refuse(file_name, "face " + std::to_string(face) + " uses vertex " +
-                                      std::to_string(corner) + ", but there are " +
-                                      std::to_string(positions.size()) + " vertices");
-        }
         std::span<const glm::uvec3> places(&kWhole, 1);
         if (size == 3) {
             scene.triangles.emplace_back(corners[0], corners[1], corners[2]);

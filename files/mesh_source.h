@@ -18,6 +18,7 @@ namespace surfelao {
 struct Polygons {
     std::vector<std::uint32_t> corners;  ///< vertex indices of all polygons
     std::vector<std::uint32_t> sizes;  ///< corners of each polygon, >= 3; empty: all are triangles
+    std::uint64_t small_count = 0;     ///< faces of fewer corners, which were passed over
 
     [[nodiscard]] std::size_t count() const
     {
@@ -33,7 +34,8 @@ struct PolygonNormals {
     std::vector<std::uint32_t> corners;
 };
 
-/// A polygon of `size` corners has just been appended to polygons.corners.
+/// A polygon of `size` corners has just been appended to polygons.corners: one of fewer than three
+/// is taken back and counted.
 void close_polygon(Polygons& polygons, std::uint32_t size);
 
 /// What the writers need beyond the Scene. The readers of OBJ and PLY derive from it and keep the
@@ -47,11 +49,18 @@ public:
 /// The largest coordinate that a reader accepts: squares and sums of it stay inside a double.
 inline constexpr double kLargestCoordinate = 1e100;
 
+/// Adds "3 faces REST" to the notes (Scene::notes) where the count is not 0. The noun is as
+/// count_text() takes it.
+void add_note(std::vector<std::string>& notes, std::uint64_t count, const std::string& noun,
+              const std::string& rest);
+
 /// Makes the scene of a file whose vertices and polygons are known; leaves polygons with more than
 /// three corners in `source`. Normals that are numbered as the vertices are become those of the
-/// vertices. Throws InputError when a vertex is out of range, a coordinate beyond
-/// kLargestCoordinate, there is no polygon, or there are more vertices, normals or triangles than
-/// 32 bits count; the numbers of normals must be in range.
+/// vertices. A vertex without a place (a coordinate that is not finite or beyond
+/// kLargestCoordinate) which no polygon uses stands where the first corner of all stands. Notes
+/// count such vertices and the polygons that were passed over. Throws InputError when a polygon
+/// uses a vertex out of range or without a place, there is no polygon, or there are more vertices,
+/// normals or triangles than 32 bits count; the numbers of normals must be in range.
 [[nodiscard]] Scene make_mesh_scene(std::string_view file_name, std::vector<glm::dvec3> positions,
                                     Polygons polygons, std::shared_ptr<MeshSource> source,
                                     PolygonNormals normals = {});

@@ -8,22 +8,14 @@
 namespace surfelao {
 namespace {
 
-/// What the corners of faces name by number: vertices, and normals.
-struct Numbered {
-    std::string_view one;
-    std::string_view many;
-    std::int64_t farthest = -1;  ///< the largest index in use: it may come later in the file
-    std::uint64_t farthest_line = 0;
-};
-
 glm::dvec3 read_vertex(TextCursor& cursor, ObjSource& source)
 {
     glm::dvec3 position;
     for (int axis = 0; axis < 3; ++axis)
-        position[axis] = cursor.number("a coordinate of the vertex");
+        position[axis] = cursor.any_number("a coordinate of the vertex");
     int more = 0;
     for (; !cursor.at_line_end(); ++more)
-        cursor.number("a number");
+        cursor.any_number("a number");
     if (more == 2 || more > 4) {
         cursor.fail("the vertex has " + std::to_string(3 + more) +
                     " numbers, but x y z, w and a colour are 3, 4, 6 or 7");
@@ -40,40 +32,12 @@ glm::vec3 read_normal(TextCursor& cursor)
     return normal;
 }
 
-[[noreturn]] void refuse_index(const TextCursor& cursor, std::int64_t number, std::size_t count,
-                               const Numbered& numbered)
+/// What `number` names when there are `count` so far, counted from 0; negative: nothing.
+std::int64_t index_of(std::int64_t number, std::size_t count)
 {
-    const std::string many(numbered.many);
-    const std::string use =
-        "the face uses " + std::string(numbered.one) + " " + std::to_string(number) + ", but ";
     if (number == 0)
-        cursor.fail(use + many + " are counted from 1");
-    cursor.fail(use + "there are " + std::to_string(count) + " " + many + " so far");
-}
-
-/// The index, counted from 0, of the one that this word names when there are `count` so far.
-std::uint32_t read_index(const TextCursor& cursor, std::string_view word, std::size_t count,
-                         Numbered& numbered)
-{
-    const std::int64_t number = cursor.integer_of(word);
-    const std::int64_t index = number > 0 ? number - 1 : static_cast<std::int64_t>(count) + number;
-    if (number == 0 || index < 0)
-        refuse_index(cursor, number, count, numbered);
-    if (index > numbered.farthest) {
-        numbered.farthest = index;
-        numbered.farthest_line = cursor.line();
-    }
-    return static_cast<std::uint32_t>(index);  // one beyond 32 bits is refused as the farthest
-}
-
-void check_farthest(const std::string& file_name, const Numbered& numbered, std::size_t count)
-{
-    if (numbered.farthest < static_cast<std::int64_t>(count))
-        return;
-    throw InputError(file_name + ": line " + std::to_string(numbered.farthest_line) +
-                     ": the face uses " + std::string(numbered.one) + " " +
-                     std::to_string(numbered.farthest + 1) + ", but there are " +
-                     std::to_string(count) + " " + std::string(numbered.many));
+        return -1;
+    return number > 0 ? number - 1 : static_cast<std::int64_t>(count) + number;
 }
 
 class Reader {
@@ -83,17 +47,30 @@ public:
         std::uint32_t size = 0;
         for (; !cursor.at_line_end(); ++size)
             read_corner(cursor, cursor.word());
-        if (size < 3)
-            cursor.fail("the face has " + std::to_string(size) + " corners, but needs 3");
+        if (size < 3 && cursor.remaining() == 0)
+            cursor.fail("the file ends within a face of " + std::to_string(size) + " corners");
         close_polygon(polygons, size);
+        if (!normals.corners.empty())
+            normals.corners.resize(polygons.corners.size());
     }
 
-    void finish(const std::string& file_name)
+    /// Faces may use vertices and normals that come later: what there is is known at the end.
+    /// Returns the corners that name a normal that there is not.
+    std::uint64_t finish(const std::string& file_name)
     {
-        check_farthest(file_name, vertices_, positions.size());
-        check_farthest(file_name, normals_, normals.values.size());
-        if (normals.corners.empty())  // nobody uses any
-            normals.values = {};
+        if (farthest_ >= static_cast<std::int64_t>(positions.size()))
+            throw InputError(file_name + ": line " + std::to_string(farthest_line_) +
+                             ": the face uses vertex " + std::to_string(farthest_ + 1) +
+                             ", but there are " + std::to_string(positions.size()) + " vertices");
+        for (std::uint32_t& normal : normals.corners) {
+            if (normal < normals.values.size() || normal == CornerNormals::kNone)
+                continue;
+            normal = CornerNormals::kNone;
+            ++lost_normals_;
+        }
+        if (normals.corners.empty() || normals.values.empty())  // nobody uses any
+            normals = {};
+        return lost_normals_;
     }
 
     std::vector<glm::dvec3> positions;
@@ -105,8 +82,7 @@ private:
     void read_corner(const TextCursor& cursor, std::string_view word)
     {
         const std::size_t slash = word.find('/');
-        const std::uint32_t vertex =
-            read_index(cursor, word.substr(0, slash), positions.size(), vertices_);
+        const std::uint32_t vertex = read_vertex_index(cursor, word.substr(0, slash));
         std::uint32_t normal = CornerNormals::kNone;
         if (slash != std::string_view::npos) {
             const std::string_view rest = word.substr(slash + 1);
@@ -115,8 +91,7 @@ private:
             if (!texture.empty())
                 cursor.integer_of(texture);
             if (second != std::string_view::npos && second + 1 < rest.size()) {
-                normal =
-                    read_index(cursor, rest.substr(second + 1), normals.values.size(), normals_);
+                normal = read_normal_index(cursor, rest.substr(second + 1));
                 if (normals.corners.empty())  // the first: those before it have none
                     normals.corners.assign(polygons.corners.size(), CornerNormals::kNone);
             }
@@ -126,8 +101,34 @@ private:
             normals.corners.push_back(normal);
     }
 
-    Numbered vertices_{"vertex", "vertices"};
-    Numbered normals_{"normal", "normals"};
+    std::uint32_t read_vertex_index(const TextCursor& cursor, std::string_view word)
+    {
+        const std::int64_t number = cursor.integer_of(word);
+        const std::int64_t index = index_of(number, positions.size());
+        if (index < 0)
+            cursor.fail("the face uses vertex " + std::to_string(number) + ", but " +
+                        (number == 0 ? "vertices are counted from 1"
+                                     : "there are " + std::to_string(positions.size()) +
+                                           " vertices so far"));
+        if (index > farthest_) {
+            farthest_ = index;
+            farthest_line_ = cursor.line();
+        }
+        return static_cast<std::uint32_t>(index);  // one beyond 32 bits is refused as the farthest
+    }
+
+    std::uint32_t read_normal_index(const TextCursor& cursor, std::string_view word)
+    {
+        const std::int64_t index = index_of(cursor.integer_of(word), normals.values.size());
+        if (index >= 0 && index < CornerNormals::kNone)
+            return static_cast<std::uint32_t>(index);
+        ++lost_normals_;
+        return CornerNormals::kNone;
+    }
+
+    std::int64_t farthest_ = -1;  ///< the largest vertex in use
+    std::uint64_t farthest_line_ = 0;
+    std::uint64_t lost_normals_ = 0;
 };
 
 }  // namespace
@@ -149,10 +150,13 @@ Scene read_obj(const std::string& file_name, std::string contents)
             reader.normals.values.push_back(read_normal(cursor));
         }
     }
-    reader.finish(file_name);
+    const std::uint64_t lost_normals = reader.finish(file_name);
     source->vertex_count = reader.positions.size();
-    return make_mesh_scene(file_name, std::move(reader.positions), std::move(reader.polygons),
-                           source, std::move(reader.normals));
+    Scene scene = make_mesh_scene(file_name, std::move(reader.positions),
+                                  std::move(reader.polygons), source, std::move(reader.normals));
+    add_note(scene.notes, lost_normals, "corner",
+             "of faces with a normal that the file does not have: taken as without");
+    return scene;
 }
 
 }  // namespace surfelao

@@ -7,6 +7,10 @@
 /// face may use vertices and normals that come later, and have normals at some corners only.
 /// Texture indices must be numbers and are not looked up; points, lines, curves, groups, materials
 /// and unknown statements are no surface and are passed over (a material file need not be there).
+///
+/// Passed over and counted in Scene::notes: faces of fewer than three corners (unless the file ends
+/// within: it may be cut), normals of corners that the file does not have, vertices without a
+/// finite place that no face uses (mesh_source.h).
 #pragma once
 
 #include "files/scene_io.h"
@@ -19,7 +23,8 @@
 namespace surfelao {
 
 /// file_name is what faults are reported of; contents is the file. Vertices are those of the `v`
-/// lines, in order; normals those of the `vn` lines, if a face uses any. Faults name the line.
+/// lines, in order; normals those of the `vn` lines, if a face uses any. Faults name the line, or
+/// the vertex and face, counted from 0.
 [[nodiscard]] Scene read_obj(const std::string& file_name, std::string contents);
 
 /// The scene as OBJ with colours (vertex_colors.h), `v x y z r g b` with six decimals; `automatic`

@@ -14,6 +14,7 @@ struct OffHeader {
     std::uint64_t vertices = 0;  ///< how many
     std::uint64_t faces = 0;
     std::string_view keyword;   ///< as it stands in the text; empty: there is none
+    bool is_glued = false;      ///< the number of vertices stands right behind the keyword
     bool has_normals = false;   ///< behind the coordinates, where a vertex has so many numbers
     bool has_textures = false;  ///< two numbers, the last of a vertex
     bool has_colors = false;    ///< at some vertex, whatever the keyword says

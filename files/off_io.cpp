@@ -11,6 +11,8 @@ using Header = OffHeader;
 /// x y z, normal, colour, texture coordinates.
 constexpr int kMostVertexNumbers = 3 + 3 + 4 + 2;
 
+constexpr std::string_view kDigits = "0123456789";
+
 /// The cursor stands on a line with a word left, or moves to the next.
 void next_word_line(TextCursor& cursor, const std::string& wanted)
 {
@@ -47,10 +49,12 @@ Header read_header(const std::string& file_name, TextCursor& cursor)
         throw InputError(file_name + ": is empty");
     TextCursor ahead = cursor;
     const std::string_view keyword = ahead.word();
+    std::string_view glued;  // as in ModelNet: OFF490 518 0
     if (keyword.find_first_not_of("0123456789+-") != std::string_view::npos) {
-        std::string_view prefix = keyword;
-        if (!prefix.ends_with("OFF"))
+        std::string_view prefix = keyword.substr(0, keyword.find_last_not_of(kDigits) + 1);
+        if (!prefix.ends_with("OFF") && prefix != "off")
             cursor.fail("begins with " + quoted(keyword) + ", but must begin with OFF");
+        glued = keyword.substr(prefix.size());
         header.keyword = prefix;
         prefix.remove_suffix(3);
         for (const std::string_view known : {"ST", "C", "N"}) {
@@ -67,7 +71,9 @@ Header read_header(const std::string& file_name, TextCursor& cursor)
         if (!ahead.at_line_end() && ahead.word() == "BINARY")
             cursor.fail("binary OFF files are not read");
     }
-    header.vertices = read_count(cursor, "vertices");
+    header.vertices = glued.empty() ? read_count(cursor, "vertices")
+                                    : static_cast<std::uint64_t>(cursor.integer_of(glued));
+    header.is_glued = !glued.empty();
     header.faces = read_count(cursor, "faces");
     // the edges, which may be missing: a line with a single number is no vertex
     ahead = cursor;
@@ -95,7 +101,7 @@ glm::dvec3 read_vertex(TextCursor& cursor, std::uint64_t vertex, Header& header,
         if (cursor.at_line_end())
             cursor.fail("vertex " + std::to_string(vertex) + " has " + std::to_string(axis) +
                         " numbers, but needs 3");
-        position[axis] = cursor.number({});
+        position[axis] = cursor.any_number({});
     }
     int numbers = 3;
     glm::vec3 normal(0.0f);
@@ -109,7 +115,7 @@ glm::dvec3 read_vertex(TextCursor& cursor, std::uint64_t vertex, Header& header,
     }
     const int first = numbers;
     for (; !cursor.at_line_end(); ++numbers)
-        cursor.number({});
+        cursor.any_number({});
     header.has_colors |= header.color_words(numbers - first) > 0;
     if (numbers > kMostVertexNumbers)
         cursor.fail("vertex " + std::to_string(vertex) + " has " + std::to_string(numbers) +
@@ -125,7 +131,7 @@ void read_face(TextCursor& cursor, std::uint64_t face, const Header& header, Pol
         cursor.fail("the file ends, but " + name() + " of " + std::to_string(header.faces) +
                     " is missing");
     const std::int64_t size = cursor.integer({});
-    if (size < 1)
+    if (size < 0)
         cursor.fail(name() + " has " + std::to_string(size) + " corners");
     for (std::int64_t i = 0; i < size; ++i) {
         if (cursor.at_line_end())
@@ -135,11 +141,9 @@ void read_face(TextCursor& cursor, std::uint64_t face, const Header& header, Pol
         if (index < 0 || static_cast<std::uint64_t>(index) >= header.vertices)
             cursor.fail(name() + " uses vertex " + std::to_string(index) + ", but there are " +
                         std::to_string(header.vertices) + " vertices");
-        if (size > 2)
-            polygons.corners.push_back(static_cast<std::uint32_t>(index));
+        polygons.corners.push_back(static_cast<std::uint32_t>(index));
     }
-    if (size > 2)
-        close_polygon(polygons, static_cast<std::uint32_t>(size));
+    close_polygon(polygons, static_cast<std::uint32_t>(size));
 }
 
 }  // namespace
@@ -159,8 +163,10 @@ Scene read_off(const std::string& file_name, std::string contents)
     Polygons polygons;
     for (std::uint64_t face = 0; face < header.faces; ++face)
         read_face(cursor, face, header, polygons);
-    return make_mesh_scene(file_name, std::move(positions), std::move(polygons), source,
-                           std::move(normals));
+    Scene scene = make_mesh_scene(file_name, std::move(positions), std::move(polygons), source,
+                                  std::move(normals));
+    add_note(scene.notes, header.is_glued, "space", "missing between OFF and the counts");
+    return scene;
 }
 
 }  // namespace surfelao

@@ -1,11 +1,12 @@
 /// off_io.h: the Object File Format of Geomview.
 ///
-/// Read: [ST][C][N]OFF in ascii, the keyword may be missing; the counts on the keyword's line or
-/// the next; comments anywhere. A vertex takes x y z and, under N, its normal (any numbers; zero
-/// for a vertex without) and what else stands on its line (colour, texture coordinates: numbers,
-/// not used). Faces of one or two corners are points and lines and are passed over; a face's colour
-/// is. The edge count may be missing and is not used. Homogeneous (4), n-dimensional (n) and BINARY
-/// files are refused.
+/// Read: [ST][C][N]OFF in ascii, the keyword may be missing; the counts on the keyword's line, with
+/// or without a space before them, or the next; comments anywhere. A vertex takes x y z and, under
+/// N, its normal (any numbers; zero for a vertex without) and what else stands on its line (colour,
+/// texture coordinates: numbers, not used). Faces of fewer than three corners are passed over and
+/// counted in Scene::notes, as are vertices without a finite place that no face uses
+/// (mesh_source.h); a face's colour is passed over. The edge count may be missing and is not used.
+/// Homogeneous (4), n-dimensional (n) and BINARY files are refused.
 #pragma once
 
 #include "files/scene_io.h"

@@ -96,6 +96,7 @@ std::string with_new_colors(const OffSource& source, const OffSource::Own& own,
     } else {
         copy_to(static_cast<std::size_t>(header.keyword.data() - old.data()));
         append_keyword(text, header, plan);
+        text.append(header.is_glued ? " " : "");
         copied += header.keyword.size();
     }
     std::size_t vertex = 0;

@@ -1,6 +1,8 @@
 #include "files/own_colors.h"
 #include "files/ply_file.h"
 
+#include <cmath>
+
 namespace surfelao::ply {
 namespace {
 

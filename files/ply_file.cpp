@@ -30,6 +30,9 @@ Type read_type(TextCursor& cursor)
 /// Names of what was declared so far; views into the file.
 using Names = std::set<std::string_view>;
 
+/// Of properties that make the shape: two of a name would leave it in doubt.
+constexpr std::string_view kGeometryNames[] = {"x", "y", "z", "vertex_indices", "vertex_index"};
+
 Property read_property(TextCursor& cursor, const Element& element, Names& names)
 {
     Property property;
@@ -44,7 +47,8 @@ Property read_property(TextCursor& cursor, const Element& element, Names& names)
     const std::string_view name = cursor.word();
     if (name.empty())
         cursor.fail("the property has no name");
-    if (!names.insert(name).second)
+    property.is_second = !names.insert(name).second;
+    if (property.is_second && std::ranges::find(kGeometryNames, name) != std::end(kGeometryNames))
         cursor.fail("element " + surfelao::quoted(element.name) + " has two properties " +
                     quoted(name));
     property.name = name;

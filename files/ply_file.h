@@ -39,6 +39,7 @@ struct Property {
     std::string name;
     std::optional<Type> count_type;  ///< of a list
     Type type = Type::int8;
+    bool is_second = false;  ///< the element has another of this name, which comes first
 };
 
 struct Element {
@@ -146,11 +147,6 @@ public:
         if (!cursor_.at_line_end())
             fail("has more numbers than the header says");
     }
-    double number(Type)
-    {
-        demand_word();
-        return cursor_.number({});
-    }
     /// May be infinite or nan.
     double any_number(Type)
     {
@@ -232,14 +228,6 @@ public:
         }
     }
     double loose_number(Type type) { return any_number(type); }
-    double number(Type type)
-    {
-        const double value = any_number(type);
-        if (!std::isfinite(value))
-            fail("has the coordinate " + std::string(std::isnan(value) ? "nan" : "inf") +
-                 ", which is not finite");
-        return value;
-    }
     std::int64_t integer(Type type)
     {
         switch (type) {

@@ -5,7 +5,9 @@
 /// `vertex_indices` or `vertex_index`; element `tristrips` (a strip ends at -1, triangles that use
 /// a vertex twice only turn the strip and are left out). Other elements and properties are passed
 /// over. In ascii files every row stands on a line of its own. Bytes after the last element are
-/// ignored. A header line that begins with `Created` is a comment: Blender 2.47 wrote it so.
+/// ignored. A header line that begins with `Created` is a comment: Blender 2.47 wrote it so. Faces
+/// of fewer than three corners are passed over and counted in Scene::notes, as are vertices without
+/// a finite place that no face uses (mesh_source.h).
 #pragma once
 
 #include "files/scene_io.h"

@@ -115,7 +115,7 @@ private:
                 const Property& property = element.properties[p];
                 const auto [kind, axis] = roles[p];
                 if (kind == Role::position)
-                    positions[row][axis] = data_.number(property.type);
+                    positions[row][axis] = data_.any_number(property.type);
                 else if (kind == Role::normal)
                     normals.values[row][axis] = static_cast<float>(data_.any_number(property.type));
                 else
@@ -154,8 +154,6 @@ private:
 
     void read_face(std::uint64_t length)
     {
-        if (length < 3)
-            data_.fail("has " + std::to_string(length) + " corners, but needs 3");
         for (std::uint64_t i = 0; i < length; ++i)
             polygons.corners.push_back(checked(data_.integer(index_type_)));
         close_polygon(polygons, static_cast<std::uint32_t>(length));
@@ -206,8 +204,14 @@ Scene read_with(const std::string& file_name, std::shared_ptr<PlySource> source)
 {
     Reader<Data> reader(file_name, *source);
     reader.run();
-    return make_mesh_scene(file_name, std::move(reader.positions), std::move(reader.polygons),
-                           std::move(source), std::move(reader.normals));
+    Scene scene = make_mesh_scene(file_name, std::move(reader.positions),
+                                  std::move(reader.polygons), source, std::move(reader.normals));
+    for (const Element& element : source->header.elements)
+        add_note(scene.notes,
+                 static_cast<std::uint64_t>(
+                     std::ranges::count(element.properties, true, &Property::is_second)),
+                 "property|properties", "of a name that an earlier one has: passed over");
+    return scene;
 }
 
 }  // namespace

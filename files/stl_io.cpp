@@ -77,39 +77,45 @@ std::uint32_t read_u32(const std::string& contents, std::size_t offset)
     return byte(0) | byte(1) << 8 | byte(2) << 16 | byte(3) << 24;
 }
 
+/// Numbers of binary files hold zero bytes, text does not.
 bool is_ascii(const std::string& contents)
 {
     // wide text is refused as such by the reader of text
-    for (const std::string_view wide :
-         {std::string_view("\xFF\xFEs"), std::string_view("\xFE\xFF\0s", 4)}) {
-        if (contents.starts_with(wide))
-            return true;
-    }
-    const std::size_t word = contents.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
-    if (word == std::string::npos || contents.compare(word, 5, "solid") != 0)
-        return false;
+    const std::string_view start = std::string_view(contents).substr(0, 4);
+    if (start.size() == 4 && ((start.starts_with("\xFF\xFE") && start[2] != 0 && start[3] == 0) ||
+                              (start.starts_with("\xFE\xFF") && start[2] == 0 && start[3] != 0)))
+        return true;
     if (contents.size() >= kHeaderBytes + 4 &&
         contents.size() == kHeaderBytes + 4 + kFacetBytes * read_u32(contents, kHeaderBytes))
         return false;
-    const std::string_view start = std::string_view(contents).substr(0, 1024);
-    return std::ranges::none_of(start, [](unsigned char c) {
-        return c < ' ' &&
-               std::string_view("\t\n\v\f\r").find(static_cast<char>(c)) == std::string_view::npos;
-    });
+    return contents.substr(0, 1024).find('\0') == std::string::npos;
+}
+
+/// The number of facets. What else the file holds is passed over, unless it looks like facets.
+std::uint64_t facet_count(const std::string& file_name, const std::string& contents)
+{
+    const auto refuse = [&](const std::string& fault) {
+        throw InputError(file_name + ": " + fault);
+    };
+    if (contents.size() < kHeaderBytes + 4)
+        refuse("has " + std::to_string(contents.size()) +
+               " bytes and is no text, so it is no STL file");
+    const std::uint64_t count = read_u32(contents, kHeaderBytes);
+    const std::uint64_t room = (contents.size() - kHeaderBytes - 4) / kFacetBytes;
+    if (count > room)
+        refuse("is no text, and as a binary file says " + std::to_string(count) +
+               " facets, but ends after " + std::to_string(room));
+    const std::size_t end = kHeaderBytes + 4 + count * kFacetBytes;
+    if (count < room && (contents.size() - end) % kFacetBytes == 0 &&
+        contents.find_first_not_of('\0', end) != std::string::npos)
+        refuse("says " + std::to_string(count) + " facets, but its size is that of " +
+               std::to_string(room));
+    return count;
 }
 
 Scene read_binary(const std::string& file_name, const std::string& contents)
 {
-    if (contents.size() < kHeaderBytes + 4) {
-        throw InputError(file_name + ": has " + std::to_string(contents.size()) +
-                         " bytes and does not begin with \"solid\", so it is no STL file");
-    }
-    const std::uint64_t count = read_u32(contents, kHeaderBytes);
-    const std::size_t room = (contents.size() - kHeaderBytes - 4) / kFacetBytes;
-    if (count > room) {
-        throw InputError(file_name + ": says " + std::to_string(count) +
-                         " facets, but ends after " + std::to_string(room));
-    }
+    const std::uint64_t count = facet_count(file_name, contents);
     Corners corners;
     Polygons polygons;
     polygons.corners.reserve(count * 3);
@@ -130,7 +136,10 @@ Scene read_binary(const std::string& file_name, const std::string& contents)
             polygons.corners.push_back(corners.index_of(position));
         }
     }
-    return make_stl_scene(file_name, std::move(corners), std::move(polygons));
+    Scene scene = make_stl_scene(file_name, std::move(corners), std::move(polygons));
+    add_note(scene.notes, contents.size() - kHeaderBytes - 4 - count * kFacetBytes, "byte",
+             "behind the last facet passed over");
+    return scene;
 }
 
 std::string lower(std::string_view word)
@@ -142,61 +151,130 @@ std::string lower(std::string_view word)
     return text;
 }
 
-/// The keywords that must come next, on this line or the next.
-void expect(TextCursor& cursor, std::string_view wanted)
-{
-    if (cursor.at_line_end() && !cursor.next_line())
-        cursor.fail("the file ends, but " + quoted(wanted) + " is missing");
-    const std::string_view found = cursor.word();
-    if (lower(found) != wanted)
-        cursor.fail(quoted(found) + " stands where " + quoted(wanted) + " must");
-}
-
-Scene read_ascii(const std::string& file_name, const std::string& contents)
-{
-    Corners corners;
-    Polygons polygons;
-    TextCursor cursor(file_name, contents, {});
-    bool in_solid = false;
-    while (!cursor.at_line_end() || cursor.next_line()) {
-        const std::string_view word = cursor.word();
-        const std::string keyword = lower(word);
-        if (keyword == (in_solid ? "endsolid" : "solid")) {
-            in_solid = !in_solid;
-            while (!cursor.at_line_end())  // the name of the solid
-                cursor.word();
-            continue;
-        }
-        if (keyword != "facet" || !in_solid) {
-            cursor.fail(quoted(word) + " stands where " +
-                        (in_solid ? "\"facet\" or \"endsolid\"" : "\"solid\"") + " must");
-        }
-        while (!cursor.at_line_end())  // the normal
-            cursor.word();
-        expect(cursor, "outer");
-        expect(cursor, "loop");
-        for (int corner = 0; corner < 3; ++corner) {
-            expect(cursor, "vertex");
-            glm::dvec3 position;
-            for (int axis = 0; axis < 3; ++axis)
-                position[axis] = cursor.number("a coordinate of the vertex");
-            if (!cursor.at_line_end())
-                cursor.fail("the vertex has more than 3 numbers");
-            polygons.corners.push_back(corners.index_of(position));
-        }
-        expect(cursor, "endloop");
-        expect(cursor, "endfacet");
+class AsciiReader {
+public:
+    AsciiReader(const std::string& file_name, const std::string& contents)
+        : file_name_(file_name), cursor_(file_name, contents, {})
+    {
     }
-    if (in_solid)
-        cursor.fail("the file ends, but \"endsolid\" is missing");
-    return make_stl_scene(file_name, std::move(corners), std::move(polygons));
-}
+
+    Scene read()
+    {
+        std::uint64_t solid_count = 0;
+        std::uint64_t other_lines = 0;
+        bool in_solid = false;
+        for (std::string keyword = next(); !keyword.empty(); keyword = next()) {
+            if (keyword == (in_solid ? "endsolid" : "solid")) {
+                in_solid = !in_solid;
+                solid_count += in_solid;
+                skip_line();  // the name of the solid
+            } else if (keyword == "facet" && in_solid) {
+                read_facet();
+            } else if (keyword.starts_with('#') || (!in_solid && !is_of_solid(keyword))) {
+                ++other_lines;
+                skip_line();
+            } else {
+                refuse(keyword, in_solid ? "\"facet\" or \"endsolid\"" : "\"solid\"");
+            }
+        }
+        if (solid_count == 0)
+            throw InputError(file_name_ +
+                             ": is text, but no line begins with \"solid\", so it is no STL file");
+        if (in_solid)
+            refuse({}, "\"endsolid\"");
+        Scene scene = make_stl_scene(file_name_, std::move(corners_), std::move(polygons_));
+        add_note(scene.notes, other_lines, "line", "of comment or outside of solids passed over");
+        add_note(scene.notes, split_count_, "keyword", "in two words, as \"end loop\"");
+        return scene;
+    }
+
+private:
+    /// The next keyword, on this line or a later one, in lower case; "end loop" is "endloop" and so
+    /// on. Empty at the end of the file.
+    std::string next()
+    {
+        if (cursor_.at_line_end() && !cursor_.next_line())
+            return {};
+        std::string keyword = lower(cursor_.word());
+        if (keyword == "end") {
+            keyword += lower(cursor_.word());
+            ++split_count_;
+        }
+        return keyword;
+    }
+
+    static bool is_of_solid(std::string_view keyword)
+    {
+        constexpr std::string_view kWords[] = {"facet",   "outer",    "vertex",
+                                               "endloop", "endfacet", "endsolid"};
+        return std::ranges::find(kWords, keyword) != std::end(kWords);
+    }
+
+    void skip_line()
+    {
+        while (!cursor_.at_line_end())
+            cursor_.word();
+    }
+
+    [[noreturn]] void refuse(const std::string& found, const std::string& wanted) const
+    {
+        if (found.empty())
+            cursor_.fail("the file ends, but " + wanted + " is missing");
+        cursor_.fail(surfelao::quoted(found) + " stands where " + wanted + " must");
+    }
+
+    void expect(std::string_view wanted)
+    {
+        const std::string found = next();
+        if (found != wanted)
+            refuse(found, quoted(wanted));
+    }
+
+    glm::dvec3 read_corner()
+    {
+        glm::dvec3 position;
+        for (int axis = 0; axis < 3; ++axis)
+            position[axis] = cursor_.number("a coordinate of the vertex");
+        if (!cursor_.at_line_end())
+            cursor_.fail("the vertex has more than 3 numbers");
+        return position;
+    }
+
+    /// What stands behind the keyword `facet`.
+    void read_facet()
+    {
+        skip_line();  // the normal
+        expect("outer");
+        expect("loop");
+        glm::dvec3 positions[3];
+        std::size_t size = 0;
+        std::string keyword = next();
+        for (; keyword == "vertex" && size < 3; keyword = next())
+            positions[size++] = read_corner();
+        if (keyword != "endloop")
+            refuse(keyword, size < 3 ? "\"vertex\"" : "\"endloop\"");
+        expect("endfacet");
+        if (size < 3) {
+            ++polygons_.small_count;
+            return;
+        }
+        for (const glm::dvec3& position : positions)
+            polygons_.corners.push_back(corners_.index_of(position));
+    }
+
+    const std::string& file_name_;
+    TextCursor cursor_;
+    Corners corners_;
+    Polygons polygons_;
+    std::uint64_t split_count_ = 0;
+};
 
 }  // namespace
 
 Scene read_stl(const std::string& file_name, const std::string& contents)
 {
-    return is_ascii(contents) ? read_ascii(file_name, contents) : read_binary(file_name, contents);
+    return is_ascii(contents) ? AsciiReader(file_name, contents).read()
+                              : read_binary(file_name, contents);
 }
 
 }  // namespace surfelao

@@ -1,9 +1,14 @@
 /// stl_io.h: stereolithography files, ascii and binary. Read only: the format has no place for
 /// values at vertices.
 ///
-/// A file is ascii when it begins with the word `solid`, its first kilobyte is text, and its size
-/// is not what the count of a binary file says. Ascii files may hold several solids; facet normals
-/// and names are passed over. Bytes after the last facet of a binary file are ignored.
+/// A file is ascii when its first kilobyte has no zero byte and its size is not what the count of a
+/// binary file says: binary files that begin with `solid` are known by that. Ascii files may hold
+/// several solids, in capitals or not; facet normals and names are passed over.
+///
+/// Let pass and counted in Scene::notes: `end loop` for `endloop` and the like; lines outside
+/// of solids and lines of comment (`#`) between facets; ascii facets of fewer than three vertices;
+/// bytes behind the last facet of a binary file. Refused as in doubt: a solid that does not end,
+/// and a binary file that holds more whole facets than it says.
 #pragma once
 
 #include "surfels/scene.h"

@@ -2,6 +2,7 @@
 
 #include "surfels/errors.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -30,6 +31,13 @@ bool is_underflow(std::string_view word)
     if (exponent != std::string_view::npos)
         return exponent + 1 < word.size() && word[exponent + 1] == '-';
     return word.substr(0, word.find('.')).find_first_of("123456789") == std::string_view::npos;
+}
+
+/// As the C library of Windows once printed what is no finite number: 1.#IND, -1.#QNAN0, 1.#INF.
+bool is_nan_of_windows(std::string_view word)
+{
+    const std::size_t digit = word.starts_with('-') ? 1 : 0;
+    return word.substr(std::min(digit, word.size())).starts_with("1.#");
 }
 
 }  // namespace
@@ -129,8 +137,12 @@ double TextCursor::parse(std::string_view what)
     const char* first = (*at_ == '+' && at_ + 1 != end_ && at_[1] != '-') ? at_ + 1 : at_;
     double value = 0.0;
     const std::from_chars_result result = std::from_chars(first, end_, value);
-    if (result.ec == std::errc::invalid_argument || !ends_word(result.ptr))
-        fail(quoted(word()) + " is not a number");
+    if (result.ec == std::errc::invalid_argument || !ends_word(result.ptr)) {
+        const std::string_view all = word();
+        if (kFinite || !is_nan_of_windows(all))
+            fail(quoted(all) + " is not a number");
+        return std::numeric_limits<double>::quiet_NaN();
+    }
     if (result.ec == std::errc::result_out_of_range) {
         const std::string_view all = word();
         if (is_underflow(all))

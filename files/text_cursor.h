@@ -43,7 +43,7 @@ public:
     /// The next word as a finite number. `what` names it in the sentence when it is missing.
     double number(std::string_view what);
 
-    /// The same for a number that may be too large, infinite or nan.
+    /// The same for a number that may be too large, infinite or nan, in any spelling.
     double any_number(std::string_view what);
 
     /// The next word as a whole number.

@@ -30,8 +30,8 @@ public:
     enum class Build {
         fast,    ///< the opponent: medium quality, no robust flag
         robust,  ///< the witness: watertight intersections
-        quick,   ///< robust, but for few rays: built by Morton order, five times as fast, and a
-                ///< tenth slower to trace
+        quick,   ///< robust, but for few rays: built five times as fast, by Morton order, and a
+                 ///< tenth slower to trace
     };
     enum class Isa {
         best,  ///< the widest that the machine has

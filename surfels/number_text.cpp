@@ -24,4 +24,13 @@ std::string exact(double value)
     return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
 }
 
+std::string count_text(std::uint64_t count, const std::string& noun)
+{
+    const std::size_t bar = noun.find('|');
+    std::string text = std::to_string(count) + ' ';
+    if (bar == std::string::npos)
+        return text + noun + (count == 1 ? "" : "s");
+    return text + (count == 1 ? noun.substr(0, bar) : noun.substr(bar + 1));
+}
+
 }  // namespace surfelao

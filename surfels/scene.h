@@ -6,6 +6,8 @@
 /// Invariants (read_scene and make_scene guarantee them): every coordinate is finite, every index
 /// is in range, the parts cover all vertices and triangles in order and without overlap, and there
 /// is at least one triangle. Of the normals only the indices are in range: values may be anything.
+/// A vertex whose place is no finite one in the file, and which no triangle uses, stands where a
+/// vertex with a triangle stands: it changes no box.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -57,9 +59,10 @@ struct Scene {
     std::vector<glm::dvec3> positions;  ///< world space, in the file's own order and number
     std::vector<glm::uvec3> triangles;  ///< into positions; polygons are already cut up
     std::vector<Part> parts;
-    CornerNormals normals;           ///< empty where the file has none
-    bool free_vertices = false;      ///< the file has none of its own (STL): they may be split
-    std::vector<std::string> notes;  ///< what the file holds and nobody honours: a sentence each
+    CornerNormals normals;       ///< empty where the file has none
+    bool free_vertices = false;  ///< the file has none of its own (STL): they may be split
+    /// What the file holds and nobody honours, and what in it was let pass: a sentence each.
+    std::vector<std::string> notes;
     std::shared_ptr<const SourceAsset> asset;  ///< null for scenes made in code
 };
 

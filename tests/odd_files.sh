@@ -37,6 +37,7 @@ declare -A odd=(
     [glTF2/wrongTypes/badObject.gltf]="wrong types where no geometry is"
     [glTF2/wrongTypes/badString.gltf]="wrong types where no geometry is"
     [glTF2/wrongTypes/badUint.gltf]="wrong types where no geometry is"
+    [invalid/malformed2.obj]="a face without corners"
     [glTF2/simple_skin/simple_skin.gltf]="a skin: its default pose"
     [glTF2/glTF-Sample-Models/AnimatedMorphCube-glTF/AnimatedMorphCube.gltf]="morph targets: the default weights"
 )

@@ -2,7 +2,8 @@
 """measure.py: what README.md and docs/ tell in figures, measured anew into docs/figures/*.json.
 
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
-                                    readers demo viewers; default: all, about 25 minutes on two quiet cores
+                                    readers stated demo viewers; default: all, about 25
+                                    minutes on two quiet cores
 
 Every part is one file that says what command made it, of which version and commit, on what
 processor and how many threads; never a host name or a path. A part whose models are absent keeps
@@ -18,6 +19,7 @@ import json
 import os
 import pathlib
 import re
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -274,6 +276,27 @@ def part_readers(build):
     return {**provenance(build, "tests/odd_files.sh"), "baked": baked, "refused": refused}
 
 
+def check_share(build, path):
+    """Time of a bake with its statement over that of the rest of it, the median of several."""
+    shares = []
+    with tempfile.TemporaryDirectory() as folder:
+        for _ in range(2 if TRIAL else 9):
+            text = run(build / "bin/surfelao", "bake", path, "-o", pathlib.Path(folder) / "baked.ply",
+                       "--json", "-")
+            seconds = json.loads(text)["seconds"]
+            shares.append(seconds["check"] / (seconds["total"] - seconds["check"]))
+    return statistics.median(shares)
+
+
+def part_stated(build):
+    words = ["0", "61"] if TRIAL else []
+    rows = json.loads(run(build / "bin/stated_tables", *words))
+    costs = [{"name": name, "triangles": json.loads(run(build / "bin/surfelao", "info", path, "--json",
+                                                        "-"))["triangles"],
+              "share": check_share(build, path)} for path, name, _ in models()]
+    return {**provenance(build, "stated_tables"), "bakes": rows, "costs": costs}
+
+
 def part_demo(build):
     if not (ROOT / "data/models/bunny.obj").exists():
         raise Absent("no data/models/bunny.obj (data/fetch.sh)")
@@ -298,7 +321,8 @@ def part_viewers(build):
 
 PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scaling": part_scaling,
          "stability": part_stability, "gpu": part_gpu, "drawing": part_drawing,
-         "readers": part_readers, "demo": part_demo, "viewers": part_viewers}
+         "readers": part_readers, "stated": part_stated, "demo": part_demo,
+         "viewers": part_viewers}
 
 
 def main(arguments):

@@ -161,18 +161,16 @@ TEST(CornerNormalsOfObj, MayBeAnyNumbers)
     EXPECT_EQ(scene.normals.values[2], glm::vec3(0));
 }
 
-TEST(CornerNormalsOfObj, OutOfRangeAreRefused)
+TEST(CornerNormalsOfObj, OutOfRangeAreNoneAndCounted)
 {
     const std::string corner = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 1\n";
-    EXPECT_EQ(refusal_of_obj(corner + "f 1//1 2//2 3//3\nf 1//1 2//2 3//7\n"),
-              "test.obj: line 7: the face uses normal 7, but there are 2 normals");
-    EXPECT_EQ(refusal_of_obj(corner + "f 1//1 2//2 3//0\n"),
-              "test.obj: line 6: the face uses normal 0, but normals are counted from 1");
-    EXPECT_EQ(refusal_of_obj(corner + "f 1//1 2/9/-3 3//1\n"),
-              "test.obj: line 6: the face uses normal -3, but there are 2 normals so far");
-    // 2^32 + 1, whose last 32 bits are in range
-    EXPECT_EQ(refusal_of_obj(corner + "f 1//4294967297 2//1 3//1\n"),
-              "test.obj: line 6: the face uses normal 4294967297, but there are 2 normals");
+    // 2^32 + 1: the last 32 bits are in range
+    for (const char* lost : {"3", "7", "0", "-3", "4294967297"}) {
+        const Scene scene = obj(corner + "f 1//1 2/9/" + lost + " 3//2\n");
+        EXPECT_EQ(scene.normals.corners, (std::vector<glm::uvec3>{{0, CornerNormals::kNone, 1}}));
+        EXPECT_EQ(scene.notes, std::vector<std::string>{"1 corner of faces with a normal that the "
+                                                        "file does not have: taken as without"});
+    }
 }
 
 TEST(CornerNormalsOfObj, ThatAreNoNumbersAreRefused)

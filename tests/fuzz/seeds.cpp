@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 
 namespace {
@@ -84,6 +85,28 @@ GltfMaker posed()
     return maker;
 }
 
+/// A square whose first chunk is not padded, with strides of zero and two, a vertex that is not
+/// finite, and more bytes than the header says.
+std::string lapses()
+{
+    GltfMaker maker = square();
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    maker.document["accessors"][0] = {
+        {"bufferView",
+         maker.add_view(bytes_of<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, nan, 0, 0}))},
+        {"componentType", 5126},
+        {"type", "VEC3"},
+        {"count", 5},
+        {"normalized", true}};
+    maker.document["bufferViews"][1]["byteStride"] = 2;
+    maker.document["bufferViews"][2]["byteStride"] = 0;
+    std::string text = maker.document.dump();
+    text += std::string((5 - text.size() % 4) % 4, '\0');
+    const auto number = [](std::size_t n) { return bytes_of({static_cast<std::uint32_t>(n)}); };
+    return "glTF" + number(2) + number(40) + number(text.size()) + "JSON" + text +
+           number(maker.bin.size()) + std::string("BIN\0", 4) + maker.bin + "behind";
+}
+
 void save(const fs::path& path, const std::string& bytes)
 {
     fs::create_directories(path.parent_path());
@@ -98,6 +121,8 @@ void save_gltf_seeds(const fs::path& folder)
     save(folder / "everything.glb", everything().glb());
     save(folder / "posed.glb", posed().glb());
     save(folder / "triangle.gltf", one_triangle().gltf(kTriangleUri));
+    save(folder / "lapses.glb", lapses());
+    save(folder / "as_it_is.gltf", one_triangle().gltf("data:text/plain," + std::string(36, 'A')));
 }
 
 void save_text_seeds(const fs::path& folder)
@@ -111,6 +136,9 @@ void save_text_seeds(const fs::path& folder)
     save(folder / "obj/normals.obj",
          "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nvn 0 0 1\nvn nan 0 1e39\n"
          "f 1//-1 2//1 3//2 4 5/1/-2\nvn 1 0 0\nf 1//1 2//2 3//3\n");
+    save(folder / "obj/lapses.obj",
+         "v 0 0 0\nv nan 0 1.#QNAN\nv 1 0 0 nan nan nan\nv 0 1 0\nf 1 2\nf\nf 1//9 3//0 4//-7\n");
+    save(folder / "off/lapses.off", "OFF4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 -inf 0\n0\n3 0 1 2\n2 0 1\n");
     save(folder / "off/square.off",
          "OFF # square\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3 255 0 0\n");
     save(folder / "off/colours.off",
@@ -119,6 +147,10 @@ void save_text_seeds(const fs::path& folder)
          "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
          "endloop\nendfacet\nendsolid a\nSOLID b\nFACET NORMAL 0 0 1\n OUTER LOOP\n"
          " VERTEX 0 0 0\n VERTEX 1 0 0\n VERTEX 1 1 0\n ENDLOOP\nENDFACET\nENDSOLID b\n");
+    save(folder / "stl/lapses.stl",
+         "# c\nby hand\nsolid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+         "end loop\nend facet\n# c\nfacet\nouter loop\nvertex 0 0 0\nendloop\nendfacet\n"
+         "end solid\nthe end\n");
     save(folder / "stl/binary.stl",
          std::string(80, ' ') + bytes_of<std::uint32_t>({2}) +
              bytes_of<float>({0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0}) + "ab" +
@@ -160,6 +192,10 @@ void save_ply_seeds(const fs::path& folder)
     const std::string big_rows("\0\0\0\0\0....\1ab\1\0\0\0....\0\0\1\0\0....\0\0\0\3\0\0\0\1\0\2",
                                9 + 11 + 9 + 10);
     save(folder / "big.ply", big_header + big_rows);
+    save(folder / "lapses.ply",
+         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+         "property float z\nelement face 3\nproperty list uchar int vertex_indices\nend_header\n"
+         "0 0 nan\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n3 1 2 3\n0\n");
 }
 
 /// Scenes of every engine, as solve_fuzz.cpp reads them: bytes that look like nothing in
