@@ -106,7 +106,8 @@ class Proof:
         jobs, said = self.out / "blender.json", self.out / "blender_said.json"
         jobs.write_text(json.dumps(self.jobs["blender"]))
         run("xvfb-run", "-a", "blender", "--background", "--factory-startup", "--python-exit-code", 1,
-            "--python", HERE / "blender_view.py", "--", jobs, said)
+            "--python", HERE / "blender_view.py", "--", jobs, said,
+            env={**os.environ, "PATH": "/usr/bin:" + os.environ["PATH"]})  # its Python is the first there
         return json.loads(said.read_text())
 
     def draw_in_godot(self):
