@@ -70,6 +70,8 @@ TEST(Sidecars, NamesAreFoundFromAnotherFolder)
     EXPECT_EQ(names_from(in, out, there, missing),
               " a.mtl  none.mtl b c.mtl\tsub/d.mtl " + absolute);
     EXPECT_EQ(path_from(in, out / "x y.png"), "../an out/x y.png");
+    // a result whose name has no folder stands in the current one
+    EXPECT_EQ(path_from("", std::filesystem::current_path() / "x y.png"), "x y.png");
 }
 
 TEST(Sidecars, NoneForWhatCannotBeRead)
