@@ -548,9 +548,6 @@ def constant(figures, name):
     raise KeyError(name)
 
 
-import mask_views  # noqa: E402, F401 - more views, in a file of their own
-
-
 # ---- what bakes state of themselves
 
 
@@ -618,3 +615,7 @@ def stated_cost(figures, least="0", most="1e9"):
               if float(least) <= cost["triangles"] <= float(most)]
     low, high = (fixed(100.0 * share, 0) for share in (min(shares), max(shares)))
     return low if low == high else f"{low} to {high}"
+
+
+import mask_views  # noqa: E402, F401 - more views, in files of their own
+import viewer_views  # noqa: E402, F401

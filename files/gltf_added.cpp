@@ -4,8 +4,7 @@
 #include "files/gltf_json.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -35,25 +34,14 @@ AddedData::AddedData(json& document)
 {
 }
 
-std::size_t AddedData::add_floats(std::size_t dimension, std::span<const float> values)
-{
-    return add_accessor(dimension, as_bytes(values), dimension * sizeof(float),
-                        {{"componentType", static_cast<int>(GltfComponent::float32)}});
-}
-
-std::size_t AddedData::add_shares(std::size_t dimension, std::span<const float> values,
+std::size_t AddedData::add_floats(std::size_t dimension, std::span<const float> values,
                                   const char* name)
 {
-    std::vector<std::uint16_t> shares;
-    shares.reserve(values.size());
-    for (const float value : values)
-        shares.push_back(
-            static_cast<std::uint16_t>(std::lround(65535.0f * std::clamp(value, 0.0f, 1.0f))));
-    return add_accessor(dimension, as_bytes(std::span<const std::uint16_t>(shares)),
-                        dimension * sizeof(std::uint16_t),
-                        {{"componentType", static_cast<int>(GltfComponent::uint16)},
-                         {"normalized", true},
-                         {"name", name}});
+    json accessor = {{"componentType", static_cast<int>(GltfComponent::float32)}};
+    if (name)
+        accessor["name"] = name;
+    return add_accessor(dimension, as_bytes(values), dimension * sizeof(float),
+                        std::move(accessor));
 }
 
 std::size_t AddedData::add_accessor(std::size_t dimension, std::string_view bytes,

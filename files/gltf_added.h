@@ -27,11 +27,10 @@ class AddedData {
 public:
     explicit AddedData(nlohmann::json& document);
 
-    /// Adds an accessor of `dimension` (1 to 4) floats per element and returns its index.
-    std::size_t add_floats(std::size_t dimension, std::span<const float> values);
-
-    /// The same of values from 0 to 1, as 16 bits each; `dimension` is 2 or 4.
-    std::size_t add_shares(std::size_t dimension, std::span<const float> values, const char* name);
+    /// Adds an accessor of `dimension` (1 to 4) floats per element and returns its index. Floats
+    /// also where 16 bits would do: Godot 3.2 takes normalised integers for whole ones.
+    std::size_t add_floats(std::size_t dimension, std::span<const float> values,
+                           const char* name = nullptr);
 
     /// Adds a buffer view of bytes that are no elements and returns its index.
     std::size_t add_bytes(std::string_view bytes);

@@ -65,9 +65,9 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
 ///   _BENT_NORMAL  VEC3 float, unit length, in the mesh's own space like NORMAL: the normal matrix
 ///                 of the node (of a skin: the joints) turns it into world space. Zero where there
 ///                 is none, and where the mesh is flattened so that no direction is left.
-///   COLOR_0       as options.colors says: VEC4 unsigned short, normalised, linear unless
-///                 options.encoding is srgb. Alpha is the file's own, 1 where it has none; bent
-///                 normals are those of world space, as in a .ply
+///   COLOR_0       as options.colors says: VEC4 float, linear unless options.encoding is srgb. Alpha
+///                 is the file's own, 1 where it has none; bent normals are those of world space,
+///                 as in a .ply
 ///   _OWN_COLOR    where COLOR_0 is ours and the file had one: the accessor that it had
 ///
 /// VertexColors::automatic shows the occlusion in every primitive, in the way that leaves its looks
@@ -75,9 +75,9 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
 ///   - without colours (or all white) and without textures of colour, emission or occlusion:
 ///     COLOR_0 = visibility, which viewers multiply with the material's colour
 ///   - else: an `occlusionTexture`, where the specification puts ambient occlusion. The picture is
-///     a ramp from 0 to 1, and a new set TEXCOORD_n (u: unsigned short, normalised; v = .5), the
-///     first that is free, looks up the visibility in it, exactly. The material becomes a copy
-///     where others use it too
+///     a ramp from 0 to 1, and a new set TEXCOORD_n (VEC2 float, v = .5), the first that is
+///     free, looks up the visibility in it, exactly. The material becomes a copy where others use
+///     it too
 ///   - a material that has an occlusionTexture keeps it
 /// A note counts the last two kinds. Where colours or textures are added, primitives without a
 /// material get a plain one, white and no metal: without one Blender shows no colours, and others

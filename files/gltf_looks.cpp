@@ -123,7 +123,7 @@ void GltfLooks::add(std::span<json* const> primitives, std::span<const Occlusion
             std::vector<float> at;
             for (const Occlusion& value : values)
                 at.insert(at.end(), {gradient_coordinate(1.0f - value.occlusion), 0.5f});
-            coordinates = added_.add_shares(2, at, kAddedCoordinates);
+            coordinates = added_.add_floats(2, at, kAddedCoordinates);
         }
         const std::size_t set = free_set(attributes);
         attributes["TEXCOORD_" + std::to_string(set)] = *coordinates;
@@ -176,7 +176,7 @@ std::size_t GltfLooks::add_colors(VertexColors what, std::optional<std::size_t> 
             numbers.push_back(options_.encoding == Encoding::srgb ? to_srgb(color[k]) : color[k]);
         numbers.push_back(static_cast<float>(own_colors[v].a));
     }
-    return added_.add_shares(4, numbers, kAddedColors);
+    return added_.add_floats(4, numbers, kAddedColors);
 }
 
 void GltfLooks::finish()

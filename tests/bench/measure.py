@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """measure.py: what README.md and docs/ tell in figures, measured anew into docs/figures/*.json.
 
-    measure.py BUILD [PART...]      parts: frontier avx2 scaling stability gpu drawing readers stated demo;
-                                    default: all, about 25 minutes on two quiet cores
+    measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
+                                    readers stated demo viewers; default: all, about 25
+                                    minutes on two quiet cores
 
 Every part is one file that says what command made it, of which version and commit, on what
 processor and how many threads; never a host name or a path. A part whose models are absent keeps
@@ -303,9 +304,25 @@ def part_demo(build):
     return {**provenance(build, "run demo"), "lines": text.replace(f"{ROOT}/", "").splitlines()}
 
 
+def part_viewers(build):
+    """What was shown before (another version of the program: prove.py --before) stays as it is."""
+    out = ROOT / "out/viewers"
+    try:
+        run(ROOT / "tests/bench/viewers/prove.py", build / "bin/surfelao", out)
+    except subprocess.CalledProcessError as fault:
+        if fault.returncode == 77:
+            raise Absent("no Blender, chromium or Godot") from fault
+        raise
+    shown = json.loads((out / "viewers.json").read_text())
+    old = json.loads((ROOT / "docs/figures/viewers.json").read_text())
+    shown["formats"] += [row for row in old["formats"] if row["when"] == "before"]
+    return {**provenance(build, "tests/bench/viewers/prove.py"), "before": old["before"], **shown}
+
+
 PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scaling": part_scaling,
          "stability": part_stability, "gpu": part_gpu, "drawing": part_drawing,
-         "readers": part_readers, "stated": part_stated, "demo": part_demo}
+         "readers": part_readers, "stated": part_stated, "demo": part_demo,
+         "viewers": part_viewers}
 
 
 def main(arguments):

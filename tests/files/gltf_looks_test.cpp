@@ -140,6 +140,8 @@ std::vector<double> shown_visibility(const std::string& glb, const std::string& 
         return {};
     const Written written = take_apart(glb);
     const std::vector<float> values = written.floats(written.attributes(0)[attribute]);
+    const auto accessor = written.attributes(0)[attribute].get<std::size_t>();
+    EXPECT_EQ(model.accessors[accessor].componentType, TINYGLTF_COMPONENT_TYPE_FLOAT);
     std::vector<double> shown;
     if (attribute == "COLOR_0") {
         for (std::size_t v = 0; v < values.size(); v += 4)
