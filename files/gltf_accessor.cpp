@@ -105,6 +105,17 @@ void load_all(const GltfAccessor& accessor, double* numbers)
     }
 }
 
+template <class Vector>
+std::vector<Vector> load_vectors(const GltfAccessor& accessor)
+{
+    static_assert(sizeof(Vector) == Vector::length() * sizeof(double));
+    SURFELAO_CHECK(accessor.dimension == Vector::length());
+    std::vector<Vector> vectors(accessor.count, Vector(0.0));
+    if (!vectors.empty())
+        load_all(accessor, &vectors.front().x);
+    return vectors;
+}
+
 void check_finite(const GltfAccessor& accessor, const double* numbers)
 {
     const auto dimension = static_cast<std::size_t>(accessor.dimension);
@@ -149,13 +160,12 @@ std::vector<double> read_numbers(const GltfAccessor& accessor)
 
 std::vector<glm::dvec3> read_vectors(const GltfAccessor& accessor)
 {
-    static_assert(sizeof(glm::dvec3) == 3 * sizeof(double));
-    SURFELAO_CHECK(accessor.dimension == 3);
-    std::vector<glm::dvec3> vectors(accessor.count, glm::dvec3(0.0));
-    if (vectors.empty())
-        return vectors;
-    load_all(accessor, &vectors.front().x);
-    return vectors;
+    return load_vectors<glm::dvec3>(accessor);
+}
+
+std::vector<glm::dvec2> read_pairs(const GltfAccessor& accessor)
+{
+    return load_vectors<glm::dvec2>(accessor);
 }
 
 std::vector<glm::dvec4> read_colors(const GltfAccessor& accessor)

@@ -1,6 +1,7 @@
 /// gltf_accessor.h: the values behind a glTF accessor. Internal to the glTF reader and writer.
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
@@ -60,6 +61,9 @@ struct AccessorError : std::runtime_error {
 /// Asks for three components of any type; the values may be not finite. Throws AccessorError on bad
 /// sparse indices.
 [[nodiscard]] std::vector<glm::dvec3> read_vectors(const GltfAccessor& accessor);
+
+/// The same for two components.
+[[nodiscard]] std::vector<glm::dvec2> read_pairs(const GltfAccessor& accessor);
 
 /// Asks for three components of any type (alpha is then 1) or four. Throws like read_numbers.
 [[nodiscard]] std::vector<glm::dvec4> read_colors(const GltfAccessor& accessor);

@@ -18,9 +18,14 @@
 /// Normals are those of NORMAL at unit length, moved along with morph targets, joints and nodes (by
 /// the inverse transpose); zero where a part has none or what it has is no number.
 ///
+/// Texture coordinates are those of TEXCOORD_0 to TEXCOORD_7 as sets 0 to 7, of any type, each use
+/// of a mesh at the same places of the map. KHR_texture_transform is a material's matter and not
+/// applied. A primitive without a set has none at its corners; of sets that nobody has those below
+/// the last one are empty. What an earlier bake has added (below) is no set.
+///
 /// A primitive becomes one Part per use of its mesh, with all vertices of its POSITION accessor;
 /// primitives of one mesh that share all accessors their vertices come from (POSITION, NORMAL,
-/// joints, weights, targets) are one Part (Part::primitive is the first of them).
+/// joints, weights, targets, but not texture coordinates) are one Part (Part::primitive is the first of them).
 ///
 /// Refused are compressed geometry (KHR_draco_mesh_compression, EXT_meshopt_compression without
 /// plain data), and any extension that the file requires unless it is known to leave triangles

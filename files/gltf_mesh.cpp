@@ -1,6 +1,9 @@
 #include "files/gltf_mesh.h"
 
+#include "files/gltf_added.h"
+
 #include <tiny_gltf.h>
+#include <nlohmann/json.hpp>
 
 #include <map>
 
@@ -47,6 +50,7 @@ public:
     MeshResolver(const tinygltf::Model& model, std::size_t mesh, GltfAsset& asset)
         : model_(model),
           mesh_(mesh),
+          asset_(asset),
           resolver_(model, asset),
           colors_(asset.colors),
           group_of_primitive_(asset.group_of_primitive[mesh])
@@ -73,6 +77,7 @@ public:
             Group& group = groups[entry->second];
             group.primitives.push_back(
                 resolve_primitive(source, p, group.positions.accessor.count, element));
+            add_uvs(source, element, group, group.primitives.back());
             group_of_primitive_[p] = static_cast<std::int32_t>(group.primitives.front().index);
             find_colors(source, group.positions.accessor.count, element);
         }
@@ -82,7 +87,8 @@ public:
 private:
     Group resolve_vertices(const tinygltf::Primitive& source, const std::string& element) const
     {
-        Group group{positions(attribute(source.attributes, "POSITION"), element), {}, {}, {}, {}};
+        Group group{
+            positions(attribute(source.attributes, "POSITION"), element), {}, {}, {}, {}, {}};
         const std::size_t count = group.positions.accessor.count;
         group.normals = normals(source.attributes, count, element);
         for (std::size_t t = 0; t < source.targets.size(); ++t) {
@@ -152,10 +158,30 @@ private:
         return influences;
     }
 
+    /// Those of an earlier bake (gltf_added.h) are places in a ramp: the mesh has none of them.
+    void add_uvs(const tinygltf::Primitive& source, const std::string& element, Group& group,
+                 Primitive& primitive) const
+    {
+        for (std::size_t set = 0; set < kMostUvSets; ++set) {
+            const std::string name = "TEXCOORD_" + std::to_string(set);
+            const int index = attribute(source.attributes, name);
+            if (index == kNone ||
+                is_added((*asset_.document)["accessors"][static_cast<std::size_t>(index)]))
+                continue;
+            NamedAccessor named = resolver_.resolve(index, element + ' ' + name);
+            if (named.accessor.dimension != 2)
+                resolver_.fail(named.element, "is not of type VEC2");
+            resolver_.check_count(named, group.positions.accessor.count);
+            primitive.uvs[set] = index;
+            group.uvs[set].try_emplace(index, std::move(named));
+        }
+    }
+
     Primitive resolve_primitive(const tinygltf::Primitive& source, std::size_t index,
                                 std::size_t vertex_count, const std::string& element) const
     {
-        Primitive primitive{index, {}, source.mode, 0};
+        Primitive primitive{index, {}, source.mode, 0, {}};
+        primitive.uvs.fill(kNoUvs);
         std::size_t count = vertex_count;
         if (source.indices >= 0) {
             primitive.indices = resolver_.resolve(source.indices, element + " indices");
@@ -191,6 +217,7 @@ private:
 
     const tinygltf::Model& model_;
     std::size_t mesh_;
+    const GltfAsset& asset_;
     AccessorResolver resolver_;
     std::map<std::size_t, GltfAccessor>& colors_;
     std::vector<std::int32_t>& group_of_primitive_;

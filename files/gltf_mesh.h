@@ -3,11 +3,17 @@
 
 #include "files/gltf_resolve.h"
 
+#include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace surfelao {
+
+/// Sets of texture coordinates that are read: a file might name its accessors any number of times.
+inline constexpr std::size_t kMostUvSets = 8;
+inline constexpr int kNoUvs = -1;
 
 /// One primitive that draws triangles.
 struct Primitive {
@@ -15,6 +21,8 @@ struct Primitive {
     std::optional<NamedAccessor> indices;  // without: the vertices in order
     int mode;
     std::size_t triangle_count;
+    /// Of TEXCOORD_0 and so on the accessors, in Group::uvs; kNoUvs where it has none.
+    std::array<int, kMostUvSets> uvs;
 
     /// Vertices, or indices of them, that the triangles are made of: a list may hold one or two
     /// more.
@@ -33,14 +41,16 @@ struct InfluenceSet {
     NamedAccessor weights;
 };
 
-/// Primitives of one mesh that share their vertices, that is all of the following accessors: a part
-/// of the scene for each use of the mesh.
+/// Primitives of one mesh that share their vertices, that is all of the following accessors but
+/// those of texture coordinates: a part of the scene for each use of the mesh.
 struct Group {
     NamedAccessor positions;
     std::optional<NamedAccessor> normals;
     std::vector<MorphTarget> targets;
     std::vector<InfluenceSet> influences;
     std::vector<Primitive> primitives;
+    /// Of each set the accessors of all primitives, by their index.
+    std::array<std::map<int, NamedAccessor>, kMostUvSets> uvs;
 };
 
 /// The groups of one mesh; reads no element yet. The index of the first primitive of its group (-1:

@@ -16,8 +16,10 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -72,6 +74,9 @@ public:
                 check(use, primitive.triangle_count, "triangles");
                 check(use, triangles_ += primitive.triangle_count * instances, "triangles");
             }
+            for (std::size_t set = 0; set < kMostUvSets; ++set)
+                check(use, uvs_[set] += vertices * instances * group.uvs[set].size(),
+                      "texture coordinates");
             const std::size_t targets = std::min(weights.size(), group.targets.size());
             const auto morphs =
                 static_cast<std::uint64_t>(targets) -
@@ -84,6 +89,8 @@ public:
 
     std::uint64_t vertices() const { return vertices_; }
     std::uint64_t triangles() const { return triangles_; }
+    /// Values of TEXCOORD_n.
+    std::uint64_t uvs(std::size_t set) const { return uvs_[set]; }
 
 private:
     void check(const MeshNode& use, std::uint64_t amount, const char* what) const
@@ -117,6 +124,7 @@ private:
     std::uint64_t vertices_ = 0;
     std::uint64_t triangles_ = 0;
     std::uint64_t displacements_ = 0;
+    std::array<std::uint64_t, kMostUvSets> uvs_{};
     std::uint64_t copied_bytes_ = 0;
 };
 
@@ -150,6 +158,7 @@ public:
         if (scene_.triangles.empty())
             fail("", "has meshes of points and lines only, no triangles");
         scene_.notes = gltf_notes(asset_, nodes_);
+        drop_own_corners();
         if (lost_count_ > 0)
             scene_.notes.push_back(count_text(lost_count_, "vertex|vertices") +
                                    " without a finite place, but in no triangle, passed over");
@@ -186,6 +195,24 @@ private:
         if (has_normals)
             scene_.normals.values.reserve(amounts.vertices());
         has_normals_ = has_normals;
+        for (std::size_t set = 0; set < kMostUvSets; ++set) {
+            if (amounts.uvs(set) == 0)
+                continue;
+            scene_.uvs.resize(set + 1);
+            scene_.uvs[set].values.reserve(amounts.uvs(set));
+            scene_.uvs[set].corners.reserve(amounts.triangles());
+        }
+    }
+
+    /// Where all vertices have their own texture coordinates, these need no corners; sets below
+    /// the last one that nobody has are empty.
+    void drop_own_corners()
+    {
+        for (UvSet& uvs : scene_.uvs) {
+            if (uvs.empty() ||
+                (uvs.values.size() == scene_.positions.size() && uvs.corners == scene_.triangles))
+                uvs.corners = {};
+        }
     }
 
     /// The parts of one node: the groups of its mesh, for each instance.
@@ -226,12 +253,13 @@ private:
         part.vertex_count = static_cast<std::uint32_t>(vertices.positions.size());
         lost_count_ += vertices.lost_count;
         asset_.parts.push_back({asset_.uses.size() - 1, glm::dmat3(1.0), {}});
+        part_uvs_ = {};
         // without joints the node moves the mesh, skin or not
         if (use.skin && !group.influences.empty()) {
             const std::vector<bool> mirrored = add_skinned(use, group, vertices);
             vertices = {};
             for (const Primitive& primitive : group.primitives)
-                add_triangles(primitive, part, [&](glm::uvec3 triangle) {
+                add_triangles(group, primitive, part, [&](glm::uvec3 triangle) {
                     triangle -= part.first_vertex;
                     return mirrored[triangle.x] + mirrored[triangle.y] + mirrored[triangle.z] > 1;
                 });
@@ -241,7 +269,7 @@ private:
             vertices = {};
             const bool mirrored = glm::determinant(scaled_to_one(glm::dmat3(world))) < 0.0;
             for (const Primitive& primitive : group.primitives)
-                add_triangles(primitive, part, [&](glm::uvec3) { return mirrored; });
+                add_triangles(group, primitive, part, [&](glm::uvec3) { return mirrored; });
         }
         part.triangle_count =
             static_cast<std::uint32_t>(scene_.triangles.size()) - part.first_triangle;
@@ -301,9 +329,37 @@ private:
         scene_.positions.push_back(position);
     }
 
-    template <typename IsMirrored>
-    void add_triangles(const Primitive& primitive, const Part& part, IsMirrored&& is_mirrored)
+    /// Where the values of the primitive's vertices begin in each set; kNone: it has none.
+    /// Primitives of the part that have an accessor in common share its values.
+    std::vector<std::uint32_t> uv_begins(const Group& group, const Primitive& primitive)
     {
+        std::vector<std::uint32_t> begins(scene_.uvs.size(), UvSet::kNone);
+        for (std::size_t set = 0; set < begins.size(); ++set) {
+            const int index = primitive.uvs[set];
+            if (index == kNoUvs)
+                continue;
+            std::vector<glm::dvec2>& values = scene_.uvs[set].values;
+            const auto [entry, is_new] =
+                part_uvs_[set].try_emplace(index, static_cast<std::uint32_t>(values.size()));
+            begins[set] = entry->second;
+            if (!is_new)
+                continue;
+            const NamedAccessor& named = group.uvs[set].at(index);
+            try {
+                const std::vector<glm::dvec2> pairs = read_pairs(named.accessor);
+                values.insert(values.end(), pairs.begin(), pairs.end());
+            } catch (const AccessorError& error) {
+                fail(named.element + ":", error.what());
+            }
+        }
+        return begins;
+    }
+
+    template <typename IsMirrored>
+    void add_triangles(const Group& group, const Primitive& primitive, const Part& part,
+                       IsMirrored&& is_mirrored)
+    {
+        const std::vector<std::uint32_t> uvs = uv_begins(group, primitive);
         std::vector<std::uint32_t> indices;
         if (primitive.indices)
             indices = load_indices(primitive, part.vertex_count);
@@ -328,6 +384,10 @@ private:
             if (is_mirrored(triangle))
                 std::swap(triangle.y, triangle.z);
             scene_.triangles.push_back(triangle);
+            for (std::size_t set = 0; set < uvs.size(); ++set)
+                scene_.uvs[set].corners.push_back(uvs[set] == UvSet::kNone
+                                                      ? glm::uvec3(UvSet::kNone)
+                                                      : triangle - part.first_vertex + uvs[set]);
         }
     }
 
@@ -360,6 +420,8 @@ private:
     AccessorResolver resolver_;
     PlacedNodes nodes_;
     bool has_normals_ = false;
+    /// Of the part that is being added: where the values of each set's accessors begin.
+    std::array<std::map<int, std::uint32_t>, kMostUvSets> part_uvs_;
     std::uint64_t lost_count_ = 0;
     std::vector<std::optional<std::vector<Group>>> meshes_;       // those that are used
     std::vector<std::optional<std::vector<glm::dmat4>>> joints_;  // per skin that is used

@@ -69,8 +69,8 @@ constexpr Field kPrimitive[] = {
 };
 constexpr Field kAccessorIndex = {"", Kind::index, Need::optional, "accessors"};
 /// For is_listed().
-constexpr std::string_view kAttributes[] = {"POSITION",   "NORMAL",  "COLOR_0",
-                                            "_OWN_COLOR", "JOINTS_", "WEIGHTS_"};
+constexpr std::string_view kAttributes[] = {"POSITION", "NORMAL",   "COLOR_0",  "_OWN_COLOR",
+                                            "JOINTS_",  "WEIGHTS_", "TEXCOORD_"};
 constexpr std::string_view kTargetAttributes[] = {"POSITION", "NORMAL"};
 constexpr Field kNode[] = {
     {"name", Kind::text},

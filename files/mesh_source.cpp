@@ -76,12 +76,27 @@ std::uint64_t place_unused(std::vector<glm::dvec3>& positions, std::uint32_t use
 /// Where the only triangle of a polygon of three corners lies.
 constexpr glm::uvec3 kWhole(0, 1, 2);
 
-/// Appends the triangles that lie at these places of the corners.
-void append_triangles(std::span<const std::uint32_t> corners, std::span<const glm::uvec3> places,
-                      std::vector<glm::uvec3>& triangles)
+/// Numbers at the corners of polygons that become those of the corners of triangles.
+struct CornerNumbers {
+    const std::vector<std::uint32_t>* polygons;
+    std::vector<glm::uvec3>* triangles;
+
+    /// Appends the triangles that lie at these places of the polygon whose corners begin at
+    /// `first`.
+    void append(std::size_t first, std::span<const glm::uvec3> places) const
+    {
+        const std::uint32_t* corners = polygons->data() + first;
+        for (const glm::uvec3& place : places)
+            triangles->emplace_back(corners[place.x], corners[place.y], corners[place.z]);
+    }
+};
+
+/// Leaves no numbers that are those of the vertices.
+template <class Value>
+void drop_own_numbers(PolygonValues<Value>& given, std::size_t vertices, const Polygons& polygons)
 {
-    for (const glm::uvec3& place : places)
-        triangles.emplace_back(corners[place.x], corners[place.y], corners[place.z]);
+    if (given.values.size() == vertices && given.corners == polygons.corners)
+        given.corners = {};
 }
 
 }  // namespace
@@ -108,46 +123,51 @@ void close_polygon(Polygons& polygons, std::uint32_t size)
 }
 
 Scene make_mesh_scene(std::string_view file_name, std::vector<glm::dvec3> positions,
-                      Polygons polygons, std::shared_ptr<MeshSource> source, PolygonNormals normals)
+                      Polygons polygons, std::shared_ptr<MeshSource> source, PolygonCorners given)
 {
     const std::size_t polygon_count = polygons.count();
     if (polygon_count == 0)
         refuse(file_name,
                polygons.small_count > 0 ? "has no faces of three corners or more" : "has no faces");
     const std::size_t triangle_count = polygons.corners.size() - 2 * polygon_count;
-    if (std::max({positions.size(), normals.values.size(), triangle_count}) > kMost)
-        refuse(file_name,
-               "has more than " + std::to_string(kMost) + " vertices, normals or triangles");
+    if (std::max({positions.size(), given.normals.values.size(), given.uvs.values.size(),
+                  triangle_count}) > kMost)
+        refuse(file_name, "has more than " + std::to_string(kMost) +
+                              " vertices, normals, texture coordinates or triangles");
     check_corners(file_name, positions, polygons);
     Scene scene;
     add_note(scene.notes, polygons.small_count, "face", "of fewer than three corners passed over");
     add_note(scene.notes, place_unused(positions, polygons.corners.front()), "vertex|vertices",
              "without a finite place, but in no face, passed over");
-    if (normals.values.size() == positions.size() && normals.corners == polygons.corners)
-        normals.corners = {};
+    drop_own_numbers(given.normals, positions.size(), polygons);
+    drop_own_numbers(given.uvs, positions.size(), polygons);
 
-    scene.triangles.reserve(triangle_count);
-    if (!normals.corners.empty())
-        scene.normals.corners.reserve(triangle_count);
+    if (!given.uvs.values.empty())
+        scene.uvs.emplace_back();
+    std::vector<CornerNumbers> streams{{&polygons.corners, &scene.triangles}};
+    if (!given.normals.corners.empty())
+        streams.push_back({&given.normals.corners, &scene.normals.corners});
+    if (!given.uvs.corners.empty())
+        streams.push_back({&given.uvs.corners, &scene.uvs.front().corners});
+    for (const CornerNumbers& numbers : streams)
+        numbers.triangles->reserve(triangle_count);
     std::vector<glm::uvec3> cut;
     std::size_t first = 0;
     for (std::size_t face = 0; face < polygon_count; ++face) {
         const std::size_t size = polygons.sizes.empty() ? 3 : polygons.sizes[face];
-        const std::span<const std::uint32_t> corners(&polygons.corners[first], size);
         std::span<const glm::uvec3> places(&kWhole, 1);
-        if (size == 3) {
-            scene.triangles.emplace_back(corners[0], corners[1], corners[2]);
-        } else {
+        if (size > 3) {
             cut.clear();
-            triangulate(positions, corners, cut);
+            triangulate(positions, {&polygons.corners[first], size}, cut);
             places = cut;
-            append_triangles(corners, places, scene.triangles);
         }
-        if (!normals.corners.empty())
-            append_triangles({&normals.corners[first], size}, places, scene.normals.corners);
+        for (const CornerNumbers& numbers : streams)
+            numbers.append(first, places);
         first += size;
     }
-    scene.normals.values = std::move(normals.values);
+    scene.normals.values = std::move(given.normals.values);
+    if (!scene.uvs.empty())
+        scene.uvs.front().values = std::move(given.uvs.values);
     scene.positions = std::move(positions);
     Part part;
     part.vertex_count = static_cast<std::uint32_t>(scene.positions.size());

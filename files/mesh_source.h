@@ -26,12 +26,34 @@ struct Polygons {
     }
 };
 
-/// The normals of polygons as the file gives them; no values: none.
-struct PolygonNormals {
-    std::vector<glm::vec3> values;
-    /// One for each of Polygons::corners, into values or CornerNormals::kNone. Empty: the values
-    /// are those of the vertices.
+inline constexpr std::uint32_t kNoValue = 0xffffffff;
+static_assert(kNoValue == CornerNormals::kNone && kNoValue == UvSet::kNone);
+
+/// What corners of polygons have beside their vertex, as the file gives it; no values: nothing.
+template <class Value>
+struct PolygonValues {
+    std::vector<Value> values;
+    /// One for each of Polygons::corners, into values or kNoValue. Empty: the values are those of
+    /// the vertices.
     std::vector<std::uint32_t> corners;
+
+    /// For the corner of this number; those between the last one that has any and it have none.
+    void set(std::size_t corner, std::uint32_t value)
+    {
+        corners.resize(corner, kNoValue);
+        corners.push_back(value);
+    }
+    /// After close_polygon(): as many corners as there are.
+    void close(const Polygons& polygons)
+    {
+        if (!corners.empty())
+            corners.resize(polygons.corners.size(), kNoValue);
+    }
+};
+
+struct PolygonCorners {
+    PolygonValues<glm::vec3> normals;
+    PolygonValues<glm::dvec2> uvs;  ///< as UvSet has them: v runs down
 };
 
 /// A polygon of `size` corners has just been appended to polygons.corners: one of fewer than three
@@ -55,15 +77,16 @@ void add_note(std::vector<std::string>& notes, std::uint64_t count, const std::s
               const std::string& rest);
 
 /// Makes the scene of a file whose vertices and polygons are known; leaves polygons with more than
-/// three corners in `source`. Normals that are numbered as the vertices are become those of the
-/// vertices. A vertex without a place (a coordinate that is not finite or beyond
-/// kLargestCoordinate) which no polygon uses stands where the first corner of all stands. Notes
-/// count such vertices and the polygons that were passed over. Throws InputError when a polygon
-/// uses a vertex out of range or without a place, there is no polygon, or there are more vertices,
-/// normals or triangles than 32 bits count; the numbers of normals must be in range.
+/// three corners in `source`. Normals and texture coordinates that are numbered as the vertices are
+/// become those of the vertices. A vertex without a place (a coordinate that is not finite or
+/// beyond kLargestCoordinate) which no polygon uses stands where the first corner of all stands.
+/// Notes count such vertices and the polygons that were passed over. Throws InputError when a
+/// polygon uses a vertex out of range or without a place, there is no polygon, or there are more
+/// vertices, normals, texture coordinates or triangles than 32 bits count; the numbers of normals
+/// and texture coordinates must be in range.
 [[nodiscard]] Scene make_mesh_scene(std::string_view file_name, std::vector<glm::dvec3> positions,
                                     Polygons polygons, std::shared_ptr<MeshSource> source,
-                                    PolygonNormals normals = {});
+                                    PolygonCorners given = {});
 
 /// Calls visit(corners) with a span of the vertex indices of each face, in the file's order: the
 /// source's polygons where it has them, else the scene's triangles.

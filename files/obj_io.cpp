@@ -1,9 +1,10 @@
 #include "files/obj_io.h"
 
 #include "files/obj_file.h"
+#include "files/own_colors.h"
 #include "surfels/errors.h"
 
-#include <algorithm>
+#include <limits>
 
 namespace surfelao {
 namespace {
@@ -40,6 +41,44 @@ std::int64_t index_of(std::int64_t number, std::size_t count)
     return number > 0 ? number - 1 : static_cast<std::int64_t>(count) + number;
 }
 
+/// Texture coordinates as UvSet has them: in the file v runs up, and is 0 where it is missing.
+glm::dvec2 read_uv(TextCursor& cursor)
+{
+    const auto number = [](std::string_view word) {
+        return number_in(word).value_or(std::numeric_limits<double>::quiet_NaN());
+    };
+    const double u = number(cursor.word());
+    return {u, 1.0 - (cursor.at_line_end() ? 0.0 : number(cursor.word()))};
+}
+
+/// Values that corners of faces name by numbers.
+template <class Value>
+struct NamedValues : PolygonValues<Value> {
+    std::uint64_t lost = 0;  ///< corners that name one that there is not
+
+    /// Of the corner of this number, which names its value by `word`.
+    void read(const TextCursor& cursor, std::size_t corner, std::string_view word)
+    {
+        const std::int64_t index = index_of(cursor.integer_of(word), this->values.size());
+        const bool is_one = index >= 0 && index < kNoValue;
+        lost += is_one ? 0 : 1;
+        this->set(corner, is_one ? static_cast<std::uint32_t>(index) : kNoValue);
+    }
+
+    /// After the last value.
+    void finish()
+    {
+        for (std::uint32_t& value : this->corners) {
+            if (value < this->values.size() || value == kNoValue)
+                continue;
+            value = kNoValue;
+            ++lost;
+        }
+        if (this->corners.empty() || this->values.empty())  // nobody uses any
+            static_cast<PolygonValues<Value>&>(*this) = {};
+    }
+};
+
 class Reader {
 public:
     void read_face(TextCursor& cursor)
@@ -50,31 +89,24 @@ public:
         if (size < 3 && cursor.remaining() == 0)
             cursor.fail("the file ends within a face of " + std::to_string(size) + " corners");
         close_polygon(polygons, size);
-        if (!normals.corners.empty())
-            normals.corners.resize(polygons.corners.size());
+        normals.close(polygons);
+        uvs.close(polygons);
     }
 
-    /// Faces may use vertices and normals that come later: what there is is known at the end.
-    /// Returns the corners that name a normal that there is not.
-    std::uint64_t finish(const std::string& file_name)
+    /// Faces may use what comes later: what there is is known at the end.
+    void finish(const std::string& file_name)
     {
         if (farthest_ >= static_cast<std::int64_t>(positions.size()))
             throw InputError(file_name + ": line " + std::to_string(farthest_line_) +
                              ": the face uses vertex " + std::to_string(farthest_ + 1) +
                              ", but there are " + std::to_string(positions.size()) + " vertices");
-        for (std::uint32_t& normal : normals.corners) {
-            if (normal < normals.values.size() || normal == CornerNormals::kNone)
-                continue;
-            normal = CornerNormals::kNone;
-            ++lost_normals_;
-        }
-        if (normals.corners.empty() || normals.values.empty())  // nobody uses any
-            normals = {};
-        return lost_normals_;
+        normals.finish();
+        uvs.finish();
     }
 
     std::vector<glm::dvec3> positions;
-    PolygonNormals normals;
+    NamedValues<glm::vec3> normals;
+    NamedValues<glm::dvec2> uvs;
     Polygons polygons;
 
 private:
@@ -82,23 +114,16 @@ private:
     void read_corner(const TextCursor& cursor, std::string_view word)
     {
         const std::size_t slash = word.find('/');
-        const std::uint32_t vertex = read_vertex_index(cursor, word.substr(0, slash));
-        std::uint32_t normal = CornerNormals::kNone;
-        if (slash != std::string_view::npos) {
-            const std::string_view rest = word.substr(slash + 1);
-            const std::size_t second = rest.find('/');
-            const std::string_view texture = rest.substr(0, second);
-            if (!texture.empty())
-                cursor.integer_of(texture);
-            if (second != std::string_view::npos && second + 1 < rest.size()) {
-                normal = read_normal_index(cursor, rest.substr(second + 1));
-                if (normals.corners.empty())  // the first: those before it have none
-                    normals.corners.assign(polygons.corners.size(), CornerNormals::kNone);
-            }
-        }
-        polygons.corners.push_back(vertex);
-        if (!normals.corners.empty() || normal != CornerNormals::kNone)
-            normals.corners.push_back(normal);
+        const std::size_t corner = polygons.corners.size();
+        polygons.corners.push_back(read_vertex_index(cursor, word.substr(0, slash)));
+        if (slash == std::string_view::npos)
+            return;
+        const std::string_view rest = word.substr(slash + 1);
+        const std::size_t second = rest.find('/');
+        if (const std::string_view uv = rest.substr(0, second); !uv.empty())
+            uvs.read(cursor, corner, uv);
+        if (second != std::string_view::npos && second + 1 < rest.size())
+            normals.read(cursor, corner, rest.substr(second + 1));
     }
 
     std::uint32_t read_vertex_index(const TextCursor& cursor, std::string_view word)
@@ -117,18 +142,8 @@ private:
         return static_cast<std::uint32_t>(index);  // one beyond 32 bits is refused as the farthest
     }
 
-    std::uint32_t read_normal_index(const TextCursor& cursor, std::string_view word)
-    {
-        const std::int64_t index = index_of(cursor.integer_of(word), normals.values.size());
-        if (index >= 0 && index < CornerNormals::kNone)
-            return static_cast<std::uint32_t>(index);
-        ++lost_normals_;
-        return CornerNormals::kNone;
-    }
-
     std::int64_t farthest_ = -1;  ///< the largest vertex in use
     std::uint64_t farthest_line_ = 0;
-    std::uint64_t lost_normals_ = 0;
 };
 
 }  // namespace
@@ -148,14 +163,20 @@ Scene read_obj(const std::string& file_name, std::string contents)
             reader.read_face(cursor);
         } else if (statement == "vn") {
             reader.normals.values.push_back(read_normal(cursor));
+        } else if (statement == "vt") {
+            reader.uvs.values.push_back(read_uv(cursor));
         }
     }
-    const std::uint64_t lost_normals = reader.finish(file_name);
+    reader.finish(file_name);
+    const std::uint64_t lost_normals = reader.normals.lost, lost_uvs = reader.uvs.lost;
     source->vertex_count = reader.positions.size();
-    Scene scene = make_mesh_scene(file_name, std::move(reader.positions),
-                                  std::move(reader.polygons), source, std::move(reader.normals));
+    Scene scene =
+        make_mesh_scene(file_name, std::move(reader.positions), std::move(reader.polygons), source,
+                        {std::move(reader.normals), std::move(reader.uvs)});
     add_note(scene.notes, lost_normals, "corner",
              "of faces with a normal that the file does not have: taken as without");
+    add_note(scene.notes, lost_uvs, "corner",
+             "of faces with a texture coordinate that the file does not have: taken as without");
     return scene;
 }
 

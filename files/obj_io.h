@@ -2,15 +2,17 @@
 ///
 /// Read: `v x y z`, also with w (a weight of rational curves: no part of a position) or with a
 /// colour and alpha; `vn x y z` (any numbers, also nan; what else stands on its line is passed
-/// over); `f` and its old name `fo` in the forms v, v/vt, v//vn, v/vt/vn, counted from 1 or
-/// backwards from the last vertex or normal so far; comments, continued lines, any line ends. A
-/// face may use vertices and normals that come later, and have normals at some corners only.
-/// Texture indices must be numbers and are not looked up; points, lines, curves, groups, materials
-/// and unknown statements are no surface and are passed over (a material file need not be there).
+/// over); `vt u v` (v runs up, and is 0 where it is missing; what is no number is nan, what else
+/// stands on its line is passed over); `f` and its old name `fo` in the forms v, v/vt, v//vn,
+/// v/vt/vn, counted from 1 or backwards from the last vertex, texture coordinate or normal so far;
+/// comments, continued lines, any line ends. A face may use vertices, texture coordinates and
+/// normals that come later, and have the latter two at some corners only. Points, lines, curves,
+/// groups, materials and unknown statements are no surface and are passed over (a material file
+/// need not be there).
 ///
 /// Passed over and counted in Scene::notes: faces of fewer than three corners (unless the file ends
-/// within: it may be cut), normals of corners that the file does not have, vertices without a
-/// finite place that no face uses (mesh_source.h).
+/// within: it may be cut), normals and texture coordinates of corners that the file does not have,
+/// vertices without a finite place that no face uses (mesh_source.h).
 #pragma once
 
 #include "files/scene_io.h"
@@ -23,7 +25,8 @@
 namespace surfelao {
 
 /// file_name is what faults are reported of; contents is the file. Vertices are those of the `v`
-/// lines, in order; normals those of the `vn` lines, if a face uses any. Faults name the line, or
+/// lines, in order; normals and texture coordinates (one set) those of the `vn` and `vt` lines, if
+/// a face uses any. Faults name the line, or
 /// the vertex and face, counted from 0.
 [[nodiscard]] Scene read_obj(const std::string& file_name, std::string contents);
 

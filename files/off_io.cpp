@@ -3,6 +3,8 @@
 #include "files/off_file.h"
 #include "surfels/errors.h"
 
+#include <cmath>
+
 namespace surfelao {
 namespace {
 
@@ -89,9 +91,10 @@ Header read_header(const std::string& file_name, TextCursor& cursor)
     return header;
 }
 
-/// Its normal goes into `normals`, which are as many as the vertices as soon as one has any.
+/// Its normal and texture coordinates go into `given`, where they are as many as the vertices as
+/// soon as one has any.
 glm::dvec3 read_vertex(TextCursor& cursor, std::uint64_t vertex, Header& header,
-                       std::vector<glm::vec3>& normals)
+                       PolygonCorners& given)
 {
     if (!cursor.next_line())
         cursor.fail("the file ends, but vertex " + std::to_string(vertex) + " of " +
@@ -109,14 +112,19 @@ glm::dvec3 read_vertex(TextCursor& cursor, std::uint64_t vertex, Header& header,
         for (; numbers < 6 && !cursor.at_line_end(); ++numbers)
             normal[numbers - 3] = static_cast<float>(cursor.any_number({}));
         if (numbers == 6) {
-            normals.resize(header.vertices, glm::vec3(0.0f));
-            normals[vertex] = normal;
+            given.normals.values.resize(header.vertices, glm::vec3(0.0f));
+            given.normals.values[vertex] = normal;
         }
     }
     const int first = numbers;
+    glm::dvec2 last(0.0);
     for (; !cursor.at_line_end(); ++numbers)
-        cursor.any_number({});
+        last = {last.y, cursor.any_number({})};
     header.has_colors |= header.color_words(numbers - first) > 0;
+    if (header.has_textures && numbers - first >= 2) {
+        given.uvs.values.resize(header.vertices, glm::dvec2(NAN));
+        given.uvs.values[vertex] = {last.x, 1.0 - last.y};
+    }
     if (numbers > kMostVertexNumbers)
         cursor.fail("vertex " + std::to_string(vertex) + " has " + std::to_string(numbers) +
                     " numbers, but at most " + std::to_string(kMostVertexNumbers) +
@@ -157,14 +165,14 @@ Scene read_off(const std::string& file_name, std::string contents)
     header = read_header(file_name, cursor);
     std::vector<glm::dvec3> positions;
     positions.reserve(header.vertices);
-    PolygonNormals normals;
+    PolygonCorners given;
     for (std::uint64_t v = 0; v < header.vertices; ++v)
-        positions.push_back(read_vertex(cursor, v, header, normals.values));
+        positions.push_back(read_vertex(cursor, v, header, given));
     Polygons polygons;
     for (std::uint64_t face = 0; face < header.faces; ++face)
         read_face(cursor, face, header, polygons);
     Scene scene = make_mesh_scene(file_name, std::move(positions), std::move(polygons), source,
-                                  std::move(normals));
+                                  std::move(given));
     add_note(scene.notes, header.is_glued, "space", "missing between OFF and the counts");
     return scene;
 }

@@ -29,6 +29,17 @@ std::size_t index_list(const std::string& file_name, const Element& element)
                      " has no list \"vertex_indices\"");
 }
 
+/// Of an element that has no such list: past its last.
+std::size_t uv_list(const Element& element)
+{
+    return static_cast<std::size_t>(std::ranges::find_if(element.properties,
+                                                         [](const Property& property) {
+                                                             return property.name == "texcoord" &&
+                                                                    property.count_type;
+                                                         }) -
+                                    element.properties.begin());
+}
+
 template <class Data>
 class Reader {
 public:
@@ -48,22 +59,28 @@ public:
             if (element.name == "vertex")
                 read_vertices(element);
             else if (element.name == "face" && element.count > 0)
-                read_lists(element, [this](std::uint64_t n) { read_face(n); });
+                read_faces(element);
             else if (element.name == "tristrips" && element.count > 0)
-                read_lists(element, [this](std::uint64_t n) { read_strips(n); });
+                read_strips(element);
             else
                 skip_rows(element);
+        }
+        // what the faces say of their corners is more than what the vertices can
+        if (!face_uvs_.values.empty()) {
+            face_uvs_.close(polygons);
+            given.uvs = std::move(face_uvs_);
         }
     }
 
     std::vector<glm::dvec3> positions;
-    PolygonNormals normals;  ///< the vertices' own
+    PolygonCorners given;
     Polygons polygons;
+    std::uint64_t odd_uv_lists = 0;  ///< whose numbers are not two for each corner, nor none
 
 private:
-    /// What a property of a vertex is, three of each kind that is used.
+    /// What a property of a vertex is: all axes of a kind are there, or none.
     struct Role {
-        enum { none, position, normal } kind = none;
+        enum { none, position, normal, uv } kind = none;
         int axis = 0;
     };
 
@@ -99,6 +116,17 @@ private:
             for (int axis = 0; axis < 3; ++axis)
                 roles[normal[axis]] = {Role::normal, axis};
         }
+        constexpr std::string_view kUvNames[][2] = {
+            {"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
+        for (const auto& names : kUvNames) {
+            const std::size_t uv[] = {find_scalar(element, names[0]),
+                                      find_scalar(element, names[1])};
+            if (uv[0] == count || uv[1] == count)
+                continue;
+            for (int axis = 0; axis < 2; ++axis)
+                roles[uv[axis]] = {Role::uv, axis};
+            break;
+        }
         return roles;
     }
 
@@ -108,7 +136,9 @@ private:
         source_.vertices_begin = data_.offset();
         positions.resize(element.count);
         if (std::ranges::find(roles, Role::normal, &Role::kind) != roles.end())
-            normals.values.resize(element.count);
+            given.normals.values.resize(element.count);
+        if (std::ranges::find(roles, Role::uv, &Role::kind) != roles.end())
+            given.uvs.values.resize(element.count);
         for (std::uint64_t row = 0; row < element.count; ++row) {
             data_.begin_row(element, row);
             for (std::size_t p = 0; p < roles.size(); ++p) {
@@ -117,7 +147,10 @@ private:
                 if (kind == Role::position)
                     positions[row][axis] = data_.any_number(property.type);
                 else if (kind == Role::normal)
-                    normals.values[row][axis] = static_cast<float>(data_.any_number(property.type));
+                    given.normals.values[row][axis] =
+                        static_cast<float>(data_.any_number(property.type));
+                else if (kind == Role::uv)
+                    given.uvs.values[row][axis] = uv_number(property.type, axis);
                 else
                     skip_property(data_, property);
             }
@@ -126,21 +159,81 @@ private:
         source_.vertices_end = data_.offset();
     }
 
-    template <class ReadList>
-    void read_lists(const Element& element, const ReadList& read_list)
+    /// As UvSet has it: in the file v runs up. What is no number is nan.
+    double uv_number(Type type, int axis)
+    {
+        const double number = data_.loose_number(type);
+        return axis == 0 ? number : 1.0 - number;
+    }
+
+    /// Calls read(p, length) for the lists p that it is asked of with is_read(p).
+    template <class IsRead, class Read>
+    void read_row(const Element& element, std::uint64_t row, const IsRead& is_read,
+                  const Read& read)
+    {
+        data_.begin_row(element, row);
+        for (std::size_t p = 0; p < element.properties.size(); ++p) {
+            if (is_read(p))
+                read(p, read_length(data_, element.properties[p]));
+            else
+                skip_property(data_, element.properties[p]);
+        }
+        data_.end_row();
+    }
+
+    void read_faces(const Element& element)
+    {
+        const std::size_t list = index_list(file_name_, element);
+        const std::size_t uvs = uv_list(element);
+        index_type_ = element.properties[list].type;
+        std::vector<glm::dvec2> row_uvs;
+        for (std::uint64_t row = 0; row < element.count; ++row) {
+            const std::size_t first = polygons.corners.size();
+            std::uint64_t uv_numbers = 0;
+            read_row(
+                element, row, [&](std::size_t p) { return p == list || p == uvs; },
+                [&](std::size_t p, std::uint64_t length) {
+                    if (p == list)
+                        return read_face(length);
+                    uv_numbers = length;
+                    read_uvs(length, element.properties[p].type, row_uvs);
+                });
+            const std::size_t corners = polygons.corners.size() - first;
+            if (uv_numbers == 2 * corners)
+                add_uvs(first, row_uvs);
+            else if (uv_numbers > 0 && corners > 0)
+                ++odd_uv_lists;
+            row_uvs.clear();
+        }
+    }
+
+    void read_uvs(std::uint64_t length, Type type, std::vector<glm::dvec2>& uvs)
+    {
+        for (std::uint64_t i = 0; i < length; ++i) {
+            const int axis = static_cast<int>(i % 2);
+            if (axis == 0)
+                uvs.emplace_back(0.0);
+            uvs.back()[axis] = uv_number(type, axis);
+        }
+    }
+
+    /// Of the corners from `first` on.
+    void add_uvs(std::size_t first, const std::vector<glm::dvec2>& uvs)
+    {
+        for (std::size_t i = 0; i < uvs.size(); ++i) {
+            face_uvs_.set(first + i, static_cast<std::uint32_t>(face_uvs_.values.size()));
+            face_uvs_.values.push_back(uvs[i]);
+        }
+    }
+
+    void read_strips(const Element& element)
     {
         const std::size_t list = index_list(file_name_, element);
         index_type_ = element.properties[list].type;
-        for (std::uint64_t row = 0; row < element.count; ++row) {
-            data_.begin_row(element, row);
-            for (std::size_t p = 0; p < element.properties.size(); ++p) {
-                if (p == list)
-                    read_list(read_length(data_, element.properties[p]));
-                else
-                    skip_property(data_, element.properties[p]);
-            }
-            data_.end_row();
-        }
+        for (std::uint64_t row = 0; row < element.count; ++row)
+            read_row(
+                element, row, [&](std::size_t p) { return p == list; },
+                [&](std::size_t, std::uint64_t length) { read_strip_list(length); });
     }
 
     std::uint32_t checked(std::int64_t index) const
@@ -159,7 +252,7 @@ private:
         close_polygon(polygons, static_cast<std::uint32_t>(length));
     }
 
-    void read_strips(std::uint64_t length)
+    void read_strip_list(std::uint64_t length)
     {
         std::array<std::uint32_t, 3> last{};
         std::uint64_t in_strip = 0;
@@ -197,6 +290,7 @@ private:
     Data data_;
     std::uint64_t vertex_count_ = 0;
     Type index_type_ = Type::int32;
+    PolygonValues<glm::dvec2> face_uvs_;
 };
 
 template <class Data>
@@ -205,7 +299,9 @@ Scene read_with(const std::string& file_name, std::shared_ptr<PlySource> source)
     Reader<Data> reader(file_name, *source);
     reader.run();
     Scene scene = make_mesh_scene(file_name, std::move(reader.positions),
-                                  std::move(reader.polygons), source, std::move(reader.normals));
+                                  std::move(reader.polygons), source, std::move(reader.given));
+    add_note(scene.notes, reader.odd_uv_lists, "face",
+             "with a list texcoord that has not two numbers for each corner: taken as without");
     for (const Element& element : source->header.elements)
         add_note(scene.notes,
                  static_cast<std::uint64_t>(

@@ -20,30 +20,31 @@ bool in_reach(glm::dvec3 p)
     return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
 }
 
-void check_normals(const Scene& scene)
+/// Of CornerNormals or a UvSet, whose values a sentence calls `noun`.
+template <class CornerValues>
+void check_corners(const Scene& scene, const CornerValues& given, const std::string& noun)
 {
-    const CornerNormals& normals = scene.normals;
-    if (normals.empty() && normals.corners.empty())
+    if (given.empty() && given.corners.empty())
         return;
-    if (normals.corners.empty()) {
-        if (normals.values.size() != scene.positions.size())
-            refuse(scene, "there are " + std::to_string(normals.values.size()) + " normals for " +
-                              std::to_string(scene.positions.size()) + " vertices");
+    if (given.corners.empty()) {
+        if (given.values.size() != scene.positions.size())
+            refuse(scene, "there are " + std::to_string(given.values.size()) + ' ' + noun +
+                              "s for " + std::to_string(scene.positions.size()) + " vertices");
         return;
     }
-    if (normals.corners.size() != scene.triangles.size())
-        refuse(scene, "there are normals of " + std::to_string(normals.corners.size()) +
+    if (given.corners.size() != scene.triangles.size())
+        refuse(scene, "there are " + noun + "s of " + std::to_string(given.corners.size()) +
                           " triangles for " + std::to_string(scene.triangles.size()));
     const auto within = [&](std::uint32_t index) {
-        return index < normals.values.size() || index == CornerNormals::kNone;
+        return index < given.values.size() || index == CornerValues::kNone;
     };
-    const auto wrong = std::ranges::find_if_not(normals.corners, [&](glm::uvec3 corners) {
+    const auto wrong = std::ranges::find_if_not(given.corners, [&](glm::uvec3 corners) {
         return within(corners.x) && within(corners.y) && within(corners.z);
     });
-    if (wrong != normals.corners.end())
-        refuse(scene, "triangle " + std::to_string(wrong - normals.corners.begin()) +
-                          " uses a normal that there is not: there are " +
-                          std::to_string(normals.values.size()));
+    if (wrong != given.corners.end())
+        refuse(scene, "triangle " + std::to_string(wrong - given.corners.begin()) + " uses a " +
+                          noun + " that there is not: there are " +
+                          std::to_string(given.values.size()));
 }
 
 }  // namespace
@@ -82,7 +83,9 @@ void check_scene(const Scene& scene)
                           " uses vertex " +
                           std::to_string(std::max({wrong->x, wrong->y, wrong->z})) +
                           ", but there are " + std::to_string(count) + " vertices");
-    check_normals(scene);
+    check_corners(scene, scene.normals, "normal");
+    for (const UvSet& uvs : scene.uvs)
+        check_corners(scene, uvs, "texture coordinate");
 }
 
 }  // namespace surfelao

@@ -166,7 +166,7 @@ TEST(CornerNormalsOfObj, OutOfRangeAreNoneAndCounted)
     const std::string corner = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 1\n";
     // 2^32 + 1: the last 32 bits are in range
     for (const char* lost : {"3", "7", "0", "-3", "4294967297"}) {
-        const Scene scene = obj(corner + "f 1//1 2/9/" + lost + " 3//2\n");
+        const Scene scene = obj(corner + "f 1//1 2//" + lost + " 3//2\n");
         EXPECT_EQ(scene.normals.corners, (std::vector<glm::uvec3>{{0, CornerNormals::kNone, 1}}));
         EXPECT_EQ(scene.notes, std::vector<std::string>{"1 corner of faces with a normal that the "
                                                         "file does not have: taken as without"});

@@ -78,7 +78,18 @@ std::vector<Trifle> trifles()
          kObj + "f 1//1 2//2 3//3\n",
          {"3 corners of faces with a normal that the file does not have: taken as without"}},
         {"obj_NanColour", kObj.substr(0, 7) + " nan nan nan\n" + kObj.substr(8) + "f 1 2 3\n", {}},
-        {"obj_TextureOutOfRange", kObj + "f 1/7 2/0 3/-9\n", {}},
+        {"obj_TextureOutOfRange",
+         kObj + "f 1/7 2/0 3/-9\n",
+         {"3 corners of faces with a texture coordinate that the file does not have: taken as "
+          "without"}},
+        {"obj_TextureIsNoNumber", kObj + "vt up\nvt 1 1.#IND left\nvt\nf 1/1 2/2 3/3\n", {}},
+        {"ply_OddTexcoord",
+         "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\nproperty int y\nproperty int "
+         "z\nelement face 1\nproperty list uchar int vertex_indices\nproperty list uchar float "
+         "texcoord\nend_header\n" +
+             kRows + "3 0 1 2 5 0 0 1 0 1\n",
+         {"1 face with a list texcoord that has not two numbers for each corner: taken as "
+          "without"}},
         {"ply_SmallFaces", ply(3, 4, kRows + "2 0 1\n3 0 1 2\n1 2\n0\n"), small_faces(3)},
         {"off_SmallFaces", "OFF 3 3 0\n" + kRows + "0\n3 0 1 2\n2 0 1 255 0 0\n", small_faces(2)},
         {"ply_NameTwice",
@@ -378,7 +389,8 @@ const GltfTrifle kGltfTrifles[] = {
          const int normals =
              m.add_vectors<float>({kNaN, 0, 0, 0, kNaN, 0, 0, 0, 1, kNaN, kNaN, kNaN});
          test::primitive(m)["attributes"]["NORMAL"] = normals;
-         test::primitive(m)["attributes"]["TEXCOORD_0"] = normals;
+         test::primitive(m)["attributes"]["TEXCOORD_0"] = m.add_accessor(
+             m.add_view(test::bytes_of<float>({kNaN, 0, 0, kNaN, 0, 0, 1, 1})), 5126, "VEC2", 4);
          return m.glb();
      }},
     {"DataUriAsItIs", "",

@@ -61,5 +61,26 @@ TEST(MakeScene, GeometryRefusesTheSame)
     EXPECT_NO_THROW(static_cast<void>(make_geometry(scene)));
 }
 
+TEST(MakeScene, TextureCoordinatesMustBeThereOrNone)
+{
+    Scene scene = make_scene(kCorners, std::vector<glm::uvec3>{{0, 1, 2}});
+    const auto fault = [&](const UvSet& uvs) {
+        scene.uvs = {{}, uvs};
+        try {
+            check_scene(scene);
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const std::vector<glm::dvec2> two(2, glm::dvec2(0.5));
+    EXPECT_EQ(fault({two, {{1, UvSet::kNone, 0}}}), "");
+    EXPECT_EQ(fault({two, {}}), "there are 2 texture coordinates for 3 vertices");
+    EXPECT_EQ(fault({two, {{1, 0, 0}, {0, 0, 0}}}),
+              "there are texture coordinates of 2 triangles for 1");
+    EXPECT_EQ(fault({two, {{1, 0, 2}}}),
+              "triangle 0 uses a texture coordinate that there is not: there are 2");
+}
+
 }  // namespace
 }  // namespace surfelao
