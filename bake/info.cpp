@@ -10,10 +10,12 @@
 #include "surfels/number_text.h"
 #include "surfels/receiver.h"
 #include "surfels/surface.h"
+#include "surfels/texels.h"
 
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <span>
 
@@ -57,6 +59,61 @@ std::vector<std::string> oddities(const Info& info)
     return odd;
 }
 
+/// The share of texels that show several sheets.
+double overlap_of(const MapRaster& raster)
+{
+    constexpr std::uint32_t kRows = 64;  // what memory holds at a time
+    std::uint64_t covered = 0, overlapping = 0;
+    for (std::uint32_t first = 0; first < raster.size().height; first += kRows) {
+        const std::vector<Texel> texels = raster.texels(first, kRows);
+        const auto is_next = [&](std::size_t i) {  // sheet of the texel before it
+            return i > 0 && i < texels.size() && texels[i].x == texels[i - 1].x &&
+                   texels[i].y == texels[i - 1].y;
+        };
+        for (std::size_t i = 0; i < texels.size(); ++i) {
+            covered += is_next(i) ? 0 : 1;
+            overlapping += !is_next(i) && is_next(i + 1) ? 1 : 0;
+        }
+    }
+    return covered == 0 ? 0.0 : static_cast<double>(overlapping) / static_cast<double>(covered);
+}
+
+UvReport report_of(const Geometry& geometry, const UvSet& uvs)
+{
+    UvReport report;
+    for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
+        const glm::uvec3 corners =
+            uvs.corners.empty() ? geometry.triangles[t] : uvs.corners[geometry.scene_triangle(t)];
+        if (std::max({corners.x, corners.y, corners.z}) == UvSet::kNone)
+            continue;
+        ++report.triangles;
+        const glm::dvec2 b = uvs.values[corners.y] - uvs.values[corners.x];
+        const glm::dvec2 c = uvs.values[corners.z] - uvs.values[corners.x];
+        const double area = 0.5 * std::abs(b.x * c.y - b.y * c.x);
+        const double reach = std::max({std::abs(b.x), std::abs(b.y), std::abs(c.x), std::abs(c.y)});
+        if (std::isfinite(area) && reach <= kMostTiles)
+            report.sheets += area;
+    }
+    const MapRaster raster(geometry, uvs, kUvMap);
+    report.flat = raster.flat_triangles() - (geometry.triangles.size() - report.triangles);
+    report.outside = raster.outside_triangles();
+    if (report.sheets <= kMostSheets)
+        report.overlap = overlap_of(raster);
+    return report;
+}
+
+std::vector<UvReport> uv_reports(const Mesh& mesh)
+{
+    std::vector<UvReport> reports;
+    for (std::uint32_t set = 0; set < mesh.scene.uvs.size(); ++set) {
+        if (mesh.scene.uvs[set].empty())
+            continue;
+        reports.push_back(report_of(mesh.geometry, mesh.scene.uvs[set]));
+        reports.back().set = set;
+    }
+    return reports;
+}
+
 /// What the file holds, without an engine.
 void look_at(const Mesh& mesh, Info& info)
 {
@@ -70,6 +127,7 @@ void look_at(const Mesh& mesh, Info& info)
     info.normals_in_file = !scene.normals.empty();
     info.corners_from_file = mesh.surface.corners_from_file;
     info.replaced_corners = mesh.surface.replaced_corners;
+    info.uvs = uv_reports(mesh);
     info.topology = analyse_topology(geometry);
     info.half_edges = examine_half_edges(geometry);
 
@@ -113,6 +171,22 @@ std::string normals_text(const Info& info)
            count_text(3 * (info.triangles - info.dropped_triangles), "corner");
 }
 
+/// A share of something; what is above zero is said to be.
+std::string percent_text(double share)
+{
+    return share > 0.0 && share < 0.0005 ? "less than 0.1 %" : fixed(100.0 * share, 1) + " %";
+}
+
+std::string uvs_text(const UvReport& uvs)
+{
+    const std::string size = std::to_string(kUvMap.width) + " x " + std::to_string(kUvMap.height);
+    return "texture coordinates: set " + std::to_string(uvs.set) + ", " +
+           count_text(uvs.triangles, "triangle") + ", " + std::to_string(uvs.flat) +
+           " without area there, " + std::to_string(uvs.outside) + " outside of [0, 1], " +
+           (uvs.overlap ? percent_text(*uvs.overlap) + " of texels covered twice (at " + size + ")"
+                        : "the map covered " + fixed(uvs.sheets, 0) + " times over");
+}
+
 }  // namespace
 
 Info inspect(const std::filesystem::path& input, const Progress& progress)
@@ -153,6 +227,8 @@ std::string text_of(const Info& info)
         std::to_string(topology.closed_component_count) + " of them closed, " +
         count_text(info.half_edges.handle_count, "handle") + "\n";
     text += "  " + normals_text(info) + "\n";
+    for (const UvReport& uvs : info.uvs)
+        text += "  " + uvs_text(uvs) + "\n";
     if (info.parts.size() > 1) {
         Table table({"  part", "name", "vertices", "triangles"});
         for (std::size_t i = 0; i < std::min(kPartsShown, info.parts.size()); ++i) {

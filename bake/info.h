@@ -5,6 +5,7 @@
 #include "surfels/half_edges.h"
 #include "surfels/progress.h"
 #include "surfels/scene.h"
+#include "surfels/texels.h"
 #include "surfels/topology.h"
 
 #include <glm/vec3.hpp>
@@ -16,6 +17,22 @@
 #include <vector>
 
 namespace surfelao {
+
+/// A set of texture coordinates as a map of kUvMap would be baked over it. Triangles without area
+/// in space do not count.
+struct UvReport {
+    std::uint32_t set = 0;
+    std::uint64_t triangles = 0;  ///< with coordinates at all corners
+    std::uint64_t flat = 0;       ///< of these: show no texel (MapRaster::flat_triangles)
+    std::uint64_t outside = 0;    ///< of these: reach out of [0, 1]
+    double sheets = 0.0;          ///< area of those that show texels, 1 = that of the map
+    /// Of the texels that show the surface, the share that shows several sheets of it. Not looked
+    /// for where there are more than kMostSheets: the surface repeats the map.
+    std::optional<double> overlap;
+};
+
+inline constexpr MapSize kUvMap{1024, 1024};
+inline constexpr double kMostSheets = 8.0;
 
 struct Info {
     std::filesystem::path input;
@@ -29,6 +46,7 @@ struct Info {
     bool normals_in_file = false;
     std::uint64_t corners_from_file = 0;  ///< corners of triangles that a bake shades so
     std::uint64_t replaced_corners = 0;   ///< the file's were not usable there
+    std::vector<UvReport> uvs;            ///< sets that some triangle has
     std::uint64_t receivers = 0;          ///< places where a bake asks for occlusion
     std::uint64_t ill_defined = 0;        ///< of `examined`: reference/well_defined.h
     std::uint64_t examined = 0;           ///< receivers that were looked at

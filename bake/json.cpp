@@ -246,6 +246,15 @@ std::string json_of(const Info& info)
                          {"vertices", part.vertex_count},
                          {"triangles", part.triangle_count}});
     }
+    Json uvs = Json::array();
+    for (const UvReport& report : info.uvs) {
+        uvs.push_back({{"set", report.set},
+                       {"triangles", report.triangles},
+                       {"flat", report.flat},
+                       {"outside", report.outside},
+                       {"sheets", report.sheets},
+                       {"overlap", report.overlap ? Json(*report.overlap) : Json()}});
+    }
     const auto point = [](glm::dvec3 p) { return Json{p.x, p.y, p.z}; };
     const Json json = {{"input", info.input.string()},
                        {"vertices", info.vertices},
@@ -258,6 +267,7 @@ std::string json_of(const Info& info)
                        {"normals_in_file", info.normals_in_file},
                        {"corners_from_file", info.corners_from_file},
                        {"replaced_corners", info.replaced_corners},
+                       {"uvs", uvs},
                        {"receivers", info.receivers},
                        {"ill_defined", info.ill_defined},
                        {"examined", info.examined},

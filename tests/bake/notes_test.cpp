@@ -145,6 +145,45 @@ TEST_F(Notes, NormalsOfTheFileThatAreOfNoUse)
     EXPECT_TRUE(baked().empty());
 }
 
+// a square over the left half of the map, its mirror image in the same place, a triangle that
+// reaches out and lies on both again, one without area there, one without area in space, and one
+// without coordinates
+TEST_F(Notes, InfoTellsWhereTrianglesLieInTheMap)
+{
+    std::ofstream file(settings_.input);
+    file << "vt 0 0\nvt .5 0\nvt .5 1\nvt 0 1\nvt -1 0\nvt nan 0\n";
+    for (int n = 0; n < 6; ++n)
+        file << "v 0 0 " << n << "\nv 1 0 " << n << "\nv 1 1 " << n << "\nv 0 1 " << n << "\n";
+    file << "f 1/1 2/2 3/3 4/4\nf 5/2 6/1 7/4 8/3\nf 9/5 10/1 11/3\nf 13/1 14/2 15/6\n"
+            "f 17/1 17/2 18/3\nf 21 22/2 23/3\n";
+    file.close();
+    const Info info = inspect(settings_.input);
+    ASSERT_EQ(info.uvs.size(), 1u);
+    const UvReport& uvs = info.uvs[0];
+    EXPECT_EQ(uvs.set, 0u);
+    EXPECT_EQ(uvs.triangles, 6u);
+    EXPECT_EQ(uvs.flat, 1u);
+    EXPECT_EQ(uvs.outside, 1u);
+    EXPECT_NEAR(uvs.sheets, 1.5, 1e-12);
+    // in the right half the triangle is alone, on a quarter of the map; elsewhere it does not count
+    EXPECT_NEAR(uvs.overlap.value(), 0.5 / 0.75, 0.003);
+    EXPECT_NE(text_of(info).find("texture coordinates: set 0, 6 triangles, 1 without area there, "
+                                 "1 outside of [0, 1], 66.6 % of texels covered twice"),
+              std::string::npos)
+        << text_of(info);
+    EXPECT_NE(json_of(info).find("\"overlap\": 0.66"), std::string::npos);
+}
+
+TEST_F(Notes, InfoLooksForNoOverlapWhereTheMapRepeats)
+{
+    std::ofstream(settings_.input) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nvt 5 0\nvt 5 4\n"
+                                      "f 1/1 2/2 3/3\n";
+    const Info info = inspect(settings_.input);
+    EXPECT_FALSE(info.uvs.at(0).overlap);
+    EXPECT_NE(text_of(info).find("the map covered 10 times over"), std::string::npos);
+    EXPECT_NE(json_of(info).find("\"overlap\": null"), std::string::npos);
+}
+
 TEST_F(Notes, WhatTheReaderPassesOverComesFirst)
 {
     Scene scene = scenes::flipped(scenes::sphere({0, 0, 0}, 1, 4));
