@@ -2,6 +2,7 @@
 
 #include "bake/notes.h"
 #include "bake/peak_memory.h"
+#include "bake/texel_job.h"
 #include "engines/threads.h"
 #include "files/file_type.h"
 #include "files/maker_mark.h"
@@ -50,6 +51,35 @@ VertexBake answer(const Mesh& mesh, const VertexTarget& target, const StageProgr
     return bake;
 }
 
+/// Solves, writes the output, and fills in the report what is of the values.
+void bake_at_vertices(const std::shared_ptr<const Mesh>& mesh, BakeReport& report,
+                      const StageProgress& progress)
+{
+    const BakeSettings& settings = report.settings;
+    Stopwatch stage;
+    const VertexTarget target(mesh, settings.target);
+    report.receivers = target.receivers().size();
+    report.seconds.read += stage.lap();
+    const VertexBake baked = answer(*mesh, target, progress, report);
+
+    enter(progress, "write");
+    stage.lap();
+    std::vector<std::string> written_notes;
+    tbb::parallel_invoke(
+        [&] {
+            written_notes = write_scene(settings.output, mesh->scene, baked.values,
+                                        {settings.colors, settings.encoding, mark_of(settings)});
+        },
+        [&] {  // a writer leaves cores idle
+            report.misfit = target.misfit(baked.answers, baked.values);
+            report.notes = notes_of({*mesh, analyse_topology(mesh->geometry),
+                                     settings.engine.definition, baked.values, report.misfit});
+        });
+    report.notes.insert(report.notes.end(), written_notes.begin(), written_notes.end());
+    report.mean_occlusion = mean_occlusion_of(mesh->surface, baked.values);
+    report.seconds.write = stage.lap();
+}
+
 }  // namespace
 
 BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
@@ -58,7 +88,10 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     report.settings = settings;
     report.threads = thread_count();
     Stopwatch whole, stage;
-    check_output(settings.input, settings.output);
+    if (settings.texels)
+        check_texel_output(settings);
+    else
+        check_output(settings.input, settings.output);
 
     enter(progress, "read");
     const auto mesh = std::make_shared<const Mesh>(
@@ -67,36 +100,19 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     const Geometry& geometry = mesh->geometry;
     EngineSettings& engine = report.settings.engine;
     engine.definition = definition_of(settings.max_distance, settings.kernel, geometry.frame);
-    const VertexTarget target(mesh, settings.target);
     report.seconds.read = stage.lap();
-
-    const VertexBake baked = answer(*mesh, target, progress, report);
-
-    enter(progress, "write");
-    stage.lap();
-    std::vector<std::string> written_notes;
-    tbb::parallel_invoke(
-        [&] {
-            written_notes = write_scene(settings.output, scene, baked.values,
-                                        {settings.colors, settings.encoding, mark_of(settings)});
-        },
-        [&] {  // a writer leaves cores idle
-            report.misfit = target.misfit(baked.answers, baked.values);
-            report.notes = notes_of({*mesh, analyse_topology(geometry), engine.definition,
-                                     baked.values, report.misfit});
-        });
-    report.notes.insert(report.notes.end(), written_notes.begin(), written_notes.end());
-    report.seconds.write = stage.lap();
+    if (settings.texels)
+        bake_texels(*mesh, report, progress);
+    else
+        bake_at_vertices(mesh, report, progress);
 
     report.vertices = scene.positions.size();
     report.triangles = scene.triangles.size();
     report.dropped_triangles = geometry.dropped_triangles;
     report.vertices_without_normal = static_cast<std::uint64_t>(
         std::count(mesh->surface.normals.begin(), mesh->surface.normals.end(), glm::vec3(0.0f)));
-    report.receivers = target.receivers().size();
     report.corners_from_file = mesh->surface.corners_from_file;
     report.replaced_corners = mesh->surface.replaced_corners;
-    report.mean_occlusion = mean_occlusion_of(mesh->surface, baked.values);
     report.seconds.total = whole.lap();
     report.peak_rss_bytes = peak_rss_bytes();
     return report;

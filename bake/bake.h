@@ -1,6 +1,7 @@
 /// bake.h: the job: a mesh file in, the same mesh with occlusion at every vertex out.
 #pragma once
 
+#include "bake/map_bake.h"
 #include "bake/vertex_bake.h"
 #include "bake/vertex_target.h"
 #include "engines/engine.h"
@@ -17,6 +18,16 @@
 
 namespace surfelao {
 
+/// A map over the file's own texture coordinates.
+struct TexelSettings {
+    std::uint32_t size = 1024;  ///< of both sides, 1 to kMostTexels
+    /// Scene::uvs; empty: the first that has a triangle with an area in the map
+    std::optional<std::uint32_t> uv_set;
+    std::uint32_t padding = 4;
+    MapDepth depth = MapDepth::byte;
+    bool bent = false;  ///< bent normals too, in world space, as STEM.bent.png beside STEM.png
+};
+
 struct BakeSettings {
     std::filesystem::path input;
     std::filesystem::path output;
@@ -28,15 +39,28 @@ struct BakeSettings {
     /// The engine is then the cheapest whose stated error lies below it (bake_to_error): > 0, and
     /// check >= 1. Of `engine` only the instructions count.
     std::optional<double> error = {};
+    std::optional<TexelSettings> texels = {};  ///< a map instead of values at vertices; no `error`
     VertexColors colors = VertexColors::automatic;
     Encoding encoding = Encoding::automatic;
 };
 
 /// Wall-clock seconds of each stage.
 struct BakeSeconds : VertexBakeSeconds {
-    double read = 0.0;   ///< the file, and the clean geometry
-    double write = 0.0;  ///< the file, and the notes meanwhile
+    double read = 0.0;    ///< the file, and the clean geometry
+    double raster = 0.0;  ///< texels: which of them, and where each is asked
+    double fill = 0.0;    ///< texels: those that nothing covers
+    double write = 0.0;   ///< the file, and the notes meanwhile
     double total = 0.0;
+};
+
+struct TexelReport {
+    std::uint32_t uv_set = 0;
+    std::uint64_t covered = 0;      ///< texels
+    std::uint64_t overlapping = 0;  ///< texels of several sheets: they hold the mean
+    double spread = 0.0;            ///< of these: RMS difference of a sheet to it
+    std::uint64_t flat_triangles = 0;
+    std::uint64_t outside_triangles = 0;
+    std::vector<std::filesystem::path> written;  ///< beside the output
 };
 
 struct BakeReport {
@@ -56,9 +80,10 @@ struct BakeReport {
     std::uint64_t replaced_corners = 0;   ///< the file's were not usable there
     std::optional<Misfit> misfit;         ///< of the values at vertices, as displayed
     std::optional<StatedError> error;     ///< as displayed
-    std::vector<Trial> trials;            ///< of settings.error
-    bool is_met = false;                  ///< settings.error is kept
-    std::vector<std::string> notes;       ///< bake/notes.h, then those of write_scene()
+    std::optional<TexelReport> texels;
+    std::vector<Trial> trials;       ///< of settings.error
+    bool is_met = false;             ///< settings.error is kept
+    std::vector<std::string> notes;  ///< bake/notes.h, then those of write_scene()
 };
 
 /// Reads, solves, writes. The output appears complete or not at all: after any exception an older
@@ -77,9 +102,12 @@ struct BatchEntry {
 /// Keys input, output, vertices, triangles, dropped_triangles, vertices_without_normal, surfels,
 /// engine, settings, seconds{read, surfels, tree, solve, fit, write, total}, receivers,
 /// corners_from_file, replaced_corners, peak_rss_bytes, residual, mean_occlusion, misfit{rms,
-/// share}, notes. What an engine or a target does not have is null. Failed: input, output, error.
-/// Skipped: input, output, skipped. A list of such objects for several files.
+/// share}, error, asked, texels, notes. What an engine or a target does not have is null. Failed:
+/// input, output, error. Skipped: input, output, skipped. A list of such objects for several files.
 [[nodiscard]] std::string json_of(std::span<const BatchEntry> batch);
+
+/// Where bent normals stand beside a map: "ao.bent.png" for "ao.png".
+[[nodiscard]] std::filesystem::path bent_path(const std::filesystem::path& output);
 
 /// Where a batch puts the result for `input`: the folder and the input's name; formats that cannot
 /// hold occlusion (STL) become .ply.

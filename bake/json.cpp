@@ -84,6 +84,22 @@ Json search_json_of(const BakeReport& report)
     return {{"error", *report.settings.error}, {"met", report.is_met}, {"trials", trials}};
 }
 
+Json json_of(const BakeReport& report, const TexelReport& texels)
+{
+    Json written = Json::array();
+    for (const std::filesystem::path& path : texels.written)
+        written.push_back(path.string());
+    return {{"size", report.settings.texels->size},
+            {"padding", report.settings.texels->padding},
+            {"uv_set", texels.uv_set},
+            {"covered", texels.covered},
+            {"overlapping", texels.overlapping},
+            {"spread", texels.spread},
+            {"flat_triangles", texels.flat_triangles},
+            {"outside_triangles", texels.outside_triangles},
+            {"written", written}};
+}
+
 Json json_of(const BatchEntry& entry)
 {
     Json json;
@@ -109,10 +125,11 @@ Json json_of(const BatchEntry& entry)
     add(json["settings"], report.settings.target);
     json["settings"]["colors"] = name_of(report.settings.colors);
     json["settings"]["encoding"] = name_of(report.settings.encoding);
-    json["seconds"] = {{"read", seconds.read},   {"surfels", seconds.surfels},
-                       {"tree", seconds.tree},   {"solve", seconds.solve},
-                       {"fit", seconds.fit},     {"check", seconds.check},
-                       {"write", seconds.write}, {"total", seconds.total}};
+    json["seconds"] = {{"read", seconds.read},       {"raster", seconds.raster},
+                       {"surfels", seconds.surfels}, {"tree", seconds.tree},
+                       {"solve", seconds.solve},     {"fit", seconds.fit},
+                       {"fill", seconds.fill},       {"check", seconds.check},
+                       {"write", seconds.write},     {"total", seconds.total}};
     json["receivers"] = report.receivers;
     json["corners_from_file"] = report.corners_from_file;
     json["replaced_corners"] = report.replaced_corners;
@@ -121,6 +138,7 @@ Json json_of(const BatchEntry& entry)
     json["mean_occlusion"] = report.mean_occlusion;
     json["misfit"] = json_of(report.misfit);
     json["error"] = json_of(report.error);
+    json["texels"] = report.texels ? json_of(report, *report.texels) : Json();
     json["asked"] = report.settings.error ? search_json_of(report) : Json();
     json["notes"] = report.notes;
     return json;

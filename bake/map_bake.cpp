@@ -32,6 +32,8 @@ public:
     /// After the last band.
     void finish()
     {
+        if (bake_.covered > 0)
+            bake_.mean_occlusion = occlusion_ / static_cast<double>(bake_.covered);
         if (bake_.overlapping > 0)
             bake_.spread = std::sqrt(squares_ / static_cast<double>(sheets_));
     }
@@ -57,6 +59,7 @@ private:
                 bake_.bent.values[3 * index + static_cast<std::size_t>(k)] = normal[k];
         }
         known_[index] = 1;
+        occlusion_ += mean;
         ++bake_.covered;
         if (sheets.size() < 2)
             return;
@@ -68,20 +71,36 @@ private:
 
     MapBake& bake_;
     std::vector<std::uint8_t>& known_;
-    double squares_ = 0.0;
+    double squares_ = 0.0, occlusion_ = 0.0;
     std::uint64_t sheets_ = 0;
 };
 
-/// The means of directions are shorter than one.
-void make_unit(Map& directions)
+/// The means of directions are shorter than one; from directions to what files hold.
+void encode_directions(Map& directions)
 {
     for (std::size_t i = 0; i + 2 < directions.values.size(); i += 3) {
         float* value = &directions.values[i];
         const glm::vec3 direction(value[0], value[1], value[2]);
         const float length = glm::length(direction);
-        for (int k = 0; k < 3 && length > 0.0f; ++k)
-            value[k] = direction[k] / length;
+        for (int k = 0; k < 3; ++k)
+            value[k] = 0.5f + 0.5f * (length > 0.0f ? direction[k] / length : 0.0f);
     }
+}
+
+StatedError error_of(const Mesh& mesh, const UvSet& uvs, const MapBake& bake,
+                     const MapSettings& settings, const Definition& definition,
+                     const Offset& offset, const Progress& progress)
+{
+    std::vector<double> density;
+    density.reserve(mesh.geometry.triangles.size());
+    for (std::uint32_t t = 0; t < mesh.geometry.triangles.size(); ++t)
+        density.push_back(uv_at(mesh.geometry, uvs, {t, {0.25f, 0.25f}}) ? 1.0 : 0.0);
+    const Shown shown = [&](const SurfacePoint& point) {
+        return 1.0f - fetch(bake.visibility, 0, *uv_at(mesh.geometry, uvs, point));
+    };
+    ErrorCheck check(mesh, density, offset, settings.check);
+    check.trace(definition, shown, progress);
+    return check.error_of(shown);
 }
 
 }  // namespace
@@ -138,10 +157,18 @@ MapBake bake_map(const Mesh& mesh, const UvSet& uvs, const MapSettings& settings
     if (settings.bent) {
         std::vector<std::uint8_t> bent_known = known;
         fill_around(bake.bent, bent_known, settings.padding);
-        make_unit(bake.bent);
+        encode_directions(bake.bent);
+        round_to_depth(bake.bent, settings.depth, settings.half_is_whole);
     }
     fill_around(bake.visibility, known, settings.padding);
+    round_to_depth(bake.visibility, settings.depth, settings.half_is_whole);
     bake.seconds.fill = watch.lap();
+    if (settings.check > 0) {
+        enter("check", 0.0);
+        bake.error = error_of(mesh, uvs, bake, settings, engine.definition, offset,
+                              [&](double done) { return !progress || progress("check", done); });
+        bake.seconds.check = watch.lap();
+    }
     return bake;
 }
 

@@ -21,6 +21,9 @@ struct MapSettings {
     MapSize size{1024, 1024};
     std::uint32_t padding = 4;  ///< texels around what is covered that take their neighbours' mean
     bool bent = false;          ///< bent normals too
+    MapDepth depth = MapDepth::byte;
+    bool half_is_whole = true;           ///< what 16 bits are in the file (image/map.h)
+    std::uint32_t check = kCheckPoints;  ///< as BakeSettings::check
 };
 
 /// Texels of a band: receivers, answers and what engines need of them take some 100 bytes each.
@@ -32,14 +35,17 @@ struct MapSeconds {
     double tree = 0.0;
     double solve = 0.0;
     double fill = 0.0;
+    double check = 0.0;
 };
 
 struct MapBake {
-    Map visibility;                 ///< one channel, 1 = open
-    Map bent;                       ///< three channels, world space, unit length; or empty
-    std::uint64_t receivers = 0;    ///< points that were asked
-    std::uint64_t covered = 0;      ///< texels that show the surface
-    std::uint64_t overlapping = 0;  ///< texels with several sheets
+    Map visibility;                    ///< one channel, 1 = open; rounded as the file will be
+    Map bent;                          ///< three channels, world space, (n + 1) / 2; or empty
+    std::optional<StatedError> error;  ///< of what is displayed: fetched between texels
+    std::uint64_t receivers = 0;       ///< points that were asked
+    std::uint64_t covered = 0;         ///< texels that show the surface
+    std::uint64_t overlapping = 0;     ///< texels with several sheets
+    double mean_occlusion = 0.0;       ///< over covered texels
     double spread = 0.0;  ///< of these: RMS difference of the sheets' occlusion to their mean
     std::uint64_t flat_triangles = 0;     ///< that show no texel
     std::uint64_t outside_triangles = 0;  ///< that reach out of the map

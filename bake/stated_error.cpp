@@ -103,9 +103,11 @@ ErrorCheck::ErrorCheck(const Mesh& mesh, std::span<const double> density, const 
     : geometry_(mesh.geometry)
 {
     std::vector<double> measure = triangle_areas(geometry_);
-    const double whole = sum_of(measure);
-    for (std::size_t t = 0; t < measure.size(); ++t)
+    double whole = 0.0;
+    for (std::size_t t = 0; t < measure.size(); ++t) {
+        whole += density[t] > 0.0 ? measure[t] : 0.0;
         measure[t] *= density[t];
+    }
     const double sum = sum_of(measure);
     const std::vector<SurfacePoint> places = surface_points(measure, count);
     receivers_ = receivers_at(geometry_, mesh.surface, places, offset);

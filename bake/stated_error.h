@@ -78,7 +78,8 @@ using Shown = std::function<float(const SurfacePoint&)>;
 /// Points of a mesh and what is true there; measures whatever is displayed on it.
 class ErrorCheck {
 public:
-    /// Chooses the points. mesh must outlive it. density: > 0, one per triangle. offset: that of
+    /// Chooses the points. mesh must outlive it. density: one per triangle; where it is 0, as where
+    /// nothing is displayed, the surface does not count. offset: that of
     /// the job. count: 1 to kMostCheckPoints. O(n).
     ErrorCheck(const Mesh& mesh, std::span<const double> density, const Offset& offset,
                std::uint32_t count);

@@ -1,10 +1,11 @@
 #include "bake/bake.h"
+#include "cli/bake_text.h"
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/output.h"
 #include "cli/progress_bar.h"
+#include "cli/texel_options.h"
 #include "engines/threads.h"
-#include "surfels/number_text.h"
 #include "surfels/progress.h"
 
 #include <CLI/CLI.hpp>
@@ -25,6 +26,7 @@ struct BakeOptions {
     MeasureOptions measure;
     SurfaceOptions surface;
     ColorOptions colors;
+    TexelOptions texels;
     std::uint32_t check = kCheckPoints;
     std::optional<double> error;
     bool resume = false;
@@ -62,85 +64,11 @@ std::vector<Job> jobs_of(const BakeOptions& options)
         jobs.push_back({input, into_folder ? output_in_folder(input, options.output)
                                            : fs::path(options.output)});
         files.writes(jobs.back().output, input);
+        if (options.texels.bent == "world")
+            files.writes(bent_path(jobs.back().output), input);
     }
     files.writes_report(options.json, "--json");
     return jobs;
-}
-
-/// "masks, good, at 8192 places fitted to the vertices, normals of the file at 960 corners"
-std::string question_of(const BakeReport& report)
-{
-    const bool fitted = report.settings.target.values == VertexValues::fit;
-    std::string text = name_of(report.settings.engine.engine) + ", " +
-                       setting_of(report.settings.engine) + ", at " +
-                       std::to_string(report.receivers) +
-                       (fitted ? " places fitted to the vertices" : " places");
-    if (report.corners_from_file > 0)
-        text += ", normals of the file at " + std::to_string(report.corners_from_file) + " corners";
-    return text;
-}
-
-/// "error 0.0041 (0.0037 to 0.0046), bias -0.0006, 95 % within 0.0101, floor 0.0038; 400 points"
-std::string statement_of(const StatedError& error)
-{
-    std::string text = "error " + fixed(error.rmse, 4) + " (" + fixed(error.low, 4) + " to " +
-                       fixed(error.high, 4) + "), bias " + (error.bias < 0.0 ? "" : "+") +
-                       fixed(error.bias, 4) + ", 95 % within " + fixed(error.p95, 4);
-    if (error.floor)
-        text += ", floor " + fixed(*error.floor, 4);
-    text += "; " + std::to_string(error.points) + " points";
-    if (error.ill_defined > 0)
-        text += ", " + std::to_string(error.ill_defined) + " ill-defined left out";
-    return text;
-}
-
-/// What was tried for --error, and whether that was enough.
-std::string search_of(const BakeReport& report)
-{
-    std::string text = "error asked " + exact(*report.settings.error) + ":";
-    for (const Trial& trial : report.trials)
-        text += " " + name_of(trial.engine.engine) + " " + setting_of(trial.engine) + " " +
-                fixed(trial.error.rmse, 4) + ",";
-    text.back() = ';';
-    if (report.is_met)
-        return text + " met by the last";
-    const StatedError& last = *report.error;
-    if (last.floor && *last.floor > *report.settings.error)
-        return text + " not met: values at these vertices err by " + fixed(*last.floor, 4) +
-               " whoever answers (floor); a finer mesh helps";
-    if (last.floor && last.high > 0.0 &&
-        *last.floor * last.high > *report.settings.error * last.rmse)
-        return text + " not met for sure: the floor of these vertices, " + fixed(*last.floor, 4) +
-               ", is too near; more points (--check) or a finer mesh help";
-    return text + " not met";
-}
-
-void print(const BakeReport& report)
-{
-    const BakeSeconds& seconds = report.seconds;
-    const auto time = [](double s) { return fixed(s, 3) + " s"; };
-    std::cout << report.settings.input.string() << " -> " << report.settings.output.string() << '\n'
-              << "  " << report.vertices << " vertices, " << report.triangles << " triangles";
-    if (report.dropped_triangles > 0)
-        std::cout << " (" << report.dropped_triangles << " without area dropped)";
-    if (report.vertices_without_normal > 0)
-        std::cout << ", " << report.vertices_without_normal << " vertices without a normal";
-    std::cout << "\n  " << question_of(report) << ": mean occlusion "
-              << fixed(report.mean_occlusion, 4);
-    if (report.residual)
-        std::cout << ", residual " << fixed(*report.residual, 4);
-    if (report.settings.error && report.error)
-        std::cout << "\n  " << search_of(report);
-    if (report.error)
-        std::cout << "\n  " << statement_of(*report.error);
-    std::cout << "\n  read " << time(seconds.read) << ", surfels " << time(seconds.surfels)
-              << ", tree " << time(seconds.tree) << ", solve " << time(seconds.solve) << ", fit "
-              << time(seconds.fit) << ", check " << time(seconds.check) << ", write "
-              << time(seconds.write) << ", total " << time(seconds.total) << "; " << report.threads
-              << (report.threads == 1 ? " thread, " : " threads, ")
-              << report.peak_rss_bytes / (1024 * 1024) << " MiB\n";
-    for (const std::string& note : report.notes)
-        std::cout << "  note: " << note << '\n';
 }
 
 BakeSettings settings_for(const BakeOptions& options, const Job& job)
@@ -154,6 +82,7 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.target = target_settings_of(options.surface);
     settings.check = options.check;
     settings.error = options.error;
+    settings.texels = texel_settings_of(options.texels, job.output);
     settings.colors = colors_of(options.colors);
     settings.encoding = encoding_of(options.colors);
     return settings;
@@ -212,8 +141,11 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
             continue;
         }
         written.push_back(job.output);
+        if (entry.report->texels)
+            written.insert(written.end(), entry.report->texels->written.begin(),
+                           entry.report->texels->written.end());
         if (!quiet)
-            print(*entry.report);
+            print_report(*entry.report);
     }
     if (options.json)
         write_report(*options.json, json_of(entries));
@@ -225,20 +157,38 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
     return failed > 0 ? kFailed : kDone;
 }
 
+/// Throws UsageError for what contradicts itself.
+void check_options(const BakeOptions& options)
+{
+    const EngineSettings engine = settings_of(options.engine);
+    static_cast<void>(distance_limit_of(options.measure));
+    static_cast<void>(target_settings_of(options.surface));
+    check_kernel(engine.engine, kernel_of(options.measure));
+    if (options.error && options.check == 0)
+        throw UsageError("--error needs the points of --check.");
+    if (options.error && kernel_of(options.measure) != Kernel::cosine)
+        throw UsageError("--error tries masks, which know --kernel cosine only.");
+    if (options.error && texel_settings_of(options.texels, options.output))
+        throw UsageError("--error is for values at vertices.");
+}
+
 }  // namespace
 
 void add_bake_command(CLI::App& app, Work& work)
 {
     const auto options = std::make_shared<BakeOptions>();
-    CLI::App* command = app.add_subcommand(
-        "bake", "Occlusion and bent normals at every vertex: a mesh file in, the same mesh out");
+    CLI::App* command = app.add_subcommand("bake",
+                                           "Occlusion and bent normals at every vertex, or as a "
+                                           "map: a mesh file in, the same mesh or a "
+                                           "picture out");
     command->add_option("IN", options->inputs, "Mesh files: .obj .ply .off .stl .gltf .glb")
         ->required()
         ->type_name("");
     command
         ->add_option(
             "-o,--output", options->output,
-            "Mesh file (.ply .obj .off, .gltf/.glb from glTF), or a folder (made where it is "
+            "Mesh file (.ply .obj .off, .gltf/.glb from glTF), a map over the file's texture "
+            "coordinates (.png .tif .exr), or a folder (made where it is "
             "missing, for several files and behind a /): there every "
             "result has its input's name, .ply for .stl, and only files that bake made are "
             "replaced")
@@ -248,6 +198,7 @@ void add_bake_command(CLI::App& app, Work& work)
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
     add_color_options(*command, options->colors);
+    add_texel_options(*command, options->texels);
     command
         ->add_option("--check", options->check,
                      "Points of the surface at which the result is measured against rays; 0: none")
@@ -278,14 +229,7 @@ void add_bake_command(CLI::App& app, Work& work)
         ->type_name("FILE");
     add_thread_option(*command, options->threads);
     command->callback([options, &work] {
-        const EngineSettings engine = settings_of(options->engine);
-        static_cast<void>(distance_limit_of(options->measure));
-        static_cast<void>(target_settings_of(options->surface));
-        check_kernel(engine.engine, kernel_of(options->measure));
-        if (options->error && options->check == 0)
-            throw UsageError("--error needs the points of --check.");
-        if (options->error && kernel_of(options->measure) != Kernel::cosine)
-            throw UsageError("--error tries masks, which know --kernel cosine only.");
+        check_options(*options);
         work = [options, jobs = jobs_of(*options)] { return run(*options, jobs); };
     });
 }

@@ -58,6 +58,15 @@ float fetch(const Map& map, std::uint32_t channel, glm::dvec2 uv)
     return static_cast<float>(sum);
 }
 
+void round_to_depth(Map& map, MapDepth depth, bool half_is_whole)
+{
+    if (depth == MapDepth::whole || (depth == MapDepth::half && !half_is_whole))
+        return;
+    const float steps = depth == MapDepth::byte ? 255.0f : 65535.0f;
+    for (float& value : map.values)
+        value = std::round(std::clamp(value, 0.0f, 1.0f) * steps) / steps;
+}
+
 void fill_around(Map& map, std::vector<std::uint8_t>& known, std::uint32_t rings)
 {
     SURFELAO_CHECK(known.size() == map.texels());

@@ -42,6 +42,10 @@ enum class MapDepth {
 /// repeating beyond [0, 1]. uv must be finite.
 [[nodiscard]] float fetch(const Map& map, std::uint32_t channel, glm::dvec2 uv);
 
+/// Numbers as a file of this depth holds them: bytes and, where `half` means whole numbers, 16 bits
+/// are rounded to the nearest step and cut to [0, 1].
+void round_to_depth(Map& map, MapDepth depth, bool half_is_whole);
+
 /// Gives texels without a value (known[i] == 0) what surrounds them, so that no filter fetches an
 /// empty one: `rings` times the mean of those of the eight neighbours that have one, then the mean
 /// over all that were known. Neighbours do not repeat beyond the rim. known is 1 everywhere

@@ -30,6 +30,12 @@ double twice_area(const glm::dvec2 (&p)[3])
     return cross(p[1] - p[0], p[2] - p[0]);
 }
 
+glm::uvec3 corners_in_map(const Geometry& geometry, const UvSet& uvs, std::uint32_t triangle)
+{
+    return uvs.corners.empty() ? geometry.triangles[triangle]
+                               : uvs.corners[geometry.scene_triangle(triangle)];
+}
+
 /// On which side of the line a-b the point lies: exactly opposite for b-a.
 double side_of(glm::dvec2 a, glm::dvec2 b, glm::dvec2 point)
 {
@@ -134,6 +140,23 @@ std::uint32_t folded(std::int64_t texel, std::uint32_t side)
 }
 
 }  // namespace
+
+std::optional<glm::dvec2> uv_at(const Geometry& geometry, const UvSet& uvs,
+                                const SurfacePoint& point)
+{
+    const glm::uvec3 corners = corners_in_map(geometry, uvs, point.triangle);
+    const double weights[3] = {1.0 - double{point.at.x} - double{point.at.y}, point.at.x,
+                               point.at.y};
+    glm::dvec2 uv(0.0);
+    for (int k = 0; k < 3; ++k) {
+        if (corners[k] == UvSet::kNone)
+            return {};
+        uv += weights[k] * uvs.values[corners[k]];
+    }
+    if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
+        return {};
+    return uv;
+}
 
 /// A few rows of the map, filled by one thread.
 class MapRaster::Strip {
@@ -266,9 +289,7 @@ MapRaster::MapRaster(const Geometry& geometry, const UvSet& uvs, MapSize size) :
             "a map has 1 to " + std::to_string(kMostTexels) + " texels a side");
     const glm::dvec2 scale(size.width, size.height);
     for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t) {
-        const std::size_t in_scene = geometry.scene_triangle(t);
-        const glm::uvec3 corners =
-            uvs.corners.empty() ? geometry.triangles[t] : uvs.corners[in_scene];
+        const glm::uvec3 corners = corners_in_map(geometry, uvs, t);
         Placed placed;
         placed.triangle = t;
         double least = HUGE_VAL, most = -HUGE_VAL;

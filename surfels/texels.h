@@ -17,9 +17,14 @@
 #include <glm/vec2.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace surfelao {
+
+/// Where a point of the surface lies in the map; nothing where its triangle has no place there.
+[[nodiscard]] std::optional<glm::dvec2> uv_at(const Geometry& geometry, const UvSet& uvs,
+                                              const SurfacePoint& point);
 
 /// Texels of one side of a map.
 inline constexpr std::uint32_t kMostTexels = 32768;

@@ -1,0 +1,16 @@
+/// texel_job.h: the part of bake() that makes maps. Internal to bake/.
+#pragma once
+
+#include "bake/bake.h"
+#include "surfels/surface.h"
+
+namespace surfelao {
+
+/// Throws InputError where the output is no map that could be written.
+void check_texel_output(const BakeSettings& settings);
+
+/// Solves, writes the output, and fills in the report what is of the map. settings.texels is there;
+/// report.settings.engine has its definition.
+void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& progress);
+
+}  // namespace surfelao

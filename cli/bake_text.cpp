@@ -1,0 +1,96 @@
+#include "cli/bake_text.h"
+
+#include "surfels/number_text.h"
+
+#include <iostream>
+#include <string>
+
+namespace surfelao {
+namespace {
+
+/// "masks, good, at 8192 places fitted to the vertices, normals of the file at 960 corners"
+std::string question_of(const BakeReport& report)
+{
+    const BakeSettings& settings = report.settings;
+    std::string text = name_of(settings.engine.engine) + ", " + setting_of(settings.engine) +
+                       ", at " + std::to_string(report.receivers) + " places";
+    if (report.texels)
+        text += " of " + std::to_string(report.texels->covered) + " texels (texture coordinates " +
+                std::to_string(report.texels->uv_set) + ")";
+    else if (settings.target.values == VertexValues::fit)
+        text += " fitted to the vertices";
+    if (report.corners_from_file > 0)
+        text += ", normals of the file at " + std::to_string(report.corners_from_file) + " corners";
+    return text;
+}
+
+/// "error 0.0041 (0.0037 to 0.0046), bias -0.0006, 95 % within 0.0101, floor 0.0038; 400 points"
+std::string statement_of(const StatedError& error)
+{
+    std::string text = "error " + fixed(error.rmse, 4) + " (" + fixed(error.low, 4) + " to " +
+                       fixed(error.high, 4) + "), bias " + (error.bias < 0.0 ? "" : "+") +
+                       fixed(error.bias, 4) + ", 95 % within " + fixed(error.p95, 4);
+    if (error.floor)
+        text += ", floor " + fixed(*error.floor, 4);
+    text += "; " + std::to_string(error.points) + " points";
+    if (error.ill_defined > 0)
+        text += ", " + std::to_string(error.ill_defined) + " ill-defined left out";
+    return text;
+}
+
+/// What was tried for --error, and whether that was enough.
+std::string search_of(const BakeReport& report)
+{
+    std::string text = "error asked " + exact(*report.settings.error) + ":";
+    for (const Trial& trial : report.trials)
+        text += " " + name_of(trial.engine.engine) + " " + setting_of(trial.engine) + " " +
+                fixed(trial.error.rmse, 4) + ",";
+    text.back() = ';';
+    if (report.is_met)
+        return text + " met by the last";
+    const StatedError& last = *report.error;
+    if (last.floor && *last.floor > *report.settings.error)
+        return text + " not met: values at these vertices err by " + fixed(*last.floor, 4) +
+               " whoever answers (floor); a finer mesh helps";
+    if (last.floor && last.high > 0.0 &&
+        *last.floor * last.high > *report.settings.error * last.rmse)
+        return text + " not met for sure: the floor of these vertices, " + fixed(*last.floor, 4) +
+               ", is too near; more points (--check) or a finer mesh help";
+    return text + " not met";
+}
+
+}  // namespace
+
+void print_report(const BakeReport& report)
+{
+    const BakeSeconds& seconds = report.seconds;
+    const auto time = [](double s) { return fixed(s, 3) + " s"; };
+    std::cout << report.settings.input.string() << " -> " << report.settings.output.string() << '\n'
+              << "  " << report.vertices << " vertices, " << report.triangles << " triangles";
+    if (report.dropped_triangles > 0)
+        std::cout << " (" << report.dropped_triangles << " without area dropped)";
+    if (report.vertices_without_normal > 0)
+        std::cout << ", " << report.vertices_without_normal << " vertices without a normal";
+    std::cout << "\n  " << question_of(report) << ": mean occlusion "
+              << fixed(report.mean_occlusion, 4);
+    if (report.residual)
+        std::cout << ", residual " << fixed(*report.residual, 4);
+    if (report.settings.error && report.error)
+        std::cout << "\n  " << search_of(report);
+    if (report.error)
+        std::cout << "\n  " << statement_of(*report.error);
+    std::cout << "\n  read " << time(seconds.read);
+    if (report.texels)
+        std::cout << ", raster " << time(seconds.raster);
+    std::cout << ", surfels " << time(seconds.surfels) << ", tree " << time(seconds.tree)
+              << ", solve " << time(seconds.solve)
+              << (report.texels ? ", fill " + time(seconds.fill) : ", fit " + time(seconds.fit))
+              << ", check " << time(seconds.check) << ", write " << time(seconds.write)
+              << ", total " << time(seconds.total) << "; " << report.threads
+              << (report.threads == 1 ? " thread, " : " threads, ")
+              << report.peak_rss_bytes / (1024 * 1024) << " MiB\n";
+    for (const std::string& note : report.notes)
+        std::cout << "  note: " << note << '\n';
+}
+
+}  // namespace surfelao

@@ -1,0 +1,32 @@
+/// texel_options.h: the options of maps.
+#pragma once
+
+#include "bake/bake.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace surfelao {
+
+/// What was asked for: empty where an option was not given.
+struct TexelOptions {
+    std::optional<std::uint32_t> size;
+    std::optional<std::string> uv;
+    std::optional<std::uint32_t> padding;
+    std::optional<int> depth;
+    std::optional<std::string> bent;
+};
+
+void add_texel_options(CLI::App& command, TexelOptions& options);
+
+/// Nothing where the output is no picture. Throws UsageError for what contradicts itself.
+[[nodiscard]] std::optional<TexelSettings> texel_settings_of(const TexelOptions& options,
+                                                             const std::filesystem::path& output);
+
+}  // namespace surfelao
