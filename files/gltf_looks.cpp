@@ -1,6 +1,7 @@
 #include "files/gltf_looks.h"
 
 #include "files/gltf_json.h"
+#include "surfels/srgb.h"
 
 #include <nlohmann/json.hpp>
 
@@ -146,7 +147,8 @@ std::size_t GltfLooks::add_colors(VertexColors what, std::optional<std::size_t> 
     for (std::size_t v = 0; v < values.size(); ++v) {
         const glm::vec3 color = color_of(what, values[v], glm::vec3(own_colors[v]));
         for (int k = 0; k < 3; ++k)
-            numbers.push_back(options_.encoding == Encoding::srgb ? to_srgb(color[k]) : color[k]);
+            numbers.push_back(options_.encoding == Encoding::srgb ? srgb_encode(color[k])
+                                                                  : color[k]);
         numbers.push_back(static_cast<float>(own_colors[v].a));
     }
     return added_.add_floats(4, numbers, kAddedColors);

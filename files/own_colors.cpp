@@ -3,6 +3,7 @@
 #include "files/maker_mark.h"
 #include "files/text_cursor.h"
 #include "surfels/number_text.h"
+#include "surfels/srgb.h"
 
 #include <algorithm>
 #include <charconv>
@@ -80,14 +81,14 @@ float linear_of(double number)
 {
     if (std::isnan(number))
         return 1.0f;
-    return from_srgb(static_cast<float>(std::clamp(number, 0.0, 1.0)));
+    return srgb_decode(static_cast<float>(std::clamp(number, 0.0, 1.0)));
 }
 
 glm::vec3 numbers_of(const glm::vec3& linear)
 {
     if (linear.x == linear.y && linear.y == linear.z)
-        return glm::vec3(to_srgb(linear.x));
-    return {to_srgb(linear.x), to_srgb(linear.y), to_srgb(linear.z)};
+        return glm::vec3(srgb_encode(linear.x));
+    return {srgb_encode(linear.x), srgb_encode(linear.y), srgb_encode(linear.z)};
 }
 
 std::vector<glm::vec4> own_colors_of(const Scene& scene)
@@ -148,9 +149,9 @@ void ColorWords::add(const glm::vec4& linear, Form form)
         if (channel > 0)
             words_ += ' ';
         if (form == Form::decimals)
-            append_fixed(words_, to_srgb(linear[channel]), 6);
+            append_fixed(words_, srgb_encode(linear[channel]), 6);
         else
-            append_integer(words_, byte_of(to_srgb(linear[channel])));
+            append_integer(words_, byte_of(srgb_encode(linear[channel])));
     }
     if (form == Form::bytes)
         append_integer(words_ += ' ', byte_of(linear.w));

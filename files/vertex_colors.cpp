@@ -48,19 +48,4 @@ glm::vec3 color_of(VertexColors what, const Occlusion& occlusion, glm::vec3 own)
     }
 }
 
-float to_srgb(float linear)
-{
-    // in double, so that white stays white
-    return linear <= 0.0031308f
-               ? 12.92f * linear
-               : static_cast<float>(1.055 * std::pow(double{linear}, 1.0 / 2.4) - 0.055);
-}
-
-float from_srgb(float encoded)
-{
-    return encoded <= 0.04045f
-               ? encoded / 12.92f
-               : static_cast<float>(std::pow((double{encoded} + 0.055) / 1.055, 2.4));
-}
-
 }  // namespace surfelao

@@ -56,8 +56,4 @@ enum class Encoding {
 [[nodiscard]] glm::vec3 color_of(VertexColors what, const Occlusion& occlusion,
                                  glm::vec3 own = glm::vec3(1.0f));
 
-/// One channel, 0 to 1, from linear light to sRGB and back (IEC 61966-2-1).
-[[nodiscard]] float to_srgb(float linear);
-[[nodiscard]] float from_srgb(float encoded);
-
 }  // namespace surfelao

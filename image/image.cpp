@@ -15,17 +15,6 @@ Image::Image(int columns, int rows, glm::vec4 fill) : width(columns), height(row
     pixels.assign(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), fill);
 }
 
-float srgb_encode(float linear)
-{
-    const float x = std::clamp(linear, 0.0f, 1.0f);
-    return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
-}
-
-float srgb_decode(float shown)
-{
-    return shown <= 0.04045f ? shown / 12.92f : std::pow((shown + 0.055f) / 1.055f, 2.4f);
-}
-
 glm::vec4 sample_panorama(const Image& image, glm::vec2 uv)
 {
     SURFELAO_CHECK(!image.pixels.empty());

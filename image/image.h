@@ -1,6 +1,8 @@
 /// image.h: a picture in memory, and the way between linear light and the numbers on a screen.
 #pragma once
 
+#include "surfels/srgb.h"
+
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -30,13 +32,6 @@ private:
                static_cast<std::size_t>(x);
     }
 };
-
-/// The sRGB transfer function (IEC 61966-2-1): linear light to the value shown, 0 to 1 each. Values
-/// outside [0, 1] are cut: a screen shows no more.
-[[nodiscard]] float srgb_encode(float linear);
-
-/// The inverse: a value shown, in [0, 1], to linear light.
-[[nodiscard]] float srgb_decode(float shown);
 
 /// Linear interpolation between the four pixels around uv, which runs from (0, 0), the top left
 /// corner of the top left pixel, to (1, 1). Left and right edge meet (for panoramas); top and

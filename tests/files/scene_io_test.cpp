@@ -2,6 +2,7 @@
 
 #include "files/mesh_source.h"
 #include "surfels/errors.h"
+#include "surfels/srgb.h"
 
 #include "temporary_folder.h"
 
@@ -108,7 +109,7 @@ void expect_attributes(const fs::path& path, const std::vector<Occlusion>& occlu
         EXPECT_EQ(static_cast<float>(values.at("bent_nx")[v]), occlusion[v].bent_normal.x);
         EXPECT_EQ(static_cast<float>(values.at("bent_ny")[v]), occlusion[v].bent_normal.y);
         EXPECT_EQ(static_cast<float>(values.at("bent_nz")[v]), occlusion[v].bent_normal.z);
-        const double grey = std::round(255.0f * to_srgb(1.0f - occlusion[v].occlusion));
+        const double grey = std::round(255.0f * srgb_encode(1.0f - occlusion[v].occlusion));
         for (const char* channel : {"red", "green", "blue"})
             EXPECT_EQ(values.at(channel)[v], grey) << channel << " of vertex " << v;
     }

@@ -4,6 +4,7 @@
 #include "files/ply_io.h"
 #include "files/scene_io.h"
 
+#include "surfels/srgb.h"
 #include "temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -120,8 +121,8 @@ protected:
 
 TEST_F(VertexColorsTest, AQuarterOfTheLightIsAQuarterInAReaderOfTheFormat)
 {
-    EXPECT_NEAR(from_srgb(0.537099f), 0.25f, 1e-6f);
-    EXPECT_NEAR(from_srgb(137.0f / 255.0f), 0.25f, 0.5f / 255.0f);
+    EXPECT_NEAR(srgb_decode(0.537099f), 0.25f, 1e-6f);
+    EXPECT_NEAR(srgb_decode(137.0f / 255.0f), 0.25f, 0.5f / 255.0f);
     const std::string first[] = {"v 0 0 0 ", "\n0 0 0 ", "\n0 0 0 0.75 0.6 -0.8 0 "};
     const std::string srgb[] = {"0.537099 0.537099 0.537099\r\n", "137 137 137 255\n",
                                 "137 137 137\n"};
@@ -142,7 +143,7 @@ TEST_F(VertexColorsTest, AQuarterOfTheLightIsAQuarterInAReaderOfTheFormat)
     }
 }
 
-// 0.25 * from_srgb(0.5) is 0.0535, of which sRGB makes 0.2565; bent normals are 0.5 + 0.5 n.
+// 0.25 * srgb_decode(0.5) is 0.0535, of which sRGB makes 0.2565; bent normals are 0.5 + 0.5 n.
 TEST_F(VertexColorsTest, OwnColoursAreKeptShadedOrReplaced)
 {
     struct Expected {

@@ -1,0 +1,135 @@
+#include "bake/map_bake.h"
+
+#include "engines/threads.h"
+#include "scenes.h"
+
+#include <gtest/gtest.h>
+#include <glm/gtc/constants.hpp>
+
+#include <cmath>
+#include <functional>
+#include <utility>
+
+namespace surfelao {
+namespace {
+
+using scenes::operator+;
+
+/// A scene with places in the map for its vertices.
+struct MappedWorld {
+    MappedWorld(Scene scene, const std::function<glm::dvec2(glm::dvec3)>& place)
+    {
+        UvSet set;
+        for (const glm::dvec3 p : scene.positions)
+            set.values.push_back(place(p));
+        scene.uvs.push_back(set);
+        mesh = make_mesh(std::move(scene));
+    }
+    [[nodiscard]] MapBake bake(const MapSettings& settings, const EngineSettings& engine = {}) const
+    {
+        return bake_map(mesh, mesh.scene.uvs[0], settings, engine, {});
+    }
+    Mesh mesh;
+};
+
+/// What a square foot of a wall sees of it from the distance d: the wall is `height` high and ends
+/// `left` and `right` (Howell. A Catalog of Radiation Heat Transfer Configuration Factors. B-4).
+double seen_of_wall(double d, double height, double left, double right)
+{
+    const double far = std::hypot(d, height);
+    double sum = 0.0;
+    for (const double side : {left, right})
+        sum += std::atan(side / d) - d / far * std::atan(side / far);
+    return sum / (2.0 * glm::pi<double>());
+}
+
+// One chart over the foot of a wall, symmetric.
+TEST(MapBake, HasTheProfileOfAWallAtItsFoot)
+{
+    const double size = 20.0;
+    const MappedWorld world(scenes::wall_and_floor(size, 40), [&](glm::dvec3 p) {
+        return glm::dvec2(0.5 + (p.x - p.z) / (2.0 * size), 0.5 + p.y / size);
+    });
+    for (const auto& [engine, tolerance] : {std::pair(Engine::masks, 0.012), {Engine::rays, 0.004}}) {
+        EngineSettings settings;
+        settings.engine = engine;
+        settings.rays = 4096;
+        const MapBake bake =
+            world.bake({.size = {64, 8}, .depth = MapDepth::whole}, settings);
+        EXPECT_EQ(bake.covered, 512u);
+        EXPECT_EQ(bake.overlapping, 0u);
+        for (std::uint32_t y = 0; y < 8; ++y) {
+            for (std::uint32_t x = 0; x < 64; ++x) {
+                const double d = std::abs((x + 0.5) / 64.0 - 0.5) * 2.0 * size;
+                const double left = size * (y + 0.5) / 8.0;
+                EXPECT_NEAR(1.0 - bake.visibility.values[bake.visibility.index(x, y)],
+                            seen_of_wall(d, size, left, size - left), tolerance)
+                    << x << " " << y;
+            }
+        }
+        ASSERT_TRUE(bake.error);
+        EXPECT_LT(bake.error->rmse, 0.04);  // of texels .6 wide at a foot
+    }
+}
+
+TEST(MapBake, OfWhatIsOpenAndClosedIsExactInAllEngines)
+{
+    const auto chart = [](glm::dvec3 p) { return glm::dvec2(0.2 + 0.5 * p.x, 0.3 + 0.4 * p.y); };
+    const MappedWorld open(scenes::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4), chart);
+    const MappedWorld closed(scenes::room({0, 0, 0}, {1, 1, 1}, 4), [](glm::dvec3 p) {
+        return glm::dvec2(0.1 + 0.4 * p.x + 0.3 * p.z, 0.1 + 0.4 * p.y + 0.2 * p.z);
+    });
+    for (const Engine engine : {Engine::masks, Engine::disks, Engine::rays}) {
+        EngineSettings settings;
+        settings.engine = engine;
+        const MapBake bright = open.bake({.size = {32, 16}, .bent = true}, settings);
+        for (const float value : bright.visibility.values)  // filled ones too
+            EXPECT_EQ(value, 1.0f);
+        for (std::size_t i = 0; i < bright.bent.values.size(); i += 3) {
+            EXPECT_NEAR(bright.bent.values[i], 0.5f, 0.01f);
+            EXPECT_NEAR(bright.bent.values[i + 2], 1.0f, 0.01f);
+        }
+        EXPECT_EQ(bright.error->rmse, 0.0);
+        if (engine == Engine::disks)  // leak where large ones meet
+            continue;
+        const MapBake dark = closed.bake({.size = {32, 32}}, settings);
+        for (const float value : dark.visibility.values)
+            EXPECT_LE(value, 0.01f);
+    }
+}
+
+// The floor of a closed box and an open square on the same texels.
+TEST(MapBake, HoldsTheMeanOfSheetsOnEachOther)
+{
+    Scene scene =
+        scenes::room({0, 0, 0}, {1, 1, 1}, 6) + scenes::sheet({5, 0, 0}, {1, 0, 0}, {0, 1, 0}, 6);
+    const MappedWorld world(std::move(scene), [](glm::dvec3 p) {
+        return glm::dvec2(std::fmod(p.x, 5.0), p.y);  // the room's other sides have no area, or lie
+    });                                               // on the same texels, as closed
+    const MapBake bake = world.bake({.size = {16, 16}, .depth = MapDepth::whole});
+    EXPECT_EQ(bake.overlapping, 256u);
+    for (const float value : bake.visibility.values)
+        EXPECT_NEAR(value, 1.0f / 3.0f, 0.01f);  // floor and ceiling of the room, and the square
+    EXPECT_NEAR(bake.spread, std::sqrt(2.0) / 3.0, 0.01);
+}
+
+TEST(MapBake, IsTheSameForAnyNumberOfThreadsAndRoundedAsItIsWritten)
+{
+    const MappedWorld world(scenes::bumpy_sphere(8), [](glm::dvec3 p) {
+        return glm::dvec2(0.5 + 0.1 * p.x, 0.5 + 0.1 * p.y + 0.01 * p.z);
+    });
+    const MapSettings settings{.size = {40, 40}};
+    std::vector<float> first;
+    for (const int threads : {1, 3}) {
+        const ThreadLimit limit(threads);
+        const MapBake bake = world.bake(settings);
+        if (first.empty())
+            first = bake.visibility.values;
+        EXPECT_EQ(bake.visibility.values, first);
+        for (const float value : bake.visibility.values)
+            EXPECT_EQ(value * 255.0f, std::round(value * 255.0f));
+    }
+}
+
+}  // namespace
+}  // namespace surfelao
