@@ -30,7 +30,7 @@ bool is_added(const json& entry)
 }
 
 AddedData::AddedData(json& document)
-    : document_(document), first_view_(document["bufferViews"].size())
+    : document_(document), first_view_(member(document, "bufferViews").size())
 {
 }
 

@@ -116,4 +116,22 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
                                         std::span<const Occlusion> occlusion,
                                         const WriteOptions& options = {});
 
+/// The same with a map in place of attributes. Each material that triangles of the scene use and
+/// whose primitives have TEXCOORD_n, n = map.uv_set, gets the map as occlusionTexture; one that
+/// something else uses too, or that has another occlusionTexture, stays as it is and the primitives
+/// get a copy. A mesh that several nodes use stays one: they share the map as they share the
+/// coordinates. Primitives without a material get a plain one; without TEXCOORD_n they are left
+/// alone. Notes count those, and the materials that had another occlusionTexture.
+///
+/// .glb: the picture stands in the binary chunk. .gltf: its URI is that of map_file_of(path), which
+/// is left to the caller to write.
+///
+/// Baking a result again gives what baking the original gives, in either way: what the map has
+/// replaced comes back first (but meshes and instances that a bake of vertices has taken apart stay
+/// apart). options.colors and options.encoding are not asked for. Throws InputError
+/// like gltf_contents(), and where no primitive has TEXCOORD_n.
+[[nodiscard]] WrittenFile gltf_contents_with_map(const std::filesystem::path& path,
+                                                 const Scene& scene, const OcclusionMap& map,
+                                                 const WriteOptions& options = {});
+
 }  // namespace surfelao

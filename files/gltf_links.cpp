@@ -1,6 +1,8 @@
 #include "files/gltf_links.h"
 
 #include "files/file_contents.h"
+#include "files/gltf_added.h"
+#include "files/gltf_strings.h"
 #include "files/gltf_uri.h"
 #include "files/sidecars.h"
 #include "surfels/errors.h"
@@ -183,6 +185,20 @@ std::vector<std::string> turn_uris(json& document, const fs::path& model, const 
     UriTurner turner(model, path);
     turner.turn_all(document);
     return turner.absent;
+}
+
+bool names_our_picture(const fs::path& path, const std::string& uri)
+{
+    bool is_ours = false, found = false;
+    visit_gltf_strings(path, [&](std::span<const std::string> keys, const std::string& text) {
+        if (keys.size() != 3 || keys[0] != "images")
+            return true;
+        if (keys[2] == "name")  // the writer sorts keys: in front of the uri
+            is_ours = text == kAddedPicture;
+        found = keys[2] == "uri" && is_ours && text == uri;
+        return !found;
+    });
+    return found;
 }
 
 void embed_buffers(json& document, std::span<const GltfBuffer> buffers, const fs::path& path)

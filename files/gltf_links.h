@@ -24,6 +24,10 @@ namespace surfelao {
                                                  const std::filesystem::path& model,
                                                  const std::filesystem::path& path);
 
+/// Whether the .gltf at `path` is there and has, by this URI, a picture named as ours
+/// (gltf_added.h). O(bytes of the file).
+[[nodiscard]] bool names_our_picture(const std::filesystem::path& path, const std::string& uri);
+
 /// For a .gltf at `path` whose URIs are turned: buffers that it could not be read with from there
 /// (a binary chunk, files outside of its folder that are no .bin) become data URIs.
 void embed_buffers(nlohmann::json& document, std::span<const GltfBuffer> buffers,

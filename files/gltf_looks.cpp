@@ -1,7 +1,6 @@
 #include "files/gltf_looks.h"
 
 #include "files/gltf_json.h"
-#include "files/maker_mark.h"
 #include "surfels/srgb.h"
 
 #include <nlohmann/json.hpp>
@@ -57,32 +56,6 @@ std::size_t free_set(const json& attributes)
     return set;
 }
 
-/// Adds up how often each material is used by anything in the meshes.
-void count_uses(const json& value, std::map<std::size_t, std::size_t>& uses_of)
-{
-    for (const auto& [key, inner] : value.items()) {
-        if (key == "material" && inner.is_number_unsigned())
-            ++uses_of[inner.get<std::size_t>()];
-        else if (inner.is_structured())
-            count_uses(inner, uses_of);
-    }
-}
-
-/// As specified for primitives without a material, but no metal.
-json plain_material()
-{
-    return {{"name", kAddedMaterial}, {"pbrMetallicRoughness", {{"metallicFactor", 0}}}};
-}
-
-std::size_t append(json& document, const char* list, json value)
-{
-    json& entries = document[list];
-    if (!entries.is_array())
-        entries = json::array();
-    entries.push_back(std::move(value));
-    return entries.size() - 1;
-}
-
 }  // namespace
 
 GltfLooks::GltfLooks(json& document, const GltfAsset& asset, const WriteOptions& options,
@@ -128,7 +101,7 @@ void GltfLooks::add(std::span<json* const> primitives, std::span<const Occlusion
         }
         const std::size_t set = free_set(attributes);
         attributes["TEXCOORD_" + std::to_string(set)] = *coordinates;
-        textured_.push_back({primitive, index, set});
+        textured_.push_back({primitive, set});
     }
 }
 
@@ -183,59 +156,18 @@ std::size_t GltfLooks::add_colors(VertexColors what, std::optional<std::size_t> 
 
 void GltfLooks::finish()
 {
-    if (!textured_.empty())
-        set_occlusion_textures();
-    if (!bare_.empty())
-        set_plain_material();
-}
-
-void GltfLooks::set_plain_material()
-{
-    const std::size_t plain = append(document_, "materials", plain_material());
-    for (json* const primitive : bare_)
-        (*primitive)["material"] = plain;
-}
-
-void GltfLooks::set_occlusion_textures()
-{
-    const std::size_t texture = add_texture();
-    std::map<std::size_t, std::size_t> uses_of;
-    count_uses(document_["meshes"], uses_of);
-    std::map<std::pair<json, std::size_t>, std::vector<json*>> primitives_of;
-    for (const Textured& textured : textured_)
-        primitives_of[{textured.material, textured.set}].push_back(textured.primitive);
-    for (const auto& [material_and_set, primitives] : primitives_of) {
-        const auto& [material, set] = material_and_set;
-        json info = {{"index", texture}, {"texCoord", set}};
-        if (!material.is_null() && uses_of[material.get<std::size_t>()] == primitives.size()) {
-            document_["materials"][material.get<std::size_t>()]["occlusionTexture"] = info;
-            continue;
-        }
-        json copy = material.is_null() ? plain_material() : entry(document_, "materials", material);
-        if (!material.is_null())
-            info["extras"] = {{kMarkKey, material}};
-        copy["occlusionTexture"] = info;
-        const std::size_t added = append(document_, "materials", copy);
-        for (json* const primitive : primitives)
-            (*primitive)["material"] = added;
+    if (!textured_.empty()) {
+        const std::string_view png(reinterpret_cast<const char*>(kGradient), sizeof kGradient);
+        const std::size_t texture = add_occlusion_texture(
+            document_, {{"bufferView", added_.add_bytes(png)}, {"mimeType", "image/png"}},
+            {{"magFilter", kLinear},
+             {"minFilter", kLinear},
+             {"wrapS", kClampToEdge},
+             {"wrapT", kClampToEdge}});
+        static_cast<void>(show_occlusion_texture(document_, texture, textured_));
     }
-}
-
-std::size_t GltfLooks::add_texture()
-{
-    const std::string_view png(reinterpret_cast<const char*>(kGradient), sizeof kGradient);
-    const std::size_t image = append(document_, "images",
-                                     {{"bufferView", added_.add_bytes(png)},
-                                      {"mimeType", "image/png"},
-                                      {"name", kAddedPicture}});
-    const std::size_t sampler = append(document_, "samplers",
-                                       {{"magFilter", kLinear},
-                                        {"minFilter", kLinear},
-                                        {"wrapS", kClampToEdge},
-                                        {"wrapT", kClampToEdge},
-                                        {"name", kAddedPicture}});
-    return append(document_, "textures",
-                  {{"source", image}, {"sampler", sampler}, {"name", kAddedPicture}});
+    if (!bare_.empty())
+        set_plain_material(document_, bare_);
 }
 
 std::vector<std::string> GltfLooks::notes() const

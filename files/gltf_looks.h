@@ -4,6 +4,7 @@
 
 #include "files/gltf_added.h"
 #include "files/gltf_asset.h"
+#include "files/gltf_textures.h"
 #include "files/scene_io.h"
 
 #include <map>
@@ -31,20 +32,11 @@ public:
     [[nodiscard]] std::vector<std::string> notes() const;
 
 private:
-    struct Textured {
-        nlohmann::json* primitive;
-        nlohmann::json material;  ///< its index; null: none
-        std::size_t set;          ///< n of TEXCOORD_n
-    };
-
     [[nodiscard]] VertexColors decide(const nlohmann::json& primitive,
                                       std::optional<std::size_t> own);
     [[nodiscard]] bool is_white(std::size_t accessor);
     [[nodiscard]] std::size_t add_colors(VertexColors what, std::optional<std::size_t> own,
                                          std::span<const Occlusion> values);
-    void set_plain_material();
-    void set_occlusion_textures();
-    [[nodiscard]] std::size_t add_texture();
 
     nlohmann::json& document_;
     const GltfAsset& asset_;
@@ -52,7 +44,7 @@ private:
     AddedData& added_;
     std::map<std::size_t, bool> white_;  // by accessor
     std::vector<nlohmann::json*> bare_;  // primitives without a material that have our colours
-    std::vector<Textured> textured_;
+    std::vector<Occluded> textured_;
     std::size_t kept_colors_ = 0;    // primitives with colours of their own
     std::size_t kept_textures_ = 0;  // and with an occlusionTexture of their own
 };

@@ -65,6 +65,13 @@ void keep_first(json& list, std::size_t count)
     list.erase(list.begin() + static_cast<std::ptrdiff_t>(count), list.end());
 }
 
+json without_occlusion(json material)
+{
+    if (material.is_object())
+        material.erase("occlusionTexture");
+    return material;
+}
+
 /// Takes occlusion textures of results off the materials, and primitives back to the materials that
 /// theirs are copies of, or to none; drops what nobody uses then.
 void take_materials(json& document)
@@ -83,7 +90,7 @@ void take_materials(json& document)
         const json& original = member(member(info, "extras"), kMarkKey);
         // another program may have moved the materials about
         if (original.is_number_unsigned() && original < m &&
-            materials[m] == materials[original.get<std::size_t>()])
+            materials[m] == without_occlusion(materials[original.get<std::size_t>()]))
             original_of[m] = original;
     }
     for (json& mesh : document["meshes"]) {
@@ -164,10 +171,15 @@ bool have_accessor(const json& value, std::size_t first)
 void take_data(json& document, std::vector<GltfBuffer>& buffers, const Indices& old_accessors,
                Indices old_views)
 {
+    if (old_accessors.empty() && old_views.empty())
+        return;
     json& accessors = document["accessors"];
     json& views = document["bufferViews"];
-    if (!are_last(old_accessors, accessors.size()) ||
-        have_accessor(document, *old_accessors.begin()))
+    // a map alone comes without accessors
+    const std::size_t first_accessor =
+        old_accessors.empty() ? accessors.size() : *old_accessors.begin();
+    if (!old_accessors.empty() &&
+        (!are_last(old_accessors, accessors.size()) || have_accessor(document, first_accessor)))
         return;
     for (const std::size_t accessor : old_accessors) {
         const json& view = member(accessors[accessor], "bufferView");
@@ -178,7 +190,7 @@ void take_data(json& document, std::vector<GltfBuffer>& buffers, const Indices& 
     if (!are_last(old_views, views.size()))
         return;
     json others = document;
-    keep_first(others["accessors"], *old_accessors.begin());
+    keep_first(others["accessors"], first_accessor);
     if (uses(others, "bufferView", *old_views.begin()))
         return;
 
@@ -202,7 +214,7 @@ void take_data(json& document, std::vector<GltfBuffer>& buffers, const Indices& 
         end + kPadding < buffers[buffer].bytes.size() ||
         (is_whole_buffer && (buffer == 0 || buffer != buffers.size() - 1)))
         return;
-    keep_first(accessors, *old_accessors.begin());
+    keep_first(accessors, first_accessor);
     keep_first(views, *old_views.begin());
     buffers[buffer].bytes = buffers[buffer].bytes.substr(0, begin);
     document["buffers"][buffer]["byteLength"] = begin;

@@ -12,8 +12,9 @@ namespace surfelao {
 
 /// Takes the attributes and occlusion textures of an earlier bake off all meshes and materials:
 /// `_OCCLUSION` and `_BENT_NORMAL` where the document carries the mark of a bake (maker_mark.h),
-/// and what has a name by which an AddedData and GltfLooks tell their own (gltf_added.h). COLOR_0
-/// becomes what `_OWN_COLOR` is. Primitives get back the material that theirs is a copy of.
+/// and what has a name by which the writer tells its own (gltf_added.h). COLOR_0 becomes what
+/// `_OWN_COLOR` is. Primitives get back the material that theirs is a copy of, and with it an
+/// occlusionTexture that a map had replaced.
 ///
 /// Accessors, views, bytes, textures and materials that nobody uses then are removed where they are
 /// the last of their kind, as the writer left them. Where another program has added to the file

@@ -3,6 +3,8 @@
 #include "files/file_contents.h"
 #include "files/file_type.h"
 #include "files/gltf_io.h"
+#include "files/gltf_links.h"
+#include "files/gltf_uri.h"
 #include "files/obj_io.h"
 #include "files/off_io.h"
 #include "files/ply_io.h"
@@ -100,6 +102,52 @@ std::vector<std::string> write_scene(const fs::path& path, const Scene& scene,
     check_output(path, path);
     WrittenFile written = contents_for(path, scene, occlusion, options);
     write_atomically(path, written.contents);
+    return std::move(written.notes);
+}
+
+std::optional<fs::path> map_file_of(const fs::path& output)
+{
+    if (type_of(output) != FileType::gltf)
+        return std::nullopt;
+    return output.parent_path() / (output.stem().string() + ".ao.png");
+}
+
+void check_output_with_map(const fs::path& input, const fs::path& output)
+{
+    if (!is_gltf(type_of(output)) || !is_gltf(type_of(input)))
+        throw InputError(output.string() + ": " +
+                         (is_gltf(type_of(output))
+                              ? "only a scene that was read from glTF can be written as glTF"
+                              : "a map goes into .glb and .gltf only") +
+                         ", use .png, .tif or .exr for the map alone");
+    check_output(input, output);
+    const std::optional<fs::path> file = map_file_of(output);
+    std::error_code error;
+    if (!file || !fs::exists(fs::symlink_status(*file, error)))
+        return;
+    if (!names_our_picture(output, encode_uri(file->filename().string())))
+        throw InputError(file->string() + ": exists and is no map of " +
+                         output.filename().string() + ", which would replace it; use .glb");
+    check_writable(*file);
+}
+
+std::vector<std::string> write_scene_with_map(const fs::path& path, const Scene& scene,
+                                              const OcclusionMap& map, const WriteOptions& options)
+{
+    check_output_with_map(path, path);
+    WrittenFile written = gltf_contents_with_map(path, scene, map, options);
+    const std::optional<fs::path> file = map_file_of(path);
+    std::error_code error;
+    const bool is_new = file && !fs::exists(*file, error);
+    if (file)
+        write_atomically(*file, map.png);
+    try {
+        write_atomically(path, written.contents);
+    } catch (...) {
+        if (is_new)
+            fs::remove(*file, error);
+        throw;
+    }
     return std::move(written.notes);
 }
 

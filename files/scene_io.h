@@ -10,7 +10,9 @@
 #include "surfels/occlusion.h"
 #include "surfels/scene.h"
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,5 +50,27 @@ void check_output(const std::filesystem::path& input, const std::filesystem::pat
 std::vector<std::string> write_scene(const std::filesystem::path& path, const Scene& scene,
                                      std::span<const Occlusion> occlusion,
                                      const WriteOptions& options = {});
+
+/// Occlusion as a texture over the file's own coordinates.
+struct OcclusionMap {
+    std::string png;           ///< a file's contents; red is the visibility, linear: 1 = open
+    std::uint32_t uv_set = 0;  ///< of Scene::uvs: glTF's TEXCOORD_n
+};
+
+/// Where the map of a result at `output` stands: STEM.ao.png beside a .gltf; nothing for a .glb,
+/// which holds it.
+[[nodiscard]] std::optional<std::filesystem::path> map_file_of(const std::filesystem::path& output);
+
+/// check_output() for a result with a map: glTF from glTF only. Refused as well is a .gltf whose
+/// map_file_of() is there already, unless the .gltf that is there names it as the map of a result:
+/// the file is its user's.
+void check_output_with_map(const std::filesystem::path& input, const std::filesystem::path& output);
+
+/// write_scene() with a map in place of values at vertices (gltf_io.h); the file of the map is
+/// written as well. Throws InputError as check_output_with_map() does and where nothing in the file
+/// has the coordinates.
+std::vector<std::string> write_scene_with_map(const std::filesystem::path& path, const Scene& scene,
+                                              const OcclusionMap& map,
+                                              const WriteOptions& options = {});
 
 }  // namespace surfelao

@@ -143,4 +143,15 @@ void write_map(const std::filesystem::path& path, const Map& map, MapDepth depth
     });
 }
 
+std::string map_bytes(const Map& map, MapDepth depth)
+{
+    require(!map.values.empty(), "a picture has one texel at least");
+    require(depth != MapDepth::whole, "a .png has 8 or 16 bits");
+    std::string bytes;
+    const std::string error = module().map_bytes(map, depth, bytes);
+    if (!error.empty())
+        throw std::runtime_error("a map cannot be made a picture: " + one_line(error));
+    return bytes;
+}
+
 }  // namespace surfelao

@@ -10,6 +10,7 @@
 #include "image/map.h"
 
 #include <filesystem>
+#include <string>
 
 namespace surfelao {
 
@@ -36,5 +37,9 @@ void check_map_output(const std::filesystem::path& path, MapDepth depth);
 /// Writes the numbers of a map as they are: tagged linear, without a gamma, those of 0 to 1 rounded
 /// to the nearest step of the depth. One channel is grey, three are RGB. As write_image() else.
 void write_map(const std::filesystem::path& path, const Map& map, MapDepth depth);
+
+/// The bytes that write_map() gives a .png: for files that hold pictures. Throws SettingsError for
+/// a map without texels and for MapDepth::whole, std::runtime_error when the module refuses.
+[[nodiscard]] std::string map_bytes(const Map& map, MapDepth depth);
 
 }  // namespace surfelao

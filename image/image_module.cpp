@@ -1,5 +1,6 @@
 #include "image/image_module.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
@@ -82,7 +83,9 @@ std::string write(const std::string& path, const Image& image, bool alpha)
     return {};
 }
 
-std::string write_map(const std::string& path, const Map& map, MapDepth depth)
+/// To the file, or to `memory` in the format that `path` has.
+std::string write_map(const std::string& path, const Map& map, MapDepth depth,
+                      OIIO::Filesystem::IOProxy* memory = nullptr)
 {
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path);
     if (!output)
@@ -95,10 +98,20 @@ std::string write_map(const std::string& path, const Map& map, MapDepth depth)
     OIIO::ImageSpec spec(static_cast<int>(map.width), static_cast<int>(map.height),
                          static_cast<int>(map.channels), type);
     spec.attribute("oiio:ColorSpace", "Linear");
+    if (memory)
+        spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &memory);
     if (!output->open(path, spec) ||
         !output->write_image(OIIO::TypeDesc::FLOAT, map.values.data()) || !output->close())
         return output->geterror();
     return {};
+}
+
+std::string map_bytes(const Map& map, MapDepth depth, std::string& bytes)
+{
+    OIIO::Filesystem::IOVecOutput memory;
+    std::string error = write_map("map.png", map, depth, &memory);
+    bytes.assign(memory.buffer().begin(), memory.buffer().end());
+    return error;
 }
 
 /// An empty error text would read as success.
@@ -127,6 +140,9 @@ surfelao_image_module()
         },
         [](const std::string& path, const surfelao::Map& map, surfelao::MapDepth depth) {
             return surfelao::guarded([&] { return surfelao::write_map(path, map, depth); });
+        },
+        [](const surfelao::Map& map, surfelao::MapDepth depth, std::string& bytes) {
+            return surfelao::guarded([&] { return surfelao::map_bytes(map, depth, bytes); });
         },
     };
     return &module;

@@ -17,6 +17,8 @@ struct ImageModule {
     std::string (*write)(const std::string& path, const Image& image, bool alpha);
     /// The same for a map: its numbers as they are.
     std::string (*write_map)(const std::string& path, const Map& map, MapDepth depth);
+    /// The same as the contents of a .png, into `bytes`.
+    std::string (*map_bytes)(const Map& map, MapDepth depth, std::string& bytes);
 };
 
 /// The name and type of the one function that the module exports.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <tuple>
@@ -211,7 +212,15 @@ TEST_F(ImageFile, MapsHoldTheirNumbersAsTheyAre)
             EXPECT_NEAR(stored(2, 1), 0.0f, 1e-6) << name;
             EXPECT_NEAR(stored(0, 0), 1.0f, 1e-6) << name;
         }
+        for (const auto& [name, depth] :
+             {std::pair("a.png", MapDepth::byte), {"b.png", MapDepth::half}}) {
+            std::ifstream file(path(name), std::ios::binary);
+            const std::string contents(std::istreambuf_iterator<char>(file), {});
+            EXPECT_TRUE(map_bytes(map, depth) == contents) << name;
+        }
     }
+    EXPECT_THROW((void)map_bytes(Map(1, 1, 1), MapDepth::whole), SettingsError);
+    EXPECT_THROW((void)map_bytes(Map(), MapDepth::byte), SettingsError);
     for (const auto& [name, depth] : {std::pair("a.png", MapDepth::whole),
                                       {"a.exr", MapDepth::byte},
                                       {"a.jpg", MapDepth::byte},
