@@ -157,6 +157,13 @@ std::string mark_of(const BakeSettings& settings)
     text += std::isfinite(limit.value) && limit.percent ? "%" : "";
     text += limit.falloff == Falloff::smooth ? " falloff=smooth" : " falloff=none";
     text += " " + text_of(settings.target);
+    if (const auto& texels = settings.texels) {
+        text += " at=texels size=" + std::to_string(texels->size) +
+                " uv=" + (texels->uv_set ? std::to_string(*texels->uv_set) : "auto") +
+                " padding=" + std::to_string(texels->padding) +
+                (texels->depth == MapDepth::byte ? " depth=8" : " depth=16");
+        return make_mark("bake", text);
+    }
     text += " colors=" + name_of(settings.colors);
     text += " encoding=" + name_of(settings.encoding);
     return make_mark("bake", text);

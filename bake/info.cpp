@@ -84,19 +84,13 @@ UvReport report_of(const Geometry& geometry, const UvSet& uvs)
     for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
         const glm::uvec3 corners =
             uvs.corners.empty() ? geometry.triangles[t] : uvs.corners[geometry.scene_triangle(t)];
-        if (std::max({corners.x, corners.y, corners.z}) == UvSet::kNone)
-            continue;
-        ++report.triangles;
-        const glm::dvec2 b = uvs.values[corners.y] - uvs.values[corners.x];
-        const glm::dvec2 c = uvs.values[corners.z] - uvs.values[corners.x];
-        const double area = 0.5 * std::abs(b.x * c.y - b.y * c.x);
-        const double reach = std::max({std::abs(b.x), std::abs(b.y), std::abs(c.x), std::abs(c.y)});
-        if (std::isfinite(area) && reach <= kMostTiles)
-            report.sheets += area;
+        if (std::max({corners.x, corners.y, corners.z}) != UvSet::kNone)
+            ++report.triangles;
     }
     const MapRaster raster(geometry, uvs, kUvMap);
     report.flat = raster.flat_triangles() - (geometry.triangles.size() - report.triangles);
     report.outside = raster.outside_triangles();
+    report.sheets = raster.sheets();
     if (report.sheets <= kMostSheets)
         report.overlap = overlap_of(raster);
     return report;

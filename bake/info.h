@@ -32,7 +32,6 @@ struct UvReport {
 };
 
 inline constexpr MapSize kUvMap{1024, 1024};
-inline constexpr double kMostSheets = 8.0;
 
 struct Info {
     std::filesystem::path input;

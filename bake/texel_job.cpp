@@ -1,5 +1,7 @@
 #include "bake/texel_job.h"
 
+#include "files/file_type.h"
+#include "files/scene_io.h"
 #include "image/image_file.h"
 #include "surfels/errors.h"
 #include "surfels/extension.h"
@@ -7,35 +9,59 @@
 #include "surfels/stopwatch.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace surfelao {
 namespace {
 
+/// What texels that show several places of the surface may be off by, RMS over the whole map: one
+/// that is off by more is no picture of it.
+constexpr double kMostSpread = 0.05;
+
 /// The set to be used; throws where there is none of use.
 std::uint32_t chosen_set(const BakeSettings& settings, const Mesh& mesh)
 {
     const std::vector<UvSet>& sets = mesh.scene.uvs;
-    const std::string name = settings.input.string();
-    const auto is_usable = [&](const UvSet& set) {
-        return !set.empty() && MapRaster(mesh.geometry, set, {1, 1}).flat_triangles() <
-                                   mesh.geometry.triangles.size();
+    const auto fail = [&](const std::string& fault) {
+        throw InputError(settings.input.string() + ": " + fault);
     };
-    if (const auto asked = settings.texels->uv_set) {
-        if (*asked >= sets.size() || sets[*asked].empty())
-            throw InputError(name + ": has no texture coordinates of number " +
-                             std::to_string(*asked));
-        if (!is_usable(sets[*asked]))
-            throw InputError(name +
-                             ": no triangle has an area in the texture coordinates of number " +
-                             std::to_string(*asked));
-        return *asked;
-    }
-    const auto found = std::ranges::find_if(sets, is_usable);
-    if (found == sets.end())
-        throw InputError(name +
-                         ": has no texture coordinates for a map; bake at the vertices instead");
-    return static_cast<std::uint32_t>(found - sets.begin());
+    std::uint32_t set = settings.texels->uv_set.value_or(0);
+    if (!settings.texels->uv_set)
+        while (set < sets.size() && sets[set].empty())
+            ++set;
+    if (set >= sets.size() || sets[set].empty())
+        fail(settings.texels->uv_set ? "has no texture coordinates of number " + std::to_string(set)
+                                     : "has no texture coordinates for a map; bake at the vertices "
+                                       "instead");
+    const std::string coordinates = "the texture coordinates of number " + std::to_string(set);
+    const MapRaster raster(mesh.geometry, sets[set], {1, 1});
+    if (raster.sheets() > kMostSheets)
+        fail(coordinates + " cover the map " + fixed(raster.sheets(), 0) +
+             " times over: no map can hold that");
+    if (raster.flat_triangles() == mesh.geometry.triangles.size())
+        fail("no triangle has an area in " + coordinates);
+    return set;
+}
+
+/// Throws where a map that nobody insists on would show a mean of what does not belong together.
+void check_overlap(const BakeSettings& settings, const TexelReport& texels)
+{
+    const double share = static_cast<double>(texels.overlapping) /
+                         static_cast<double>(std::max<std::uint64_t>(1, texels.covered));
+    if (settings.texels->uv_set || texels.spread * std::sqrt(share) <= kMostSpread)
+        return;
+    const std::string set = std::to_string(texels.uv_set);
+    throw InputError(settings.input.string() + ": " + fixed(100.0 * share, 1) +
+                     " % of the texels show several places of the surface, which differ by " +
+                     fixed(texels.spread, 2) + ": the texture coordinates of number " + set +
+                     " are for other maps (--uv " + set + " takes the mean all the same)");
+}
+
+/// A picture; else a glTF that gets the map.
+bool is_map(const std::filesystem::path& output)
+{
+    return type_of(output) == FileType::unknown;
 }
 
 /// What a user should know of the map.
@@ -63,12 +89,17 @@ void add_notes(const BakeReport& report, std::uint64_t triangles, std::vector<st
 std::filesystem::path bent_path(const std::filesystem::path& output)
 {
     std::filesystem::path path = output;
-    return path.replace_extension(".bent" + output.extension().string());
+    return path.replace_extension(is_map(output) ? ".bent" + output.extension().string()
+                                                 : ".bent.png");
 }
 
 void check_texel_output(const BakeSettings& settings)
 {
-    check_map_output(settings.output, settings.texels->depth);
+    if (is_map(settings.output))
+        return check_map_output(settings.output, settings.texels->depth);
+    check_output_with_map(settings.input, settings.output);
+    if (settings.texels->depth == MapDepth::whole)
+        throw InputError(settings.output.string() + ": a map in glTF has 8 or 16 bits");
 }
 
 void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& progress)
@@ -90,6 +121,7 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
     told.spread = map.spread;
     told.flat_triangles = map.flat_triangles;
     told.outside_triangles = map.outside_triangles;
+    check_overlap(settings, told);
     report.receivers = map.receivers;
     report.error = map.error;
     report.mean_occlusion = map.mean_occlusion;
@@ -108,7 +140,16 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
         told.written.push_back(bent_path(settings.output));
         write_map(told.written.back(), map.bent, texels.depth);
     }
-    write_map(settings.output, map.visibility, texels.depth);
+    if (is_map(settings.output)) {
+        write_map(settings.output, map.visibility, texels.depth);
+    } else {
+        const std::vector<std::string> notes = write_scene_with_map(
+            settings.output, mesh.scene, {map_bytes(map.visibility, texels.depth), told.uv_set},
+            {.mark = mark_of(settings)});
+        report.notes.insert(report.notes.end(), notes.begin(), notes.end());
+        if (const auto beside = map_file_of(settings.output))
+            told.written.push_back(*beside);
+    }
     report.seconds.write = watch.lap();
 }
 

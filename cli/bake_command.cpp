@@ -6,6 +6,7 @@
 #include "cli/progress_bar.h"
 #include "cli/texel_options.h"
 #include "engines/threads.h"
+#include "files/scene_io.h"
 #include "surfels/progress.h"
 
 #include <CLI/CLI.hpp>
@@ -64,6 +65,9 @@ std::vector<Job> jobs_of(const BakeOptions& options)
         jobs.push_back({input, into_folder ? output_in_folder(input, options.output)
                                            : fs::path(options.output)});
         files.writes(jobs.back().output, input);
+        if (const auto texels = texel_settings_of(options.texels, jobs.back().output);
+            texels && map_file_of(jobs.back().output))
+            files.writes(*map_file_of(jobs.back().output), input);
         if (options.texels.bent == "world")
             files.writes(bent_path(jobs.back().output), input);
     }

@@ -24,7 +24,15 @@ bool is_picture(const std::filesystem::path& output)
 
 void add_texel_options(CLI::App& command, TexelOptions& options)
 {
-    constexpr const char* kGroup = "Maps (-o NAME.png, .tif, .exr)";
+    constexpr const char* kGroup = "Maps (-o NAME.png, .tif, .exr, or --at texels)";
+    command
+        .add_option(
+            "--at", options.at,
+            "Where: vertices, or texels of a map over the file's texture coordinates, which "
+            "a glTF gets as its occlusionTexture (default: texels for pictures)")
+        ->check(CLI::IsMember({"vertices", "texels"}))
+        ->type_name("vertices|texels")
+        ->group(kGroup);
     command.add_option("--size", options.size, "Texels of each side of the map")
         ->check(CLI::Range(1u, kMostTexels))
         ->type_name("N")
@@ -63,10 +71,14 @@ void add_texel_options(CLI::App& command, TexelOptions& options)
 std::optional<TexelSettings> texel_settings_of(const TexelOptions& options,
                                                const std::filesystem::path& output)
 {
-    if (!is_picture(output)) {
+    const bool picture = is_picture(output);
+    if (picture && options.at == "vertices")
+        throw UsageError("--at vertices needs a mesh file to write to, no picture.");
+    if (!picture && options.at != "texels") {
         if (options.size || options.uv || options.padding || options.depth || options.bent)
             throw UsageError(
-                "--size, --uv, --padding, --depth and --bent are for maps: -o NAME.png.");
+                "--size, --uv, --padding, --depth and --bent are for maps: -o NAME.png or --at "
+                "texels.");
         return {};
     }
     TexelSettings settings;

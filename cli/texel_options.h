@@ -16,6 +16,7 @@ namespace surfelao {
 
 /// What was asked for: empty where an option was not given.
 struct TexelOptions {
+    std::optional<std::string> at;
     std::optional<std::uint32_t> size;
     std::optional<std::string> uv;
     std::optional<std::uint32_t> padding;
@@ -25,7 +26,8 @@ struct TexelOptions {
 
 void add_texel_options(CLI::App& command, TexelOptions& options);
 
-/// Nothing where the output is no picture. Throws UsageError for what contradicts itself.
+/// Nothing where values at vertices are asked: by --at, or by an output that is no picture. Throws
+/// UsageError for what contradicts itself.
 [[nodiscard]] std::optional<TexelSettings> texel_settings_of(const TexelOptions& options,
                                                              const std::filesystem::path& output);
 

@@ -3,6 +3,7 @@
 #include "surfels/errors.h"
 
 #include <tbb/parallel_for.h>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -292,7 +293,7 @@ MapRaster::MapRaster(const Geometry& geometry, const UvSet& uvs, MapSize size) :
         const glm::uvec3 corners = corners_in_map(geometry, uvs, t);
         Placed placed;
         placed.triangle = t;
-        double least = HUGE_VAL, most = -HUGE_VAL;
+        glm::dvec2 least(HUGE_VAL), most(-HUGE_VAL);
         bool is_there = true;
         for (int k = 0; k < 3; ++k) {
             if (corners[k] == UvSet::kNone) {
@@ -302,16 +303,18 @@ MapRaster::MapRaster(const Geometry& geometry, const UvSet& uvs, MapSize size) :
             const glm::dvec2 uv = uvs.values[corners[k]];
             is_there &= std::isfinite(uv.x) && std::isfinite(uv.y);
             placed.corners[k] = uv * scale;
-            least = std::min({least, uv.x, uv.y});
-            most = std::max({most, uv.x, uv.y});
+            least = glm::min(least, uv);
+            most = glm::max(most, uv);
         }
-        is_there = is_there && most - least <= kMostTiles &&
-                   std::abs(twice_area(placed.corners)) > kFlatTwiceArea;
+        const double twice = std::abs(twice_area(placed.corners));
+        is_there = is_there && most.x - least.x <= kMostTiles && most.y - least.y <= kMostTiles &&
+                   twice > kFlatTwiceArea;
         if (!is_there) {
             ++flat_;
             continue;
         }
-        placed.is_outside = least < 0.0 || most > 1.0;
+        sheets_ += 0.5 * twice / static_cast<double>(size_.count());
+        placed.is_outside = least.x < 0.0 || least.y < 0.0 || most.x > 1.0 || most.y > 1.0;
         outside_ += placed.is_outside ? 1 : 0;
         placed_.push_back(placed);
     }

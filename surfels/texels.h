@@ -50,6 +50,9 @@ struct Texel {
 /// Triangles that span more tiles than this in either direction show nothing that is to be seen.
 inline constexpr double kMostTiles = 64.0;
 
+/// A map that is covered more often than this is one that the surface repeats, as bricks do.
+inline constexpr double kMostSheets = 8.0;
+
 /// The triangles of a scene in the plane of a map. Immutable; any number of threads.
 class MapRaster {
 public:
@@ -65,6 +68,9 @@ public:
     /// Triangles that reach out of [0, 1]: where one that does not covers the same texel, they do
     /// not count.
     [[nodiscard]] std::uint64_t outside_triangles() const { return outside_; }
+
+    /// The triangles' areas in the map, in maps: how many times they cover it, on average.
+    [[nodiscard]] double sheets() const { return sheets_; }
 
     /// Of the rows first <= y < first + rows: by row, then column; several for one texel where
     /// sheets lie on each other, by triangle. However a map is cut into ranges of rows, the texels
@@ -82,6 +88,7 @@ private:
     MapSize size_;
     std::vector<Placed> placed_;
     std::uint64_t flat_ = 0, outside_ = 0;
+    double sheets_ = 0.0;
 };
 
 }  // namespace surfelao

@@ -61,6 +61,13 @@ TEST_F(MapCommand, WritesAMapOverTheFilesCoordinates)
 TEST_F(MapCommand, RefusesWhatItCannotDo)
 {
     folder_.file("plain.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    // the corner's walls on one place, dark on one side and bright on the other
+    folder_.file("twice.obj",
+                 "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\n"
+                 "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                 "f 1/1 2/2 3/3 4/4\nf 1/2 4/3 6/4 5/1\n");
+    folder_.file("bricks.obj",
+                 "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 9 0\nvt 0 9\nf 1/1 2/2 3/3\n");
     struct Case {
         std::vector<std::string> options;
         int code;
@@ -69,6 +76,9 @@ TEST_F(MapCommand, RefusesWhatItCannotDo)
     for (const Case& wrong :
          {Case{{"in.obj", "-o", "x.png", "--uv", "1"}, 1, "no texture coordinates of number 1"},
           {{"plain.obj", "-o", "x.png"}, 1, "no texture coordinates for a map"},
+          {{"twice.obj", "-o", "x.png"}, 1, "are for other maps"},
+          {{"bricks.obj", "-o", "x.png"}, 1, "times over"},
+          {{"in.obj", "-o", "x.obj", "--at", "texels"}, 1, "x.obj"},
           {{"in.obj", "-o", "x.png", "--size", "0"}, 2, "--size"},
           {{"in.obj", "-o", "x.png", "--size", "65536"}, 2, "--size"},
           {{"in.obj", "-o", "none/x.png"}, 1, "there is no folder"},
