@@ -51,7 +51,7 @@ std::string search_of(const BakeReport& report)
     const StatedError& last = *report.error;
     if (last.floor && *last.floor > *report.settings.error)
         return text + " not met: values at these vertices err by " + fixed(*last.floor, 4) +
-               " whoever answers (floor); a finer mesh helps";
+               " whoever answers (floor); a finer mesh or a map helps";
     if (last.floor && last.high > 0.0 &&
         *last.floor * last.high > *report.settings.error * last.rmse)
         return text + " not met for sure: the floor of these vertices, " + fixed(*last.floor, 4) +
