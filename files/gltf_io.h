@@ -25,7 +25,8 @@
 ///
 /// A primitive becomes one Part per use of its mesh, with all vertices of its POSITION accessor;
 /// primitives of one mesh that share all accessors their vertices come from (POSITION, NORMAL,
-/// joints, weights, targets, but not texture coordinates) are one Part (Part::primitive is the first of them).
+/// joints, weights, targets, but not texture coordinates) are one Part (Part::primitive is the
+/// first of them).
 ///
 /// Refused are compressed geometry (KHR_draco_mesh_compression, EXT_meshopt_compression without
 /// plain data), and any extension that the file requires unless it is known to leave triangles
@@ -70,7 +71,8 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
 ///   _BENT_NORMAL  VEC3 float, unit length, in the mesh's own space like NORMAL: the normal matrix
 ///                 of the node (of a skin: the joints) turns it into world space. Zero where there
 ///                 is none, and where the mesh is flattened so that no direction is left.
-///   COLOR_0       as options.colors says: VEC4 float, linear unless options.encoding is srgb. Alpha
+///   COLOR_0       as options.colors says: VEC4 float, linear unless options.encoding is srgb.
+///   Alpha
 ///                 is the file's own, 1 where it has none; bent normals are those of world space,
 ///                 as in a .ply
 ///   _OWN_COLOR    where COLOR_0 is ours and the file had one: the accessor that it had

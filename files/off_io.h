@@ -3,10 +3,10 @@
 /// Read: [ST][C][N]OFF in ascii, the keyword may be missing; the counts on the keyword's line, with
 /// or without a space before them, or the next; comments anywhere. A vertex takes x y z and, under
 /// N, its normal (any numbers; zero for a vertex without) and what else stands on its line (colour;
-/// under ST two texture coordinates as the last, v running up, nan for a vertex without). Faces of fewer than three corners are passed over and
-/// counted in Scene::notes, as are vertices without a finite place that no face uses
-/// (mesh_source.h); a face's colour is passed over. The edge count may be missing and is not used.
-/// Homogeneous (4), n-dimensional (n) and BINARY files are refused.
+/// under ST two texture coordinates as the last, v running up, nan for a vertex without). Faces of
+/// fewer than three corners are passed over and counted in Scene::notes, as are vertices without a
+/// finite place that no face uses (mesh_source.h); a face's colour is passed over. The edge count
+/// may be missing and is not used. Homogeneous (4), n-dimensional (n) and BINARY files are refused.
 #pragma once
 
 #include "files/scene_io.h"

@@ -5,12 +5,13 @@
 /// texture_v, or texture_s and texture_t (texture coordinates); element `face` with the list
 /// `vertex_indices` or `vertex_index`, and `texcoord`, two numbers for each corner, before which
 /// the vertices' own texture coordinates do not count (MeshLab writes both; a face without has
-/// none). v runs up, and what is no number there is nan. Element `tristrips` (a strip ends at -1, triangles that use
-/// a vertex twice only turn the strip and are left out). Other elements and properties are passed
-/// over. In ascii files every row stands on a line of its own. Bytes after the last element are
-/// ignored. A header line that begins with `Created` is a comment: Blender 2.47 wrote it so. Faces
-/// of fewer than three corners are passed over and counted in Scene::notes, as are vertices without
-/// a finite place that no face uses (mesh_source.h) and lists `texcoord` of another length.
+/// none). v runs up, and what is no number there is nan. Element `tristrips` (a strip ends at -1,
+/// triangles that use a vertex twice only turn the strip and are left out). Other elements and
+/// properties are passed over. In ascii files every row stands on a line of its own. Bytes after
+/// the last element are ignored. A header line that begins with `Created` is a comment:
+/// Blender 2.47 wrote it so. Faces of fewer than three corners are passed over and counted in
+/// Scene::notes, as are vertices without a finite place that no face uses (mesh_source.h) and lists
+/// `texcoord` of another length.
 #pragma once
 
 #include "files/scene_io.h"

@@ -140,8 +140,8 @@ std::vector<NamedFile> files_named(const fs::path& folder, std::string_view name
 std::string path_from(const fs::path& folder, const fs::path& file)
 {
     // of the folders only: what a link to a file stands beside is what its user sees
-    const fs::path way = fs::relative(fs::absolute(file).parent_path(),
-                                      fs::absolute(folder.empty() ? "." : folder));
+    const fs::path way =
+        fs::relative(fs::absolute(file).parent_path(), fs::absolute(folder.empty() ? "." : folder));
     return (way / file.filename()).lexically_normal().generic_string();
 }
 

@@ -50,12 +50,12 @@ TEST(MapBake, HasTheProfileOfAWallAtItsFoot)
     const MappedWorld world(scenes::wall_and_floor(size, 40), [&](glm::dvec3 p) {
         return glm::dvec2(0.5 + (p.x - p.z) / (2.0 * size), 0.5 + p.y / size);
     });
-    for (const auto& [engine, tolerance] : {std::pair(Engine::masks, 0.012), {Engine::rays, 0.004}}) {
+    for (const auto& [engine, tolerance] :
+         {std::pair(Engine::masks, 0.012), {Engine::rays, 0.004}}) {
         EngineSettings settings;
         settings.engine = engine;
         settings.rays = 4096;
-        const MapBake bake =
-            world.bake({.size = {64, 8}, .depth = MapDepth::whole}, settings);
+        const MapBake bake = world.bake({.size = {64, 8}, .depth = MapDepth::whole}, settings);
         EXPECT_EQ(bake.covered, 512u);
         EXPECT_EQ(bake.overlapping, 0u);
         for (std::uint32_t y = 0; y < 8; ++y) {
