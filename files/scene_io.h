@@ -51,10 +51,11 @@ std::vector<std::string> write_scene(const std::filesystem::path& path, const Sc
                                      std::span<const Occlusion> occlusion,
                                      const WriteOptions& options = {});
 
-/// Occlusion as a texture over the file's own coordinates.
+/// Occlusion as a texture over the file's own coordinates, or over new ones.
 struct OcclusionMap {
     std::string png;           ///< a file's contents; red is the visibility, linear: 1 = open
     std::uint32_t uv_set = 0;  ///< of Scene::uvs: glTF's TEXCOORD_n
+    std::optional<UvSet> uvs = {};  ///< new ones, in place of uv_set
 };
 
 /// Where the map of a result at `output` stands: STEM.ao.png beside a .gltf; nothing for a .glb,

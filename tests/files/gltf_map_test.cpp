@@ -36,7 +36,7 @@ std::string two_texels()
 
 const OcclusionMap& map_over(std::uint32_t set)
 {
-    static const OcclusionMap maps[] = {{two_texels(), 0}, {two_texels(), 1}};
+    static const OcclusionMap maps[] = {{two_texels(), 0, {}}, {two_texels(), 1, {}}};
     return maps[set];
 }
 

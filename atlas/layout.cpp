@@ -1,0 +1,45 @@
+#include "atlas/layout.h"
+
+namespace surfelao {
+namespace {
+
+glm::vec3 normal_at(const Surface& surface, const SurfacePoint& point)
+{
+    const glm::uvec3 wedges = surface.corners[point.triangle];
+    return (1.0f - point.at.x - point.at.y) * surface.normals[wedges.x] +
+           point.at.x * surface.normals[wedges.y] + point.at.y * surface.normals[wedges.z];
+}
+
+}  // namespace
+
+PagePlaces places_of(const Mesh& mesh, const MapLayout& layout, const SurfacePoint& point)
+{
+    PagePlaces places;
+    const glm::vec3 normal = layout.is_blended ? normal_at(mesh.surface, point) : glm::vec3(0.0f);
+    float sum = 0.0f;
+    for (std::uint32_t page = 0; page < layout.pages.size(); ++page) {
+        const auto uv = uv_at(mesh.geometry, layout.pages[page], point);
+        if (!uv)
+            continue;
+        const float component = layout.is_blended ? normal[static_cast<int>(page)] : 1.0f;
+        places.list[places.count++] = {page, *uv, component * component};
+        sum += component * component;
+        if (!layout.is_blended)
+            break;
+    }
+    for (std::size_t i = 0; i < places.count; ++i) {
+        float& weight = places.list[i].weight;
+        weight = sum > 0.0f ? weight / sum : 1.0f / static_cast<float>(places.count);
+    }
+    return places;
+}
+
+float fetch_at(std::span<const Map> pages, const PagePlaces& places, std::uint32_t channel)
+{
+    float sum = 0.0f;
+    for (const PagePlace& place : places.places())
+        sum += place.weight * fetch(pages[place.page], channel, place.uv);
+    return sum;
+}
+
+}  // namespace surfelao
