@@ -108,14 +108,23 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
     const TexelSettings& texels = *settings.texels;
     TexelReport& told = report.texels.emplace();
     told.uv_set = chosen_set(settings, mesh);
-    const MapSettings map_settings{.size = {texels.size, texels.size},
-                                   .padding = texels.padding,
+    const MapSettings map_settings{.padding = texels.padding,
                                    .bent = texels.bent,
                                    .depth = texels.depth,
                                    .half_is_whole = lower_extension(settings.output) != ".exr",
                                    .check = settings.check};
-    const MapBake map = bake_map(mesh, mesh.scene.uvs[told.uv_set], map_settings, settings.engine,
-                                 offset_of(settings.target, mesh.geometry.frame), progress);
+    const MapLayout layout{.size = {texels.size, texels.size},
+                           .pages = {mesh.scene.uvs[told.uv_set]}};
+    const Offset offset = offset_of(settings.target, mesh.geometry.frame);
+    const MapBake map =
+        settings.error ? bake_map_to_error(mesh, layout, map_settings, settings.engine, offset,
+                                           *settings.error, progress)
+                       : bake_map(mesh, layout, map_settings, settings.engine, offset, progress);
+    report.settings.engine = map.engine;
+    report.trials = map.trials;
+    report.is_met = map.is_met;
+    report.surfels = map.surfels;
+    report.residual = map.residual;
     told.covered = map.covered;
     told.overlapping = map.overlapping;
     told.spread = map.spread;
@@ -138,14 +147,15 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
     Stopwatch watch;
     if (texels.bent) {
         told.written.push_back(bent_path(settings.output));
-        write_map(told.written.back(), map.bent, texels.depth);
+        write_map(told.written.back(), map.bent[0], texels.depth);
     }
     if (is_map(settings.output)) {
-        write_map(settings.output, map.visibility, texels.depth);
+        write_map(settings.output, map.visibility[0], texels.depth);
     } else {
-        const std::vector<std::string> notes = write_scene_with_map(
-            settings.output, mesh.scene, {map_bytes(map.visibility, texels.depth), told.uv_set},
-            {.mark = mark_of(settings)});
+        const std::vector<std::string> notes =
+            write_scene_with_map(settings.output, mesh.scene,
+                                 {map_bytes(map.visibility[0], texels.depth), told.uv_set, {}},
+                                 {.mark = mark_of(settings)});
         report.notes.insert(report.notes.end(), notes.begin(), notes.end());
         if (const auto beside = map_file_of(settings.output))
             told.written.push_back(*beside);
