@@ -128,6 +128,10 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
     told.covered = map.covered;
     told.overlapping = map.overlapping;
     told.spread = map.spread;
+    told.hidden = map.hidden;
+    told.seams = map.seams;
+    told.smooth_seams = map.smooth_seams;
+    told.jump = map.jump;
     told.flat_triangles = map.flat_triangles;
     told.outside_triangles = map.outside_triangles;
     check_overlap(settings, told);
