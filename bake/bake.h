@@ -56,10 +56,10 @@ struct BakeSeconds : VertexBakeSeconds {
 
 struct TexelReport {
     std::uint32_t uv_set = 0;
-    std::uint64_t covered = 0;      ///< texels
-    std::uint64_t overlapping = 0;  ///< texels of several sheets: they hold the mean
-    double spread = 0.0;            ///< of these: RMS difference of a sheet to it
-    std::uint64_t hidden = 0;       ///< texels that nobody sees (hidden_texels.h)
+    std::uint64_t covered = 0;                  ///< texels
+    std::uint64_t overlapping = 0;              ///< texels of several sheets: they hold the mean
+    double spread = 0.0;                        ///< of these: RMS difference of a sheet to it
+    std::uint64_t hidden = 0;                   ///< texels that nobody sees (hidden_texels.h)
     std::uint64_t seams = 0, smooth_seams = 0;  ///< edges of the surface (atlas/seams.h)
     SeamJump jump;                              ///< at the smooth ones
     std::uint64_t flat_triangles = 0;
