@@ -23,8 +23,8 @@ void for_each_around(const Map& map, std::size_t texel, const Visit& visit)
 
 }  // namespace
 
-std::vector<std::uint8_t> texels_at_steps(const Map& visibility,
-                                          std::span<const std::uint8_t> known)
+std::vector<std::uint8_t> texels_maybe_hidden(const Map& visibility,
+                                              std::span<const std::uint8_t> known)
 {
     const auto is_closed = [&](std::size_t texel) {
         return known[texel] != 0 && visibility.values[texel] <= kHiddenVisibility;
@@ -33,11 +33,11 @@ std::vector<std::uint8_t> texels_at_steps(const Map& visibility,
     for (std::size_t texel = 0; texel < visibility.texels(); ++texel) {
         if (!is_closed(texel))
             continue;
-        bool at_step = false;
+        bool is_beside = false;
         for_each_around(visibility, texel, [&](std::size_t other) {
-            at_step |= known[other] != 0 && visibility.values[other] > kOpenVisibility;
+            is_beside |= known[other] != 0 && visibility.values[other] > kHiddenVisibility;
         });
-        if (at_step)
+        if (is_beside)
             front.push_back(texel);
     }
     if (front.empty())
@@ -79,9 +79,17 @@ std::vector<std::uint8_t> inside_bodies(const Geometry& geometry, const RayScene
                             max_distance});
     }
     const std::vector<ClosestHit> hits = closest_hits(scene, rays);
+    const auto meets_mostly = [&](std::size_t receiver, const auto& is_inner) {
+        return std::ranges::count_if(std::span(hits).subspan(kPacket * receiver, kPacket),
+                                     is_inner) > kPacket / 2;
+    };
+    for (std::size_t i = 0; i < receivers.size(); ++i)
+        inside[i] = meets_mostly(i, [](const ClosestHit& hit) { return hit.is_back; }) ? 1 : 0;
+    if (std::ranges::count(inside, 0) == std::ssize(inside))
+        return inside;
     const Topology topology = analyse_topology(geometry);
-    const auto is_from_inside = [&](const ClosestHit& hit) {
-        if (hit.triangle == ClosestHit::kNone || !hit.is_back)
+    const auto is_of_body = [&](const ClosestHit& hit) {
+        if (!hit.is_back)
             return false;
         const glm::uvec3 t = geometry.triangles[hit.triangle];
         return topology.sides[t.x] == OccluderSide::back &&
@@ -89,10 +97,7 @@ std::vector<std::uint8_t> inside_bodies(const Geometry& geometry, const RayScene
                topology.sides[t.z] == OccluderSide::back;
     };
     for (std::size_t i = 0; i < receivers.size(); ++i)
-        inside[i] = std::ranges::count_if(std::span(hits).subspan(kPacket * i, kPacket),
-                                          is_from_inside) > kPacket / 2
-                        ? 1
-                        : 0;
+        inside[i] = meets_mostly(i, is_of_body) ? 1 : 0;
     return inside;
 }
 

@@ -21,26 +21,25 @@
 
 namespace surfelao {
 
-/// Visibility of a texel that may be hidden, at most, and of one beside it that is not, at least:
-/// where there is no such step, nothing is there that would show as a fringe.
-inline constexpr float kHiddenVisibility = 0.001f;
-inline constexpr float kOpenVisibility = 0.1f;
+/// Texels of less visibility may be hidden: inside of a box the masks of `draft` leave as much
+/// open. Where such a texel has no neighbour of more, nothing is there that would show as a fringe.
+inline constexpr float kHiddenVisibility = 0.1f;
 
-/// Texels from such a step that are looked at. What is shown of a texel at the foot fetches two
+/// Texels from there that are looked at. What is shown of a texel at the foot fetches two
 /// more in the next mip level, three in all; they are filled from both sides, of which the inner
 /// one is dark: twice as many.
 inline constexpr std::uint32_t kHiddenRings = 6;
 
-/// Nonzero where a texel may be hidden: those at a step from closed to open, and closed ones within
+/// Nonzero where a texel may be hidden: those beside open ones, and other closed ones within
 /// kHiddenRings of it. Empty where there is none. known: nonzero where a texel has a value.
 /// O(texels).
-[[nodiscard]] std::vector<std::uint8_t> texels_at_steps(const Map& visibility,
-                                                        std::span<const std::uint8_t> known);
+[[nodiscard]] std::vector<std::uint8_t> texels_maybe_hidden(const Map& visibility,
+                                                            std::span<const std::uint8_t> known);
 
 /// Nonzero where a receiver stands inside of a body: more than half of 16 rays over its hemisphere,
 /// within the distance at which surfaces occlude, first meet the inner side of one that is closed
 /// and faces outward (OccluderSide::back of surfels/topology.h). Of all others nothing is guessed.
-/// scene: of the geometry. O(n) for the topology, where there are receivers; all cores.
+/// scene: of the geometry. All cores; O(n) for the topology where many inner sides are met.
 [[nodiscard]] std::vector<std::uint8_t> inside_bodies(const Geometry& geometry,
                                                       const RayScene& scene,
                                                       std::span<const Receiver> receivers,

@@ -245,7 +245,8 @@ private:
     {
         std::optional<RayScene> scene;
         for (std::size_t page = 0; page < known.size(); ++page) {
-            std::vector<std::uint8_t> hidden = texels_at_steps(bake.visibility[page], known[page]);
+            std::vector<std::uint8_t> hidden =
+                texels_maybe_hidden(bake.visibility[page], known[page]);
             if (hidden.empty())
                 continue;
             const std::vector<Texel> texels = marked_texels(page, hidden);
