@@ -85,6 +85,11 @@ struct Scene {
 [[nodiscard]] Scene make_scene(std::span<const glm::dvec3> positions,
                                std::span<const glm::uvec3> triangles);
 
+/// All of them as one, one behind the other, with their normals; parts without a name get their
+/// scene's. Texture coordinates and assets are left out. Throws SettingsError for more elements
+/// than kMostElements.
+[[nodiscard]] Scene join(std::span<const Scene> scenes);
+
 /// Throws InputError as make_scene does, but takes a scene without triangles.
 void check_scene(const Scene& scene);
 
