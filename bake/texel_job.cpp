@@ -1,5 +1,6 @@
 #include "bake/texel_job.h"
 
+#include "bake/bent_space.h"
 #include "bake/high_to_low.h"
 #include "files/file_type.h"
 #include "files/scene_io.h"
@@ -175,11 +176,12 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
         told.high_triangles = high->mesh.scene.triangles.size();
         told.matched_parts = high->detail.matched_parts();
     }
-    const MapSettings map_settings{.padding = texels.padding,
-                                   .bent = texels.bent != BentSpace::none,
-                                   .depth = texels.depth,
-                                   .half_is_whole = lower_extension(settings.output) != ".exr",
-                                   .check = settings.check};
+    const MapSettings map_settings{
+        .padding = texels.padding,
+        .bent = bent_encoder(mesh, layout, texels.bent, texels.green_down),
+        .depth = texels.depth,
+        .half_is_whole = lower_extension(settings.output) != ".exr",
+        .check = settings.check};
     const Frame& frame = high ? high->mesh.geometry.frame : mesh.geometry.frame;
     EngineSettings engine = settings.engine;
     engine.definition = definition_of(settings.max_distance, settings.kernel, frame);
