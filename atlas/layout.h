@@ -25,7 +25,7 @@ struct MapLayout {
     std::vector<UvSet> pages;  ///< at least one; per scene triangle, kNone for those on other pages
     std::vector<std::uint32_t> tiles = {};  ///< UDIM number of each page: 1001 + column + 10 row;
                                             ///< or empty
-    bool is_blended = false;  ///< three pages: by x, y, z
+    bool is_blended = false;                ///< three pages: by x, y, z
 };
 
 /// A point of the surface on a page.

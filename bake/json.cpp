@@ -89,9 +89,13 @@ Json json_of(const BakeReport& report, const TexelReport& texels)
     Json written = Json::array();
     for (const std::filesystem::path& path : texels.written)
         written.push_back(path.string());
-    return {{"size", report.settings.texels->size},
+    return {{"size", texels.size.width},
             {"padding", report.settings.texels->padding},
-            {"uv_set", texels.uv_set},
+            {"uv_set", texels.uv_set ? Json(*texels.uv_set) : Json()},
+            {"tiles", texels.tiles},
+            {"misses", texels.misses},
+            {"high_triangles", texels.high_triangles},
+            {"matched_parts", texels.matched_parts},
             {"covered", texels.covered},
             {"overlapping", texels.overlapping},
             {"spread", texels.spread},

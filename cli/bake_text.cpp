@@ -15,8 +15,11 @@ std::string question_of(const BakeReport& report)
     std::string text = name_of(settings.engine.engine) + ", " + setting_of(settings.engine) +
                        ", at " + std::to_string(report.receivers) + " places";
     if (report.texels)
-        text += " of " + std::to_string(report.texels->covered) + " texels (texture coordinates " +
-                std::to_string(report.texels->uv_set) + ")";
+        text +=
+            " of " + std::to_string(report.texels->covered) + " texels (" +
+            (report.texels->uv_set ? "texture coordinates " + std::to_string(*report.texels->uv_set)
+                                   : std::string("new texture coordinates")) +
+            ")";
     else if (settings.target.values == VertexValues::fit)
         text += " fitted to the vertices";
     if (report.corners_from_file > 0)
