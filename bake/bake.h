@@ -38,6 +38,7 @@ struct BakeSettings {
 /// Wall-clock seconds of each stage.
 struct BakeSeconds : VertexBakeSeconds {
     double read = 0.0;    ///< the file, and the clean geometry
+    double charts = 0.0;  ///< texels: charts of our own
     double raster = 0.0;  ///< texels: which of them, and where each is asked
     double fill = 0.0;    ///< texels: those that nothing covers
     double write = 0.0;   ///< the file, and the notes meanwhile
@@ -48,6 +49,7 @@ struct TexelReport {
     MapSize size;
     std::optional<std::uint32_t> uv_set;  ///< of the file; empty: charts of our own
     std::vector<std::uint32_t> tiles;     ///< UDIM
+    std::optional<ChartReport> charts;    ///< of our own
     std::uint64_t covered = 0;            ///< texels
     std::uint64_t overlapping = 0;        ///< texels of several sheets: they hold the mean
     double spread = 0.0;                  ///< of these: RMS difference of a sheet to it
