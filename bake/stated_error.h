@@ -75,6 +75,9 @@ using Shown = std::function<float(const SurfacePoint&)>;
                                               std::span<const Occlusion> answers,
                                               std::span<const Occlusion> values);
 
+/// Where occlusion is asked for points of a surface.
+using ReceiversOf = std::function<std::vector<Receiver>(std::span<const SurfacePoint>)>;
+
 /// Points of a mesh and what is true there; measures whatever is displayed on it.
 class ErrorCheck {
 public:
@@ -83,6 +86,11 @@ public:
     /// the job. count: 1 to kMostCheckPoints. O(n).
     ErrorCheck(const Mesh& mesh, std::span<const double> density, const Offset& offset,
                std::uint32_t count);
+
+    /// The same where something else than the mesh itself is asked: receivers in the unit frame of
+    /// `occluders`, which must outlive this.
+    ErrorCheck(const Geometry& geometry, std::span<const double> density,
+               const ReceiversOf& receivers_of, const Geometry& occluders, std::uint32_t count);
 
     /// For values that are fitted: asks at samples of the target too, for the floor. target must
     /// outlive this; before trace().
@@ -121,7 +129,7 @@ private:
     double mean_square(const Shown& shown) const;
     void leave_out(std::span<const std::size_t> points);
 
-    const Geometry& geometry_;
+    const Geometry& occluders_;
     std::vector<Point> points_, samples_;
     std::vector<Receiver> receivers_;  ///< at points_, then at samples_
     std::uint32_t rays_ = 0;           ///< per point
