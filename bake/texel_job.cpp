@@ -163,6 +163,7 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
     const BakeSettings& settings = report.settings;
     const TexelSettings& texels = *settings.texels;
     TexelReport& told = report.texels.emplace();
+    Stopwatch watch;
     const TexelLayout place = layout_for(mesh, texels, !is_map(settings.output), [&](double done) {
         return !progress || progress("charts", done);
     });
@@ -170,6 +171,8 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
     told.size = layout.size;
     told.uv_set = place.uv_set;
     told.tiles = layout.tiles;
+    told.charts = place.charts;
+    report.seconds.charts = watch.lap();
     if (!place.why_new.empty())
         report.notes.push_back("new texture coordinates: " + place.why_new);
     std::optional<High> high;
@@ -201,7 +204,7 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
 
     if (progress && !progress("write", 0.0))
         throw Cancelled();
-    Stopwatch watch;
+    watch.lap();
     if (!map.bent.empty())
         write_pictures(bent_path(settings.output), map.bent, report, told.written);
     if (is_map(settings.output)) {
