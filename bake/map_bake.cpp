@@ -309,15 +309,18 @@ private:
         const Seams seams = seams_of(mesh_, layout_);
         const std::uint32_t rings =
             bake.hidden == 0 ? settings_.padding : std::max(settings_.padding, kHiddenRings / 2);
-        for (std::vector<Map>* maps : {&bake.visibility, &bake.bent}) {
-            if (maps->empty())
-                continue;
+        const auto fill = [&](std::vector<Map>& maps, bool joins) {
             Known filled = known;
-            fill_across(mesh_, layout_, seams, settings_.padding, *maps, filled);
-            for (std::size_t page = 0; page < maps->size(); ++page)
-                fill_around((*maps)[page], filled[page], rings);
-            stitch(seams, *maps);
-        }
+            if (joins)
+                fill_across(mesh_, layout_, seams, settings_.padding, maps, filled);
+            for (std::size_t page = 0; page < maps.size(); ++page)
+                fill_around(maps[page], filled[page], rings);
+            if (joins)
+                stitch(seams, maps);
+        };
+        fill(bake.visibility, true);
+        if (!bake.bent.empty())
+            fill(bake.bent, settings_.joins_bent);
         bake.seams = seams.list.size();
         bake.smooth_seams = seams.smooth_count();
         bake.jump = seam_jump(seams, bake.visibility);

@@ -33,6 +33,7 @@ using BentEncoder =
 struct MapSettings {
     std::uint32_t padding = 4;  ///< texels around what is covered that take their neighbours' mean
     BentEncoder bent = {};      ///< bent normals too, in this space (bent_space.h)
+    bool joins_bent = true;     ///< across seams; not in tangent space, which is another there
     MapDepth depth = MapDepth::byte;
     bool half_is_whole = true;           ///< what 16 bits are in the file (image/map.h)
     std::uint32_t check = kCheckPoints;  ///< as BakeSettings::check
