@@ -1,4 +1,7 @@
 #include "bake/map_bake.h"
+
+#include "atlas/tangents.h"
+#include "bake/bent_space.h"
 #include "bake/surface_error.h"
 #include "laid_out.h"
 #include "scenes.h"
@@ -95,6 +98,33 @@ TEST(MapSeams, LeaveAConvexBodyOpenAndAClosedRoomDark)
     const MapBake room = bake(scenes::room(glm::dvec3(-1.0), glm::dvec3(1.0), 5));
     EXPECT_EQ(std::ranges::max(room.visibility[0].values), 0.0f);
     EXPECT_EQ(room.hidden, 0u);
+}
+
+// In tangent space the floor's two charts, of which one is turned, have frames of their own.
+TEST(MapSeams, JoinBentNormalsOnlyWhereTheyAreInOneSpace)
+{
+    const Mesh mesh = make_mesh(scenes::wall_and_floor(kWide, 8));
+    const MapLayout layout = laid_out(mesh.scene, {128, 128}, 1, wall_near_and_far);
+    const auto baked = [&](BentSpace space, bool joins) {
+        const MapSettings settings{.bent = bent_encoder(mesh, layout, space),
+                                   .joins_bent = joins,
+                                   .depth = MapDepth::whole,
+                                   .check = 0};
+        return bake_map(mesh, layout, settings, {}, {}).bent[0];
+    };
+    const auto at = [](const Map& map, const Texel& texel) {
+        const float* value = &map.values[map.index(texel.x, texel.y)];
+        return 2.0f * glm::vec3(value[0], value[1], value[2]) - 1.0f;
+    };
+    const Map tangent = baked(BentSpace::tangent, false);
+    const Map world = baked(BentSpace::world, false), joined = baked(BentSpace::world, true);
+    const Tangents tangents = make_tangents(mesh, layout.pages[0]);
+    for (const Texel& texel :
+         MapRaster(mesh.geometry, layout.pages[0], layout.size).texels(0, layout.size.height)) {
+        const glm::vec3 held = to_tangent_space(mesh, tangents, texel.point, at(world, texel));
+        EXPECT_LT(glm::distance(at(tangent, texel), held), 1e-4f) << texel.x << " " << texel.y;
+    }
+    EXPECT_NE(joined.values, world.values);
 }
 
 // A valley and its mirror image on the same texels.
