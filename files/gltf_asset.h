@@ -19,6 +19,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace surfelao {
@@ -53,6 +54,8 @@ struct GltfPart {
     glm::dmat3 to_world{1.0};  ///< the linear part of mesh space -> world; not for skinned parts
     /// Skinned parts: the same per vertex, at any scale; empty for others.
     std::vector<glm::mat3> vertices_to_world;
+    /// The mesh's primitives that it is made of, each with the first of its triangles in the scene.
+    std::vector<std::pair<std::size_t, std::size_t>> primitives = {};
 };
 
 /// Everything a writer needs to hand the file back with attributes added.
@@ -74,8 +77,11 @@ struct GltfAsset : SourceAsset {
     /// Per mesh that the scene uses and primitive: the first primitive that shares all its vertices
     /// (Part::primitive), or -1 where it draws no triangles. Empty for other meshes.
     std::vector<std::vector<std::int32_t>> group_of_primitive;
-    std::vector<GltfUse> uses;    ///< in the order of the parts; each has one at least
-    std::vector<GltfPart> parts;  ///< as Scene::parts
+    std::vector<GltfUse> uses;       ///< in the order of the parts; each has one at least
+    std::vector<GltfPart> parts;     ///< as Scene::parts
+    std::size_t triangle_count = 0;  ///< of the scene
+
+    [[nodiscard]] BaseColors base_colors() const override;  // gltf_base_colors.cpp
 };
 
 /// Takes the container apart, parses the document and loads all buffers into `asset`. A buffer

@@ -359,6 +359,7 @@ private:
     void add_triangles(const Group& group, const Primitive& primitive, const Part& part,
                        IsMirrored&& is_mirrored)
     {
+        asset_.parts.back().primitives.emplace_back(primitive.index, scene_.triangles.size());
         const std::vector<std::uint32_t> uvs = uv_begins(group, primitive);
         std::vector<std::uint32_t> indices;
         if (primitive.indices)
@@ -437,6 +438,7 @@ Scene read_gltf(const fs::path& path, std::string contents)
     Scene scene;
     scene.name = path.filename().string();
     SceneBuilder(model, *asset, scene).build();
+    asset->triangle_count = scene.triangles.size();
     scene.asset = asset;
     return scene;
 }
