@@ -33,6 +33,7 @@ struct Primitive {
 struct MorphTarget {
     std::optional<NamedAccessor> positions;
     std::optional<NamedAccessor> normals;
+    std::optional<NamedAccessor> tangents;
 };
 
 /// Four joints and their weights for each vertex: JOINTS_n and WEIGHTS_n.
@@ -46,6 +47,7 @@ struct InfluenceSet {
 struct Group {
     NamedAccessor positions;
     std::optional<NamedAccessor> normals;
+    std::optional<NamedAccessor> tangents;
     std::vector<MorphTarget> targets;
     std::vector<InfluenceSet> influences;
     std::vector<Primitive> primitives;
