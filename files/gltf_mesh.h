@@ -9,6 +9,10 @@
 #include <string>
 #include <vector>
 
+namespace tinygltf {
+class Model;
+}
+
 namespace surfelao {
 
 /// Sets of texture coordinates that are read: a file might name its accessors any number of times.
