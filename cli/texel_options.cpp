@@ -21,7 +21,66 @@ bool is_picture(const std::filesystem::path& output)
                                [&](const char* known) { return extension == known; });
 }
 
+void add_layout_options(CLI::App& command, TexelOptions& options, const std::string& group)
+{
+    command.add_option("--size", options.size, "Texels of each side of the map")
+        ->check(CLI::Range(1u, kMostTexels))
+        ->type_name("N")
+        ->default_str("1024")
+        ->group(group);
+    command
+        .add_option("--texels-per-unit", options.texels_per_unit,
+                    "Charts of our own at this density: the size follows")
+        ->check(CLI::PositiveNumber)
+        ->type_name("D")
+        ->excludes(command.get_option("--size"))
+        ->group(group);
+    command
+        .add_option("--uv", options.uv,
+                    "The file's texture coordinates by number; new ones, charts of our own; or "
+                    "auto: the file's where each point of the surface has texels of its own, else "
+                    "new ones (a picture alone: the first of use)")
+        ->check(CLI::IsMember({"auto", "0", "1", "2", "3", "new"}))
+        ->type_name("auto|0|1|2|3|new")
+        ->default_str("auto")
+        ->group(group);
+    command
+        .add_option("--charts", options.charts,
+                    "Of new coordinates. planar: each triangle in one chart; blended: a page for "
+                    "each axis, which fade into each other (drawn by render and view)")
+        ->check(CLI::IsMember({"planar", "blended"}))
+        ->type_name("planar|blended")
+        ->default_str("planar")
+        ->group(group);
+    command
+        .add_flag("--udim", options.udim,
+                  "The file's coordinates go over several tiles: a picture each, NAME.1001.png "
+                  "and so on")
+        ->group(group);
+    command
+        .add_option("--padding", options.padding,
+                    "Texels around what is covered that go on with it; the others hold the mean")
+        ->check(CLI::Range(0u, kMostPadding))
+        ->type_name("N")
+        ->default_str("4")
+        ->group(group);
+}
+
 }  // namespace
+
+void add_shown_texel_options(CLI::App& command, TexelOptions& options)
+{
+    constexpr const char* kGroup = "Map (--at texels)";
+    command
+        .add_option("--at", options.at,
+                    "Where occlusion is asked and shown from: vertices; texels of a map on the "
+                    "triangles")
+        ->check(CLI::IsMember({"vertices", "texels"}))
+        ->type_name("vertices|texels")
+        ->default_str("vertices")
+        ->group(kGroup);
+    add_layout_options(command, options, kGroup);
+}
 
 void add_texel_options(CLI::App& command, TexelOptions& options)
 {
@@ -34,47 +93,7 @@ void add_texel_options(CLI::App& command, TexelOptions& options)
         ->check(CLI::IsMember({"vertices", "texels"}))
         ->type_name("vertices|texels")
         ->group(kGroup);
-    command.add_option("--size", options.size, "Texels of each side of the map")
-        ->check(CLI::Range(1u, kMostTexels))
-        ->type_name("N")
-        ->default_str("1024")
-        ->group(kGroup);
-    command
-        .add_option("--texels-per-unit", options.texels_per_unit,
-                    "Charts of our own at this density: the size follows")
-        ->check(CLI::PositiveNumber)
-        ->type_name("D")
-        ->excludes(command.get_option("--size"))
-        ->group(kGroup);
-    command
-        .add_option("--uv", options.uv,
-                    "The file's texture coordinates by number; new ones, charts of our own; or "
-                    "auto: the file's where each point of the surface has texels of its own, else "
-                    "new ones (a picture alone: the first of use)")
-        ->check(CLI::IsMember({"auto", "0", "1", "2", "3", "new"}))
-        ->type_name("auto|0|1|2|3|new")
-        ->default_str("auto")
-        ->group(kGroup);
-    command
-        .add_option("--charts", options.charts,
-                    "Of new coordinates. planar: each triangle in one chart; blended: a page for "
-                    "each axis, which fade into each other (drawn by render and view)")
-        ->check(CLI::IsMember({"planar", "blended"}))
-        ->type_name("planar|blended")
-        ->default_str("planar")
-        ->group(kGroup);
-    command
-        .add_flag("--udim", options.udim,
-                  "The file's coordinates go over several tiles: a picture each, NAME.1001.png "
-                  "and so on")
-        ->group(kGroup);
-    command
-        .add_option("--padding", options.padding,
-                    "Texels around what is covered that go on with it; the others hold the mean")
-        ->check(CLI::Range(0u, kMostPadding))
-        ->type_name("N")
-        ->default_str("4")
-        ->group(kGroup);
+    add_layout_options(command, options, kGroup);
     command
         .add_option("--depth", options.depth,
                     "Bits of each number: .png 8, 16; .tif 8, 16, 32; .exr 16, 32 (floats)")
@@ -137,9 +156,26 @@ void check_together(const TexelOptions& options, bool picture)
            "--texels-per-unit is for texture coordinates that are made: -o a mesh, --uv new.");
     refuse(options.charts == "blended" && (!own || picture),
            "--charts is for texture coordinates that are made: -o a mesh, --uv new.");
-    refuse(options.udim && !picture, "--udim is for pictures: -o NAME.png, .tif or .exr.");
     refuse(options.green && options.bent != "tangent", "--green is for --bent tangent.");
     refuse(options.cage && options.high.empty(), "--cage is for --high.");
+}
+
+/// Where the map lies.
+TexelSettings layout_settings_of(const TexelOptions& options)
+{
+    TexelSettings settings;
+    settings.size = options.size.value_or(settings.size);
+    settings.texels_per_unit = options.texels_per_unit;
+    if (options.uv == "new" || options.texels_per_unit || options.charts == "blended")
+        settings.uvs = UvChoice::made;
+    else if (options.uv && *options.uv != "auto") {
+        settings.uvs = UvChoice::file;
+        settings.uv_set = static_cast<std::uint32_t>(std::stoul(*options.uv));
+    }
+    settings.udim = options.udim;
+    settings.blended = options.charts == "blended";
+    settings.padding = options.padding.value_or(settings.padding);
+    return settings;
 }
 
 }  // namespace
@@ -158,18 +194,9 @@ std::optional<TexelSettings> texel_settings_of(const TexelOptions& options,
         return {};
     }
     check_together(options, picture);
-    TexelSettings settings;
-    settings.size = options.size.value_or(settings.size);
-    settings.texels_per_unit = options.texels_per_unit;
-    if (options.uv == "new" || options.texels_per_unit || options.charts == "blended")
-        settings.uvs = UvChoice::made;
-    else if (options.uv && *options.uv != "auto") {
-        settings.uvs = UvChoice::file;
-        settings.uv_set = static_cast<std::uint32_t>(std::stoul(*options.uv));
-    }
-    settings.udim = options.udim;
-    settings.blended = options.charts == "blended";
-    settings.padding = options.padding.value_or(settings.padding);
+    if (options.udim && !picture)
+        throw UsageError("--udim is for pictures: -o NAME.png, .tif or .exr.");
+    TexelSettings settings = layout_settings_of(options);
     const int depth = options.depth.value_or(lower_extension(output) == ".exr" ? 32 : 8);
     settings.depth = depth == 8 ? MapDepth::byte : depth == 16 ? MapDepth::half : MapDepth::whole;
     constexpr const char* kSpaces[] = {"none", "object", "world", "tangent"};
@@ -181,6 +208,17 @@ std::optional<TexelSettings> texel_settings_of(const TexelOptions& options,
     if (options.cage)
         settings.cage = length_of(*options.cage, "--cage");
     return settings;
+}
+
+std::optional<TexelSettings> shown_texels_of(const TexelOptions& options)
+{
+    if (options.at == "texels") {
+        check_together(options, false);
+        return layout_settings_of(options);
+    }
+    if (has_texel_option(options))
+        throw UsageError("--size, --uv, --charts, --udim and --padding are for --at texels.");
+    return {};
 }
 
 }  // namespace surfelao

@@ -33,9 +33,15 @@ struct TexelOptions {
 
 void add_texel_options(CLI::App& command, TexelOptions& options);
 
+/// Those of where a map lies, for a command that shows it.
+void add_shown_texel_options(CLI::App& command, TexelOptions& options);
+
 /// Nothing where values at vertices are asked: by --at, or by an output that is no picture. Throws
 /// UsageError for what contradicts itself.
 [[nodiscard]] std::optional<TexelSettings> texel_settings_of(const TexelOptions& options,
                                                              const std::filesystem::path& output);
+
+/// The same for a command that shows the map: nothing unless --at says texels.
+[[nodiscard]] std::optional<TexelSettings> shown_texels_of(const TexelOptions& options);
 
 }  // namespace surfelao

@@ -19,6 +19,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace surfelao {
@@ -85,8 +86,11 @@ struct GltfAsset : SourceAsset {
     /// Per mesh that the scene uses and primitive: the first primitive that shares all its vertices
     /// (Part::primitive), or -1 where it draws no triangles. Empty for other meshes.
     std::vector<std::vector<std::int32_t>> group_of_primitive;
-    std::vector<GltfUse> uses;    ///< in the order of the parts; each has one at least
-    std::vector<GltfPart> parts;  ///< as Scene::parts
+    std::vector<GltfUse> uses;       ///< in the order of the parts; each has one at least
+    std::vector<GltfPart> parts;     ///< as Scene::parts
+    std::size_t triangle_count = 0;  ///< of the scene
+
+    [[nodiscard]] BaseColors base_colors() const override;  // gltf_base_colors.cpp
 };
 
 /// Takes the container apart, parses the document and loads all buffers into `asset`. A buffer

@@ -10,6 +10,8 @@
 /// vertex with a triangle stands: it changes no box.
 #pragma once
 
+#include "surfels/base_colors.h"
+
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -69,6 +71,9 @@ public:
     /// The file's own colours for a writer of another format: one per scene vertex in linear light
     /// and alpha, 0 to 1, white where a vertex has none; empty where the file has none. O(bytes).
     [[nodiscard]] virtual std::vector<glm::vec4> own_colors() const { return {}; }
+    /// What the file paints its surfaces with, vertex colours apart; no materials where it says
+    /// nothing of it. What is malformed in it is white. O(bytes).
+    [[nodiscard]] virtual BaseColors base_colors() const { return {}; }
 };
 
 struct Scene {

@@ -1,5 +1,6 @@
 #include "viewer/window.h"
 
+#include "image/color_map.h"
 #include "image/image_file.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
@@ -351,7 +352,8 @@ private:
         for (const Pane& pane : panes_)
             images.push_back(pane.sum.mean());
         Image image = joined(images);
-        draw_legend(image, *session_.state().model, shown_view());
+        if (const auto legend = legend_of(*session_.state().model, nullptr, shown_view()))
+            draw_heat_legend(image, legend->title, legend->low, legend->high);
         write_image(path, image);
     }
 

@@ -1,0 +1,31 @@
+#include "viewer/model_map.h"
+
+#include "surfels/number_text.h"
+
+namespace surfelao {
+
+ModelMap open_map(const MapLayout& layout)
+{
+    const MapSize size = layout.size;
+    return {std::vector<Map>(layout.pages.size(), Map(size.width, size.height, 1, 1.0f)),
+            std::vector<Map>(layout.pages.size(), Map(size.width, size.height, 3, 0.5f))};
+}
+
+std::string text_of(const ModelLayout& layout)
+{
+    const MapLayout& places = layout.layout;
+    std::string text = std::to_string(places.size.width) + " x " +
+                       std::to_string(places.size.height) + " texels, ";
+    if (places.pages.size() > 1)
+        text += std::to_string(places.pages.size()) + " pages, ";
+    text += count_text(layout.facts.chart_count, "chart") + ", ";
+    append_shortest(text, layout.facts.median_density);
+    return text + " texels per unit";
+}
+
+float most_density(const LayoutFacts& facts)
+{
+    return facts.median_density > 0.0f ? 2.0f * facts.median_density : 1.0f;
+}
+
+}  // namespace surfelao

@@ -1,0 +1,37 @@
+#include "viewer/solve_map.h"
+
+#include "bake/bent_space.h"
+
+#include <utility>
+
+namespace surfelao {
+
+MapAnswer solve_map(const Model& model, const MapLayout& layout, const EngineSettings& engine,
+                    std::uint32_t padding, std::uint32_t check, const Progress& progress)
+{
+    StageProgress stages;
+    if (progress)
+        stages = [&](std::string_view stage, double done) {
+            return progress(stage == "solve" ? done : stage == "check" ? 1.0 : 0.0);
+        };
+    MapBake bake = bake_map(*model.mesh, layout,
+                            {.padding = padding,
+                             .bent = bent_encoder(*model.mesh, layout, BentSpace::world),
+                             .check = check},
+                            engine, offset_of(model.settings, model.geometry().frame), stages);
+    return {.map = {std::move(bake.visibility), std::move(bake.bent)},
+            .error = bake.error,
+            .seconds = bake.seconds.raster + bake.seconds.solve + bake.seconds.fill};
+}
+
+ModelMap reference_map(const Model& model, const MapLayout& layout, const Definition& definition,
+                       std::uint32_t rays, std::uint32_t padding, const Progress& progress)
+{
+    EngineSettings engine;
+    engine.engine = Engine::rays;
+    engine.rays = rays;
+    engine.definition = definition;
+    return solve_map(model, layout, engine, padding, 0, progress).map;
+}
+
+}  // namespace surfelao
