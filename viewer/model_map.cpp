@@ -2,6 +2,8 @@
 
 #include "surfels/number_text.h"
 
+#include <cstdio>
+
 namespace surfelao {
 
 ModelMap open_map(const MapLayout& layout)
@@ -19,8 +21,9 @@ std::string text_of(const ModelLayout& layout)
     if (places.pages.size() > 1)
         text += std::to_string(places.pages.size()) + " pages, ";
     text += count_text(layout.facts.chart_count, "chart") + ", ";
-    append_shortest(text, layout.facts.median_density);
-    return text + " texels per unit";
+    char density[32];
+    std::snprintf(density, sizeof density, "%.3g", double{layout.facts.median_density});
+    return text + density + " texels per unit (median)";
 }
 
 float most_density(const LayoutFacts& facts)
