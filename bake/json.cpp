@@ -84,6 +84,16 @@ Json search_json_of(const BakeReport& report)
     return {{"error", *report.settings.error}, {"met", report.is_met}, {"trials", trials}};
 }
 
+Json json_of(const ChartReport& charts)
+{
+    return {{"count", charts.count},
+            {"use", charts.use},
+            {"seam_length", charts.seam_length},
+            {"mean_stretch", charts.mean_stretch},
+            {"largest_stretch", charts.largest_stretch},
+            {"texels_per_unit", charts.texels_per_unit}};
+}
+
 Json json_of(const BakeReport& report, const TexelReport& texels)
 {
     Json written = Json::array();
@@ -93,12 +103,19 @@ Json json_of(const BakeReport& report, const TexelReport& texels)
             {"padding", report.settings.texels->padding},
             {"uv_set", texels.uv_set ? Json(*texels.uv_set) : Json()},
             {"tiles", texels.tiles},
+            {"charts", texels.charts ? json_of(*texels.charts) : Json()},
             {"misses", texels.misses},
             {"high_triangles", texels.high_triangles},
             {"matched_parts", texels.matched_parts},
             {"covered", texels.covered},
             {"overlapping", texels.overlapping},
             {"spread", texels.spread},
+            {"hidden", texels.hidden},
+            {"seams",
+             {{"count", texels.seams},
+              {"smooth", texels.smooth_seams},
+              {"jump_rms", texels.jump.rms},
+              {"jump_max", texels.jump.most}}},
             {"flat_triangles", texels.flat_triangles},
             {"outside_triangles", texels.outside_triangles},
             {"written", written}};
@@ -129,11 +146,11 @@ Json json_of(const BatchEntry& entry)
     add(json["settings"], report.settings.target);
     json["settings"]["colors"] = name_of(report.settings.colors);
     json["settings"]["encoding"] = name_of(report.settings.encoding);
-    json["seconds"] = {{"read", seconds.read},       {"raster", seconds.raster},
-                       {"surfels", seconds.surfels}, {"tree", seconds.tree},
-                       {"solve", seconds.solve},     {"fit", seconds.fit},
-                       {"fill", seconds.fill},       {"check", seconds.check},
-                       {"write", seconds.write},     {"total", seconds.total}};
+    json["seconds"] = {
+        {"read", seconds.read},       {"charts", seconds.charts}, {"raster", seconds.raster},
+        {"surfels", seconds.surfels}, {"tree", seconds.tree},     {"solve", seconds.solve},
+        {"fit", seconds.fit},         {"fill", seconds.fill},     {"check", seconds.check},
+        {"write", seconds.write},     {"total", seconds.total}};
     json["receivers"] = report.receivers;
     json["corners_from_file"] = report.corners_from_file;
     json["replaced_corners"] = report.replaced_corners;

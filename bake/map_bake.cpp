@@ -1,5 +1,6 @@
 #include "bake/map_bake.h"
 
+#include "bake/hidden_texels.h"
 #include "bake/high_to_low.h"
 #include "bake/vertex_fit.h"
 #include "surfels/errors.h"
@@ -21,16 +22,18 @@ using Known = std::vector<std::vector<std::uint8_t>>;
 /// Takes the answers of one band into a page.
 class MapWriter {
 public:
-    MapWriter(MapBake& bake, Known& known) : bake_(bake), known_(known) {}
-
-    void add(std::size_t page, const std::vector<Texel>& texels, std::span<const Occlusion> answers)
+    MapWriter(MapBake& bake, Known& known, const BentEncoder& bent)
+        : bake_(bake), known_(known), encode_(bent)
     {
-        page_ = page;
+    }
+
+    void add(std::size_t page, std::span<const Texel> texels, std::span<const Occlusion> answers)
+    {
         for (std::size_t first = 0, end = 0; first < texels.size(); first = end) {
             for (end = first + 1; end < texels.size() && texels[end].x == texels[first].x &&
                                   texels[end].y == texels[first].y;)
                 ++end;
-            write(texels[first], answers.subspan(first, end - first));
+            write(page, texels.subspan(first, end - first), answers.subspan(first, end - first));
         }
         bake_.receivers += texels.size();
     }
@@ -46,26 +49,18 @@ public:
 
 private:
     /// The sheets of one texel are whole ones, or it has one part: all weigh alike.
-    void write(const Texel& texel, std::span<const Occlusion> sheets)
+    void write(std::size_t page, std::span<const Texel> texels, std::span<const Occlusion> sheets)
     {
         double sum = 0.0;
-        glm::dvec3 bent(0.0);
-        for (const Occlusion& sheet : sheets) {
+        for (const Occlusion& sheet : sheets)
             sum += sheet.occlusion;
-            bent += (1.0 - sheet.occlusion) * glm::dvec3(sheet.bent_normal);
-        }
         const double mean = sum / static_cast<double>(sheets.size());
-        Map& visibility = bake_.visibility[page_];
-        const std::size_t index = visibility.index(texel.x, texel.y);
+        Map& visibility = bake_.visibility[page];
+        const std::size_t index = visibility.index(texels.front().x, texels.front().y);
         visibility.values[index] = static_cast<float>(1.0 - mean);
-        if (!bake_.bent.empty()) {
-            const double length = glm::length(bent);
-            const glm::vec3 normal =
-                length > kLeastBent ? glm::vec3(bent / length) : sheets.front().bent_normal;
-            for (int k = 0; k < 3; ++k)
-                bake_.bent[page_].values[3 * index + static_cast<std::size_t>(k)] = normal[k];
-        }
-        known_[page_][index] = 1;
+        if (encode_)
+            write_bent(page, index, texels, sheets);
+        known_[page][index] = 1;
         occlusion_ += mean;
         ++bake_.covered;
         if (sheets.size() < 2)
@@ -76,9 +71,26 @@ private:
             squares_ += (sheet.occlusion - mean) * (sheet.occlusion - mean);
     }
 
+    /// Their mean by visibility.
+    void write_bent(std::size_t page, std::size_t index, std::span<const Texel> texels,
+                    std::span<const Occlusion> sheets)
+    {
+        glm::dvec3 bent(0.0);
+        glm::vec3 first(0.0f);
+        for (std::size_t i = 0; i < sheets.size(); ++i) {
+            const glm::vec3 direction = encode_(page, texels[i].point, sheets[i].bent_normal);
+            first = i == 0 ? direction : first;
+            bent += (1.0 - sheets[i].occlusion) * glm::dvec3(direction);
+        }
+        const double length = glm::length(bent);
+        const glm::vec3 normal = length > kLeastBent ? glm::vec3(bent / length) : first;
+        for (int k = 0; k < 3; ++k)
+            bake_.bent[page].values[3 * index + static_cast<std::size_t>(k)] = normal[k];
+    }
+
     MapBake& bake_;
     Known& known_;
-    std::size_t page_ = 0;
+    const BentEncoder& encode_;
     double squares_ = 0.0, occlusion_ = 0.0;
     std::uint64_t sheets_ = 0;
 };
@@ -136,7 +148,13 @@ public:
 
         enter("fill");
         Stopwatch watch;
-        finish_pages(bake, known);
+        leave_out_hidden(engine.definition, bake, known);
+        fill_pages(bake, known);
+        for (Map& map : bake.bent)
+            encode_directions(map);
+        for (std::vector<Map>* maps : {&bake.visibility, &bake.bent})
+            for (Map& map : *maps)
+                round_to_depth(map, settings_.depth, settings_.half_is_whole);
         seconds_.fill += watch.lap();
         if (count_ > 0)
             bake.error = error_of(bake);
@@ -180,6 +198,12 @@ private:
         return prepared;
     }
 
+    [[nodiscard]] std::uint32_t band_rows() const
+    {
+        return static_cast<std::uint32_t>(
+            std::clamp<std::uint64_t>(kBandTexels / layout_.size.width, 1, layout_.size.height));
+    }
+
     const Geometry& occluders() const { return high_ ? high_->mesh().geometry : mesh_.geometry; }
 
     std::vector<Receiver> receivers_of(std::span<const SurfacePoint> points,
@@ -193,10 +217,9 @@ private:
     void solve_texels(const Prepared& prepared, const EngineSettings& engine, MapBake& bake,
                       Known& known)
     {
-        MapWriter writer(bake, known);
+        MapWriter writer(bake, known, settings_.bent);
         const std::uint32_t height = layout_.size.height;
-        const auto rows = static_cast<std::uint32_t>(
-            std::clamp<std::uint64_t>(kBandTexels / layout_.size.width, 1, height));
+        const std::uint32_t rows = band_rows();
         const auto pages = static_cast<double>(layout_.pages.size());
         std::vector<std::uint8_t> shown(mesh_.geometry.triangles.size(), 0);
         for (std::size_t page = 0; page < layout_.pages.size(); ++page) {
@@ -228,19 +251,76 @@ private:
         bake.flat_triangles = static_cast<std::uint64_t>(std::ranges::count(shown, 0));
     }
 
-    /// What nothing covers, and what files hold.
-    void finish_pages(MapBake& bake, Known& known) const
+    /// Texels that nobody sees are no longer known.
+    void leave_out_hidden(const Definition& definition, MapBake& bake, Known& known) const
     {
+        std::optional<RayScene> scene;
         for (std::size_t page = 0; page < known.size(); ++page) {
-            if (settings_.bent) {
-                std::vector<std::uint8_t> bent_known = known[page];
-                fill_around(bake.bent[page], bent_known, settings_.padding);
-                encode_directions(bake.bent[page]);
-                round_to_depth(bake.bent[page], settings_.depth, settings_.half_is_whole);
+            std::vector<std::uint8_t> hidden =
+                texels_maybe_hidden(bake.visibility[page], known[page]);
+            if (hidden.empty())
+                continue;
+            const std::vector<Texel> texels = marked_texels(page, hidden);
+            std::vector<SurfacePoint> points;
+            points.reserve(texels.size());
+            for (const Texel& texel : texels)
+                points.push_back(texel.point);
+            if (!scene)
+                scene.emplace(occluders(), RayScene::Build::quick);
+            const std::vector<std::uint8_t> inside =
+                inside_bodies(occluders(), *scene, receivers_of(points), definition.max_distance);
+            for (std::size_t i = 0; i < texels.size(); ++i)
+                if (inside[i] == 0)  // one sheet of a texel that is seen is enough
+                    hidden[index_of(texels[i])] = 0;
+            for (std::size_t i = 0; i < hidden.size(); ++i) {
+                bake.hidden += hidden[i];
+                known[page][i] &= hidden[i] == 0;
             }
-            fill_around(bake.visibility[page], known[page], settings_.padding);
-            round_to_depth(bake.visibility[page], settings_.depth, settings_.half_is_whole);
         }
+    }
+
+    [[nodiscard]] std::size_t index_of(const Texel& texel) const
+    {
+        return std::size_t{texel.y} * layout_.size.width + texel.x;
+    }
+
+    std::vector<Texel> marked_texels(std::size_t page,
+                                     const std::vector<std::uint8_t>& marked) const
+    {
+        const MapRaster raster(mesh_.geometry, layout_.pages[page], layout_.size);
+        const std::uint32_t width = layout_.size.width;
+        std::vector<Texel> texels;
+        for (std::uint32_t first = 0; first < layout_.size.height; first += band_rows()) {
+            const std::uint32_t rows = std::min(band_rows(), layout_.size.height - first);
+            const auto begin = marked.begin() + std::ptrdiff_t{first} * width;
+            if (std::find(begin, begin + std::ptrdiff_t{rows} * width, 1) ==
+                begin + std::ptrdiff_t{rows} * width)
+                continue;
+            for (const Texel& texel : raster.texels(first, rows))
+                if (marked[index_of(texel)] != 0)
+                    texels.push_back(texel);
+        }
+        return texels;
+    }
+
+    /// What has no value gets one, and smooth seams show the same on both sides.
+    void fill_pages(MapBake& bake, const Known& known) const
+    {
+        const Seams seams = seams_of(mesh_, layout_);
+        const std::uint32_t rings =
+            bake.hidden == 0 ? settings_.padding : std::max(settings_.padding, kHiddenRings / 2);
+        for (std::vector<Map>* maps : {&bake.visibility, &bake.bent}) {
+            if (maps->empty())
+                continue;
+            Known filled = known;
+            fill_across(mesh_, layout_, seams, settings_.padding, *maps, filled);
+            for (std::size_t page = 0; page < maps->size(); ++page)
+                fill_around((*maps)[page], filled[page], rings);
+            stitch(seams, *maps);
+        }
+        bake.seams = seams.list.size();
+        bake.smooth_seams = seams.smooth_count();
+        bake.jump = seam_jump(seams, bake.visibility);
     }
 
     StatedError error_of(const MapBake& bake)
@@ -257,6 +337,7 @@ private:
                 mesh_.geometry, density,
                 [&](std::span<const SurfacePoint> points) { return receivers_of(points); },
                 occluders(), count_);
+            check_->leave_out_hidden();
             check_->trace(
                 bake.engine.definition, shown,
                 [&](double done) { return !progress_ || progress_("check", done); }, asked_);

@@ -1,5 +1,6 @@
 #include "bake/texel_job.h"
 
+#include "bake/bent_space.h"
 #include "bake/high_to_low.h"
 #include "files/file_type.h"
 #include "files/scene_io.h"
@@ -112,6 +113,10 @@ void report_map(const MapBake& map, BakeReport& report)
     told.covered = map.covered;
     told.overlapping = map.overlapping;
     told.spread = map.spread;
+    told.hidden = map.hidden;
+    told.seams = map.seams;
+    told.smooth_seams = map.smooth_seams;
+    told.jump = map.jump;
     told.flat_triangles = map.flat_triangles;
     told.outside_triangles = map.outside_triangles;
     told.misses = map.misses;
@@ -158,6 +163,7 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
     const BakeSettings& settings = report.settings;
     const TexelSettings& texels = *settings.texels;
     TexelReport& told = report.texels.emplace();
+    Stopwatch watch;
     const TexelLayout place = layout_for(mesh, texels, !is_map(settings.output), [&](double done) {
         return !progress || progress("charts", done);
     });
@@ -165,6 +171,8 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
     told.size = layout.size;
     told.uv_set = place.uv_set;
     told.tiles = layout.tiles;
+    told.charts = place.charts;
+    report.seconds.charts = watch.lap();
     if (!place.why_new.empty())
         report.notes.push_back("new texture coordinates: " + place.why_new);
     std::optional<High> high;
@@ -175,11 +183,12 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
         told.high_triangles = high->mesh.scene.triangles.size();
         told.matched_parts = high->detail.matched_parts();
     }
-    const MapSettings map_settings{.padding = texels.padding,
-                                   .bent = texels.bent != BentSpace::none,
-                                   .depth = texels.depth,
-                                   .half_is_whole = lower_extension(settings.output) != ".exr",
-                                   .check = settings.check};
+    const MapSettings map_settings{
+        .padding = texels.padding,
+        .bent = bent_encoder(mesh, layout, texels.bent, texels.green_down),
+        .depth = texels.depth,
+        .half_is_whole = lower_extension(settings.output) != ".exr",
+        .check = settings.check};
     const Frame& frame = high ? high->mesh.geometry.frame : mesh.geometry.frame;
     EngineSettings engine = settings.engine;
     engine.definition = definition_of(settings.max_distance, settings.kernel, frame);
@@ -195,7 +204,7 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
 
     if (progress && !progress("write", 0.0))
         throw Cancelled();
-    Stopwatch watch;
+    watch.lap();
     if (!map.bent.empty())
         write_pictures(bent_path(settings.output), map.bent, report, told.written);
     if (is_map(settings.output)) {

@@ -1,5 +1,6 @@
 #include "bake/texel_layout.h"
 
+#include "atlas/atlas.h"
 #include "atlas/udim.h"
 #include "surfels/errors.h"
 #include "surfels/number_text.h"
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -111,7 +113,7 @@ std::string text_of(const TexelSettings& settings)
 }
 
 TexelLayout layout_for(const Mesh& mesh, const TexelSettings& settings, bool can_hold_new,
-                       const Progress&)
+                       const Progress& progress)
 {
     const std::vector<UvSet>& sets = mesh.scene.uvs;
     const auto fail = [&](const std::string& fault) {
@@ -139,7 +141,19 @@ TexelLayout layout_for(const Mesh& mesh, const TexelSettings& settings, bool can
         fail(
             "has no texture coordinates for a map; -o a .glb, .gltf, .obj or .ply with --at "
             "texels makes some");
-    if (!wants_new && found.layout.pages.empty()) {
+    if (wants_new) {
+        found.uv_set.reset();
+        Atlas atlas = make_atlas(mesh,
+                                 {.size = settings.size,
+                                  .texels_per_unit = settings.texels_per_unit,
+                                  .padding = settings.padding,
+                                  .blended = settings.blended},
+                                 progress);
+        found.charts = {atlas.chart_count,     atlas.use,
+                        atlas.seam_length,     atlas.mean_stretch,
+                        atlas.largest_stretch, atlas.texels_per_unit};
+        found.layout = std::move(atlas.layout);
+    } else if (found.layout.pages.empty()) {
         if (const std::string fault = fault_of(mesh, *found.uv_set, {1, 1}); !fault.empty())
             fail(fault);
         found.layout = {.size = size, .pages = {sets[*found.uv_set]}};

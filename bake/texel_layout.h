@@ -43,9 +43,19 @@ struct TexelSettings {
 /// "at=texels size=1024 uv=auto ...": for marks.
 [[nodiscard]] std::string text_of(const TexelSettings& settings);
 
+/// What is told of charts of our own (atlas/atlas.h).
+struct ChartReport {
+    std::uint32_t count = 0;
+    double use = 0.0;
+    double seam_length = 0.0;
+    double mean_stretch = 1.0, largest_stretch = 1.0;
+    double texels_per_unit = 0.0;
+};
+
 struct TexelLayout {
     MapLayout layout;
     std::optional<std::uint32_t> uv_set;  ///< the file's; empty: new ones
+    std::optional<ChartReport> charts;    ///< of new ones
     std::string why_new;                  ///< what the file's coordinates lack; or empty
 };
 

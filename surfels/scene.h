@@ -12,6 +12,7 @@
 
 #include "surfels/base_colors.h"
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -34,6 +35,9 @@ struct Part {
     std::int32_t node = -1;  ///< glTF: node, mesh and primitive that this part is; else -1
     std::int32_t mesh = -1;
     std::int32_t primitive = -1;
+    /// Directions from the part's own space (object space) to the world; the identity where they
+    /// are one, and for what joints move.
+    glm::dmat3 to_world{1.0};
 };
 
 /// The normals that a file gives, one per corner of a triangle: many corners may share one.
