@@ -1,5 +1,8 @@
 #include "viewer/solve_map.h"
 
+#include "bake/bent_space.h"
+#include "bake/map_bake.h"
+
 #include <utility>
 
 namespace surfelao {
@@ -12,8 +15,11 @@ MapAnswer solve_map(const Model& model, const MapLayout& layout, const EngineSet
         stages = [&](std::string_view stage, double done) {
             return progress(stage == "solve" ? done : stage == "check" ? 1.0 : 0.0);
         };
-    MapBake bake = bake_map(*model.mesh, layout, {.padding = padding, .bent = true, .check = check},
-                            engine, offset_of(model.settings, model.geometry().frame), stages);
+    const MapSettings settings{.padding = padding,
+                               .bent = bent_encoder(*model.mesh, layout, BentSpace::world),
+                               .check = check};
+    MapBake bake = bake_map(*model.mesh, layout, settings, engine,
+                            offset_of(model.settings, model.geometry().frame), stages);
     return {.map = {std::move(bake.visibility), std::move(bake.bent)},
             .error = bake.error,
             .seconds = bake.seconds.raster + bake.seconds.solve + bake.seconds.fill};
