@@ -7,6 +7,13 @@
 
 namespace surfelao {
 
+ModelLayout layout_of(const Model& model, const TexelSettings& texels, const Progress& progress)
+{
+    TexelLayout found = layout_for(*model.mesh, texels, true, progress);
+    LayoutFacts facts = facts_of(*model.mesh, found.layout);
+    return {std::move(found.layout), std::move(facts), found.uv_set};
+}
+
 MapAnswer solve_map(const Model& model, const MapLayout& layout, const EngineSettings& engine,
                     std::uint32_t padding, std::uint32_t check, const Progress& progress)
 {
