@@ -68,9 +68,20 @@ void add_layout_options(CLI::App& command, TexelOptions& options, const std::str
 
 }  // namespace
 
+namespace {
+constexpr const char* kShownGroup = "Map (--at texels)";
+}
+
+void add_atlas_option(CLI::App& command, bool& atlas)
+{
+    command
+        .add_flag("--atlas", atlas,
+                  "The map itself, flat, with the borders of its charts, in place of the model")
+        ->group(kShownGroup);
+}
+
 void add_shown_texel_options(CLI::App& command, TexelOptions& options)
 {
-    constexpr const char* kGroup = "Map (--at texels)";
     command
         .add_option("--at", options.at,
                     "Where occlusion is asked and shown from: vertices; texels of a map on the "
@@ -78,8 +89,8 @@ void add_shown_texel_options(CLI::App& command, TexelOptions& options)
         ->check(CLI::IsMember({"vertices", "texels"}))
         ->type_name("vertices|texels")
         ->default_str("vertices")
-        ->group(kGroup);
-    add_layout_options(command, options, kGroup);
+        ->group(kShownGroup);
+    add_layout_options(command, options, kShownGroup);
 }
 
 void add_texel_options(CLI::App& command, TexelOptions& options)

@@ -35,6 +35,7 @@ void add_texel_options(CLI::App& command, TexelOptions& options);
 
 /// Those of where a map lies, for a command that shows it.
 void add_shown_texel_options(CLI::App& command, TexelOptions& options);
+void add_atlas_option(CLI::App& command, bool& atlas);
 
 /// Nothing where values at vertices are asked: by --at, or by an output that is no picture. Throws
 /// UsageError for what contradicts itself.
