@@ -22,9 +22,8 @@ bool is_picture(const std::filesystem::path& output)
 
 }  // namespace
 
-void add_texel_options(CLI::App& command, TexelOptions& options)
+void add_layout_options(CLI::App& command, TexelOptions& options, const std::string& group)
 {
-    constexpr const char* kGroup = "Maps (-o NAME.png, .tif, .exr, or --at texels)";
     command
         .add_option(
             "--at", options.at,
@@ -32,26 +31,32 @@ void add_texel_options(CLI::App& command, TexelOptions& options)
             "a glTF gets as its occlusionTexture (default: texels for pictures)")
         ->check(CLI::IsMember({"vertices", "texels"}))
         ->type_name("vertices|texels")
-        ->group(kGroup);
+        ->group(group);
     command.add_option("--size", options.size, "Texels of each side of the map")
         ->check(CLI::Range(1u, kMostTexels))
         ->type_name("N")
         ->default_str("1024")
-        ->group(kGroup);
+        ->group(group);
     command
         .add_option("--uv", options.uv,
                     "The file's texture coordinates: by number, or the first of use")
         ->check(CLI::IsMember({"auto", "0", "1", "2", "3"}))
         ->type_name("auto|0|1|2|3")
         ->default_str("auto")
-        ->group(kGroup);
+        ->group(group);
     command
         .add_option("--padding", options.padding,
                     "Texels around what is covered that go on with it; the others hold the mean")
         ->check(CLI::Range(0u, kMostPadding))
         ->type_name("N")
         ->default_str("4")
-        ->group(kGroup);
+        ->group(group);
+}
+
+void add_texel_options(CLI::App& command, TexelOptions& options)
+{
+    constexpr const char* kGroup = "Maps (-o NAME.png, .tif, .exr, or --at texels)";
+    add_layout_options(command, options, kGroup);
     command
         .add_option("--depth", options.depth,
                     "Bits of each number: .png 8, 16; .tif 8, 16, 32; .exr 16, 32 (floats)")

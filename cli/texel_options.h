@@ -24,6 +24,10 @@ struct TexelOptions {
     std::optional<std::string> bent;
 };
 
+/// Where values are asked, and where the surface lies in a map; shown in the help under `group`.
+void add_layout_options(CLI::App& command, TexelOptions& options, const std::string& group);
+
+/// All of them: what a map holds and how it stands in a file too.
 void add_texel_options(CLI::App& command, TexelOptions& options);
 
 /// Nothing where values at vertices are asked: by --at, or by an output that is no picture. Throws
