@@ -1,5 +1,8 @@
 #include "atlas/layout.h"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 namespace surfelao {
 namespace {
 
@@ -12,18 +15,26 @@ glm::vec3 normal_at(const Surface& surface, const SurfacePoint& point)
 
 }  // namespace
 
+glm::vec3 page_weights(glm::vec3 normal)
+{
+    const glm::vec3 squares = normal * normal / glm::dot(normal, normal);
+    const glm::vec3 above = glm::max(squares - kLeastPageWeight, glm::vec3(0.0f));
+    return above / (above.x + above.y + above.z);
+}
+
 PagePlaces places_of(const Mesh& mesh, const MapLayout& layout, const SurfacePoint& point)
 {
     PagePlaces places;
-    const glm::vec3 normal = layout.is_blended ? normal_at(mesh.surface, point) : glm::vec3(0.0f);
+    const glm::vec3 weights =
+        layout.is_blended ? page_weights(normal_at(mesh.surface, point)) : glm::vec3(1.0f);
     float sum = 0.0f;
     for (std::uint32_t page = 0; page < layout.pages.size(); ++page) {
         const auto uv = uv_at(mesh.geometry, layout.pages[page], point);
         if (!uv)
             continue;
-        const float component = layout.is_blended ? normal[static_cast<int>(page)] : 1.0f;
-        places.list[places.count++] = {page, *uv, component * component};
-        sum += component * component;
+        const float weight = layout.is_blended ? weights[static_cast<int>(page)] : 1.0f;
+        places.list[places.count++] = {page, *uv, weight};
+        sum += weight;
         if (!layout.is_blended)
             break;
     }

@@ -3,8 +3,8 @@
 /// Three kinds: one page (the file's own texture coordinates, or charts of ours), the tiles of a
 /// UDIM set (each triangle on one of them), and blended charts: three pages, one per axis, each
 /// with the triangles that face along it. There a triangle lies on up to three pages, and what is
-/// shown is their mean weighted by the squares of the normal's components (they sum up to 1), so
-/// that it fades from one chart into the next where others have a seam.
+/// shown is their weighted mean (page_weights), so that it fades from one chart into the next where
+/// others have a seam.
 #pragma once
 
 #include "image/map.h"
@@ -12,6 +12,7 @@
 #include "surfels/texels.h"
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include <array>
 #include <cstdint>
@@ -25,7 +26,7 @@ struct MapLayout {
     std::vector<UvSet> pages;  ///< at least one; per scene triangle, kNone for those on other pages
     std::vector<std::uint32_t> tiles = {};  ///< UDIM number of each page: 1001 + column + 10 row;
                                             ///< or empty
-    bool is_blended = false;  ///< three pages: by x, y, z
+    bool is_blended = false;                ///< three pages: by x, y, z
 };
 
 /// A point of the surface on a page.
@@ -42,6 +43,14 @@ struct PagePlaces {
 
     [[nodiscard]] std::span<const PagePlace> places() const { return {list.data(), count}; }
 };
+
+/// What the three pages of a blended map weigh where the surface has this shading normal (of any
+/// length but 0); the sum is 1. The squares of its components, each less kLeastPageWeight, but not
+/// below 0, over their sum: a page has no weight any more where its charts end, 60 degrees off its
+/// axis, so nothing steps there. Every normal is within 54.74 degrees of an axis.
+[[nodiscard]] glm::vec3 page_weights(glm::vec3 normal);
+
+inline constexpr float kLeastPageWeight = 0.25f;
 
 /// O(pages).
 [[nodiscard]] PagePlaces places_of(const Mesh& mesh, const MapLayout& layout,

@@ -84,14 +84,29 @@ Json search_json_of(const BakeReport& report)
     return {{"error", *report.settings.error}, {"met", report.is_met}, {"trials", trials}};
 }
 
+Json json_of(const ChartReport& charts)
+{
+    return {{"count", charts.count},
+            {"use", charts.use},
+            {"seam_length", charts.seam_length},
+            {"mean_stretch", charts.mean_stretch},
+            {"largest_stretch", charts.largest_stretch},
+            {"texels_per_unit", charts.texels_per_unit}};
+}
+
 Json json_of(const BakeReport& report, const TexelReport& texels)
 {
     Json written = Json::array();
     for (const std::filesystem::path& path : texels.written)
         written.push_back(path.string());
-    return {{"size", report.settings.texels->size},
+    return {{"size", texels.size.width},
             {"padding", report.settings.texels->padding},
-            {"uv_set", texels.uv_set},
+            {"uv_set", texels.uv_set ? Json(*texels.uv_set) : Json()},
+            {"tiles", texels.tiles},
+            {"charts", texels.charts ? json_of(*texels.charts) : Json()},
+            {"misses", texels.misses},
+            {"high_triangles", texels.high_triangles},
+            {"matched_parts", texels.matched_parts},
             {"covered", texels.covered},
             {"overlapping", texels.overlapping},
             {"spread", texels.spread},
@@ -125,11 +140,11 @@ Json json_of(const BatchEntry& entry)
     add(json["settings"], report.settings.target);
     json["settings"]["colors"] = name_of(report.settings.colors);
     json["settings"]["encoding"] = name_of(report.settings.encoding);
-    json["seconds"] = {{"read", seconds.read},       {"raster", seconds.raster},
-                       {"surfels", seconds.surfels}, {"tree", seconds.tree},
-                       {"solve", seconds.solve},     {"fit", seconds.fit},
-                       {"fill", seconds.fill},       {"check", seconds.check},
-                       {"write", seconds.write},     {"total", seconds.total}};
+    json["seconds"] = {
+        {"read", seconds.read},       {"charts", seconds.charts}, {"raster", seconds.raster},
+        {"surfels", seconds.surfels}, {"tree", seconds.tree},     {"solve", seconds.solve},
+        {"fit", seconds.fit},         {"fill", seconds.fill},     {"check", seconds.check},
+        {"write", seconds.write},     {"total", seconds.total}};
     json["receivers"] = report.receivers;
     json["corners_from_file"] = report.corners_from_file;
     json["replaced_corners"] = report.replaced_corners;

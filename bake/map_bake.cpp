@@ -21,16 +21,18 @@ using Known = std::vector<std::vector<std::uint8_t>>;
 /// Takes the answers of one band into a page.
 class MapWriter {
 public:
-    MapWriter(MapBake& bake, Known& known) : bake_(bake), known_(known) {}
-
-    void add(std::size_t page, const std::vector<Texel>& texels, std::span<const Occlusion> answers)
+    MapWriter(MapBake& bake, Known& known, const BentEncoder& bent)
+        : bake_(bake), known_(known), encode_(bent)
     {
-        page_ = page;
+    }
+
+    void add(std::size_t page, std::span<const Texel> texels, std::span<const Occlusion> answers)
+    {
         for (std::size_t first = 0, end = 0; first < texels.size(); first = end) {
             for (end = first + 1; end < texels.size() && texels[end].x == texels[first].x &&
                                   texels[end].y == texels[first].y;)
                 ++end;
-            write(texels[first], answers.subspan(first, end - first));
+            write(page, texels.subspan(first, end - first), answers.subspan(first, end - first));
         }
         bake_.receivers += texels.size();
     }
@@ -46,26 +48,18 @@ public:
 
 private:
     /// The sheets of one texel are whole ones, or it has one part: all weigh alike.
-    void write(const Texel& texel, std::span<const Occlusion> sheets)
+    void write(std::size_t page, std::span<const Texel> texels, std::span<const Occlusion> sheets)
     {
         double sum = 0.0;
-        glm::dvec3 bent(0.0);
-        for (const Occlusion& sheet : sheets) {
+        for (const Occlusion& sheet : sheets)
             sum += sheet.occlusion;
-            bent += (1.0 - sheet.occlusion) * glm::dvec3(sheet.bent_normal);
-        }
         const double mean = sum / static_cast<double>(sheets.size());
-        Map& visibility = bake_.visibility[page_];
-        const std::size_t index = visibility.index(texel.x, texel.y);
+        Map& visibility = bake_.visibility[page];
+        const std::size_t index = visibility.index(texels.front().x, texels.front().y);
         visibility.values[index] = static_cast<float>(1.0 - mean);
-        if (!bake_.bent.empty()) {
-            const double length = glm::length(bent);
-            const glm::vec3 normal =
-                length > kLeastBent ? glm::vec3(bent / length) : sheets.front().bent_normal;
-            for (int k = 0; k < 3; ++k)
-                bake_.bent[page_].values[3 * index + static_cast<std::size_t>(k)] = normal[k];
-        }
-        known_[page_][index] = 1;
+        if (encode_)
+            write_bent(page, index, texels, sheets);
+        known_[page][index] = 1;
         occlusion_ += mean;
         ++bake_.covered;
         if (sheets.size() < 2)
@@ -76,9 +70,26 @@ private:
             squares_ += (sheet.occlusion - mean) * (sheet.occlusion - mean);
     }
 
+    /// Their mean by visibility.
+    void write_bent(std::size_t page, std::size_t index, std::span<const Texel> texels,
+                    std::span<const Occlusion> sheets)
+    {
+        glm::dvec3 bent(0.0);
+        glm::vec3 first(0.0f);
+        for (std::size_t i = 0; i < sheets.size(); ++i) {
+            const glm::vec3 direction = encode_(page, texels[i].point, sheets[i].bent_normal);
+            first = i == 0 ? direction : first;
+            bent += (1.0 - sheets[i].occlusion) * glm::dvec3(direction);
+        }
+        const double length = glm::length(bent);
+        const glm::vec3 normal = length > kLeastBent ? glm::vec3(bent / length) : first;
+        for (int k = 0; k < 3; ++k)
+            bake_.bent[page].values[3 * index + static_cast<std::size_t>(k)] = normal[k];
+    }
+
     MapBake& bake_;
     Known& known_;
-    std::size_t page_ = 0;
+    const BentEncoder& encode_;
     double squares_ = 0.0, occlusion_ = 0.0;
     std::uint64_t sheets_ = 0;
 };
@@ -193,7 +204,7 @@ private:
     void solve_texels(const Prepared& prepared, const EngineSettings& engine, MapBake& bake,
                       Known& known)
     {
-        MapWriter writer(bake, known);
+        MapWriter writer(bake, known, settings_.bent);
         const std::uint32_t height = layout_.size.height;
         const auto rows = static_cast<std::uint32_t>(
             std::clamp<std::uint64_t>(kBandTexels / layout_.size.width, 1, height));

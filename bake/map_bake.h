@@ -14,6 +14,7 @@
 #include "surfels/texels.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -21,9 +22,14 @@ namespace surfelao {
 
 class HighDetail;
 
+/// From a direction in the world to what a map of a page holds at a point of the surface: of unit
+/// length, or zero.
+using BentEncoder =
+    std::function<glm::vec3(std::size_t page, const SurfacePoint& point, glm::vec3 direction)>;
+
 struct MapSettings {
     std::uint32_t padding = 4;  ///< texels around what is covered that take their neighbours' mean
-    bool bent = false;          ///< bent normals too
+    BentEncoder bent = {};      ///< bent normals too, in this space (bent_space.h)
     MapDepth depth = MapDepth::byte;
     bool half_is_whole = true;           ///< what 16 bits are in the file (image/map.h)
     std::uint32_t check = kCheckPoints;  ///< as BakeSettings::check
@@ -45,7 +51,7 @@ struct MapBake {
     EngineSettings engine;  ///< who answered
     /// Per page of the layout, one channel, 1 = open; rounded as the file will be.
     std::vector<Map> visibility;
-    std::vector<Map> bent;             ///< three channels, world space, (n + 1) / 2; or empty
+    std::vector<Map> bent;             ///< three channels, (n + 1) / 2; or empty
     std::optional<StatedError> error;  ///< of what is displayed: fetched between texels
     std::uint64_t receivers = 0;       ///< points that were asked
     std::uint64_t covered = 0;         ///< texels that show the surface

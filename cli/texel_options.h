@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -18,10 +19,16 @@ namespace surfelao {
 struct TexelOptions {
     std::optional<std::string> at;
     std::optional<std::uint32_t> size;
+    std::optional<double> texels_per_unit;
     std::optional<std::string> uv;
+    bool udim = false;
+    std::optional<std::string> charts;
     std::optional<std::uint32_t> padding;
     std::optional<int> depth;
     std::optional<std::string> bent;
+    std::optional<std::string> green;
+    std::vector<std::string> high;
+    std::optional<std::string> cage;
 };
 
 /// Where values are asked, and where the surface lies in a map; shown in the help under `group`.

@@ -265,9 +265,10 @@ private:
                 });
         } else {
             const glm::dmat4 world = world_of(use);
+            part.to_world = scaled_to_one(glm::dmat3(world));
             add_rigid(use, vertices, world);
             vertices = {};
-            const bool mirrored = glm::determinant(scaled_to_one(glm::dmat3(world))) < 0.0;
+            const bool mirrored = glm::determinant(part.to_world) < 0.0;
             for (const Primitive& primitive : group.primitives)
                 add_triangles(group, primitive, part, [&](glm::uvec3) { return mirrored; });
         }

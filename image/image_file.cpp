@@ -133,14 +133,24 @@ void write_image(const std::filesystem::path& path, const Image& image)
     });
 }
 
-void write_map(const std::filesystem::path& path, const Map& map, MapDepth depth)
+void write_map(const std::filesystem::path& path, const Map& map, MapDepth depth,
+               const std::string& mark)
 {
     check_map_output(path, depth);
     if (map.values.empty())
         throw InputError(path.string() + ": the map has no texels");
     write_picture(path, [&](const std::string& temporary) {
-        return module().write_map(temporary, map, depth);
+        return module().write_map(temporary, map, depth, mark);
     });
+}
+
+std::string read_description(const std::filesystem::path& path)
+{
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored))
+        return {};
+    std::string description;
+    return module().read_description(path.string(), description).empty() ? description : "";
 }
 
 std::string map_bytes(const Map& map, MapDepth depth)

@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
+#include <numeric>
+#include <unordered_map>
 #include <vector>
 
 namespace surfelao {
@@ -57,6 +58,65 @@ Mesh build(const Geometry& geometry, std::uint64_t& complex_triangle_count)
             ++complex_triangle_count;
     }
     return mesh;
+}
+
+/// The vertices of a triangle in half-edge meshes. A vertex of more than kLargestFan triangles is
+/// several there, each of so many that follow each other: adding a face walks round its corners.
+class FanParts {
+public:
+    explicit FanParts(const Geometry& geometry)
+        : geometry_(geometry), seen_(geometry.positions.size(), 0)
+    {
+    }
+
+    /// To be asked once for each triangle, in their order. `next` is the next free vertex.
+    std::array<Mesh::VertexHandle, 3> corners_of(glm::uvec3 triangle, std::uint32_t& next)
+    {
+        std::array<Mesh::VertexHandle, 3> corners;
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = geometry_.welded[triangle[k]];
+            const std::uint32_t before = seen_[vertex]++;
+            if (before >= kLargestFan && before % kLargestFan == 0)
+                part_[vertex] = next++;
+            const auto part = before < kLargestFan ? part_.end() : part_.find(vertex);
+            corners[static_cast<std::size_t>(k)] =
+                Mesh::VertexHandle(static_cast<int>(part == part_.end() ? vertex : part->second));
+        }
+        return corners;
+    }
+
+private:
+    const Geometry& geometry_;
+    std::vector<std::uint32_t> seen_;  ///< triangles so far, per vertex
+    std::unordered_map<std::uint32_t, std::uint32_t> part_;
+};
+
+/// Adds those of the triangles that one mesh holds together, and notes who is across their sides.
+/// Returns the others.
+std::vector<std::uint32_t> join_in_one_mesh(
+    const std::vector<std::array<Mesh::VertexHandle, 3>>& corners,
+    const std::vector<std::uint32_t>& triangles, std::size_t vertex_count,
+    std::vector<Neighbours>& neighbours)
+{
+    Mesh mesh;
+    mesh.reserve(vertex_count, triangles.size() * 3 / 2, triangles.size());
+    mesh.resize(vertex_count, 0, 0);
+    std::vector<std::uint32_t> triangle_of_face, others;
+    for (const std::uint32_t t : triangles) {
+        const auto& [a, b, c] = corners[t];
+        (mesh.add_face(a, b, c).is_valid() ? triangle_of_face : others).push_back(t);
+    }
+    for (const Mesh::FaceHandle face : mesh.faces()) {
+        const std::uint32_t t = triangle_of_face[static_cast<std::size_t>(face.idx())];
+        for (const Mesh::HalfedgeHandle side : mesh.fh_range(face)) {
+            const Mesh::FaceHandle across = mesh.opposite_face_handle(side);
+            const auto from = std::ranges::find(corners[t], mesh.from_vertex_handle(side));
+            if (across.is_valid())
+                neighbours[t][static_cast<std::size_t>(from - corners[t].begin())] =
+                    triangle_of_face[static_cast<std::size_t>(across.idx())];
+        }
+    }
+    return others;
 }
 
 void count_holes(const Mesh& mesh, HalfEdgeReport& report)
@@ -119,6 +179,24 @@ HalfEdgeReport examine_half_edges(const Geometry& geometry)
     count_holes(mesh, report);
     count_handles(mesh, report);
     return report;
+}
+
+std::vector<Neighbours> neighbours_of(const Geometry& geometry)
+{
+    const std::size_t count = geometry.triangles.size();
+    std::vector<Neighbours> neighbours(count, {kNoTriangle, kNoTriangle, kNoTriangle});
+    std::vector<std::array<Mesh::VertexHandle, 3>> corners;
+    corners.reserve(count);
+    auto vertex_count = static_cast<std::uint32_t>(geometry.positions.size());
+    FanParts parts(geometry);
+    for (const glm::uvec3 triangle : geometry.triangles)
+        corners.push_back(parts.corners_of(triangle, vertex_count));
+    std::vector<std::uint32_t> rest(count);
+    std::iota(rest.begin(), rest.end(), 0u);
+    const QuietOpenMesh quiet;
+    for (std::uint32_t mesh = 0; mesh < kMostMeshes && !rest.empty(); ++mesh)
+        rest = join_in_one_mesh(corners, rest, vertex_count, neighbours);
+    return neighbours;
 }
 
 }  // namespace surfelao

@@ -10,6 +10,7 @@
 /// vertex with a triangle stands: it changes no box.
 #pragma once
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -32,6 +33,9 @@ struct Part {
     std::int32_t node = -1;  ///< glTF: node, mesh and primitive that this part is; else -1
     std::int32_t mesh = -1;
     std::int32_t primitive = -1;
+    /// Directions from the part's own space (object space) to the world; the identity where they
+    /// are one, and for what joints move.
+    glm::dmat3 to_world{1.0};
 };
 
 /// The normals that a file gives, one per corner of a triangle: many corners may share one.
@@ -84,6 +88,11 @@ struct Scene {
 /// finite or beyond kFarthest, a triangle uses a vertex that there is not, or there is no triangle.
 [[nodiscard]] Scene make_scene(std::span<const glm::dvec3> positions,
                                std::span<const glm::uvec3> triangles);
+
+/// All of them as one, one behind the other, with their normals; parts without a name get their
+/// scene's. Texture coordinates and assets are left out. Throws SettingsError for more elements
+/// than kMostElements.
+[[nodiscard]] Scene join(std::span<const Scene> scenes);
 
 /// Throws InputError as make_scene does, but takes a scene without triangles.
 void check_scene(const Scene& scene);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace surfelao {
@@ -35,7 +36,8 @@ TEST(Layout, PointLiesOnThePageOfItsTriangle)
     EXPECT_EQ(places_of(mesh, layout_on(mesh.scene, 7, 3, false), point).count, 0u);
 }
 
-/// Normals interpolate from (0, 0, 1) to (1, 0, 0): pages weigh by the squares of x and z.
+/// Normals interpolate from (0, 0, 1) to (1, 0, 0): pages weigh by the squares of x and z, each
+/// less a quarter of their sum.
 TEST(Layout, BlendedPagesWeighByTheSquaresOfTheNormal)
 {
     Mesh mesh = make_mesh(scenes::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1));
@@ -52,7 +54,8 @@ TEST(Layout, BlendedPagesWeighByTheSquaresOfTheNormal)
         const PagePlaces places = places_of(mesh, layout, point);
         ASSERT_EQ(places.count, 3u);
         const double x = uv_at(mesh.geometry, layout.pages[0], point)->x;
-        const double share = x * x / (x * x + (1 - x) * (1 - x));
+        const double square = x * x / (x * x + (1 - x) * (1 - x));
+        const double share = std::clamp((square - 0.25) / 0.5, 0.0, 1.0);
         EXPECT_NEAR(fetch_at(maps, places), share * 0.9 + (1 - share) * 0.3, 1e-6);
     }
 }

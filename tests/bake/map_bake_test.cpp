@@ -1,5 +1,6 @@
 #include "bake/map_bake.h"
 
+#include "bake/bent_space.h"
 #include "engines/threads.h"
 #include "scenes.h"
 
@@ -83,7 +84,8 @@ TEST(MapBake, OfWhatIsOpenAndClosedIsExactInAllEngines)
     for (const Engine engine : {Engine::masks, Engine::disks, Engine::rays}) {
         EngineSettings settings;
         settings.engine = engine;
-        const MapBake bright = open.bake({32, 16}, {.bent = true}, settings);
+        const MapBake bright =
+            open.bake({32, 16}, {.bent = bent_encoder(open.mesh, {}, BentSpace::world)}, settings);
         for (const float value : bright.visibility[0].values)  // filled ones too
             EXPECT_EQ(value, 1.0f);
         for (std::size_t i = 0; i < bright.bent[0].values.size(); i += 3) {
@@ -96,6 +98,24 @@ TEST(MapBake, OfWhatIsOpenAndClosedIsExactInAllEngines)
         const MapBake dark = closed.bake({32, 32}, {}, settings);
         for (const float value : dark.visibility[0].values)
             EXPECT_LE(value, 0.01f);
+    }
+}
+
+// An open square, whose part was turned about x by a quarter: +z of the world is +y of the part, or
+// the other way round.
+TEST(MapBake, HoldsBentNormalsInThePartsOwnSpace)
+{
+    MappedWorld world(scenes::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1),
+                      [](glm::dvec3 p) { return glm::dvec2(p.x, p.y); });
+    const glm::dmat3 turn(glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1), glm::dvec3(0, -1, 0));
+    for (const double stretch : {1.0, 3.0}) {
+        world.mesh.scene.parts[0].to_world = stretch * turn;
+        const MapBake bake =
+            world.bake({4, 4}, {.bent = bent_encoder(world.mesh, {}, BentSpace::object)});
+        for (std::size_t i = 0; i < bake.bent[0].values.size(); i += 3) {
+            EXPECT_NEAR(bake.bent[0].values[i + 1], 1.0f, 0.01f);
+            EXPECT_NEAR(bake.bent[0].values[i + 2], 0.5f, 0.01f);
+        }
     }
 }
 

@@ -1,0 +1,178 @@
+#include "atlas/atlas.h"
+
+#include "atlas/charts.h"
+#include "atlas/packing.h"
+#include "surfels/errors.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <span>
+#include <string>
+#include <utility>
+
+namespace surfelao {
+namespace {
+
+/// What charts usually cover of a page: for the size of a texel, before it is known.
+constexpr double kLikelyUse = 0.65;
+
+void check_settings(const AtlasSettings& settings)
+{
+    require(settings.size >= 1 && settings.size <= kMostTexels,
+            "a map has 1 to " + std::to_string(kMostTexels) + " texels a side");
+    require(!settings.texels_per_unit ||
+                (*settings.texels_per_unit > 0.0 && std::isfinite(*settings.texels_per_unit)),
+            "texels per unit must be above 0");
+    require(settings.padding <= kMostPadding,
+            "padding must be 0 to " + std::to_string(kMostPadding) + " texels");
+}
+
+/// A corner as the map has it: y down.
+glm::dvec2 corner_of(const Mesh& mesh, const Facets& facets, const Chart& chart, std::uint32_t t,
+                     int k)
+{
+    const glm::dvec2 place = chart.at(glm::dvec3(mesh.geometry.positions[facets.corners[t][k]]));
+    return {place.x, -place.y};
+}
+
+Shape shape_of(const Mesh& mesh, const Facets& facets, const Chart& chart, std::uint32_t page)
+{
+    Shape shape;
+    shape.page = page;
+    shape.triangles.reserve(chart.triangles.size());
+    for (const std::uint32_t t : chart.triangles)
+        shape.triangles.push_back({corner_of(mesh, facets, chart, t, 0),
+                                   corner_of(mesh, facets, chart, t, 1),
+                                   corner_of(mesh, facets, chart, t, 2)});
+    return shape;
+}
+
+/// A page's set: a value for each place in each chart.
+UvSet uvs_of(const Mesh& mesh, const Facets& facets, std::span<const Chart> charts,
+             std::span<const Placement> placements, std::uint32_t size)
+{
+    constexpr std::uint32_t kNever = 0xffffffff;
+    UvSet uvs;
+    uvs.corners.assign(mesh.scene.triangles.size(), glm::uvec3(UvSet::kNone));
+    std::vector<std::uint32_t> last_chart(mesh.geometry.positions.size(), kNever);
+    std::vector<std::uint32_t> value(mesh.geometry.positions.size());
+    for (std::uint32_t c = 0; c < charts.size(); ++c) {
+        for (const std::uint32_t t : charts[c].triangles) {
+            glm::uvec3& corners = uvs.corners[mesh.geometry.scene_triangle(t)];
+            for (int k = 0; k < 3; ++k) {
+                const std::uint32_t vertex = facets.corners[t][k];
+                if (last_chart[vertex] != c) {
+                    last_chart[vertex] = c;
+                    value[vertex] = static_cast<std::uint32_t>(uvs.values.size());
+                    const glm::dvec2 place = corner_of(mesh, facets, charts[c], t, k);
+                    uvs.values.push_back(placements[c].at(place) / static_cast<double>(size));
+                }
+                corners[k] = value[vertex];
+            }
+        }
+    }
+    return uvs;
+}
+
+/// Edges between charts of one page, each counted once.
+double length_of_seams(const Mesh& mesh, const Facets& facets,
+                       std::span<const std::uint32_t> chart_of)
+{
+    double length = 0.0;
+    for (std::uint32_t t = 0; t < chart_of.size(); ++t) {
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t other = facets.neighbours[t][static_cast<std::size_t>(k)];
+            if (other == kNoTriangle || other < t || chart_of[t] == kNoChart ||
+                chart_of[other] == kNoChart || chart_of[other] == chart_of[t])
+                continue;
+            length +=
+                double{glm::distance(mesh.geometry.positions[facets.corners[t][k]],
+                                     mesh.geometry.positions[facets.corners[t][(k + 1) % 3]])};
+        }
+    }
+    return length;
+}
+
+/// Sets the stretch of an atlas whose layout is there.
+void measure_stretch(const Facets& facets, std::span<const std::vector<Chart>> pages, Atlas& atlas)
+{
+    // a chart is as large as its surface, so the mean of all is 1
+    double sum = 0.0, area = 0.0;
+    for (const std::vector<Chart>& charts : pages) {
+        for (const Chart& chart : charts) {
+            for (const std::uint32_t t : chart.triangles) {
+                const double slope = glm::dot(chart.axis, glm::dvec3(facets.normals[t]));
+                const double ratio = chart.scale * chart.scale * slope;
+                const double stretch = std::max(ratio, 1.0 / ratio);
+                sum += facets.areas[t] * stretch;
+                area += facets.areas[t];
+                atlas.largest_stretch = std::max(atlas.largest_stretch, stretch);
+            }
+        }
+    }
+    atlas.mean_stretch = area > 0.0 ? sum / area : 1.0;
+}
+
+double texel_of(const Mesh& mesh, const AtlasSettings& settings, double area)
+{
+    return settings.texels_per_unit
+               ? 1.0 / (*settings.texels_per_unit * mesh.geometry.frame.diagonal)
+               : std::sqrt(area / kLikelyUse) / settings.size;
+}
+
+}  // namespace
+
+Atlas make_atlas(const Mesh& mesh, const AtlasSettings& settings, const Progress& progress)
+{
+    check_settings(settings);
+    const Geometry& geometry = mesh.geometry;
+    const std::uint32_t page_count = settings.blended ? 3 : 1;
+    const std::size_t count = geometry.triangles.size();
+    ProgressMeter meter(progress, count * page_count + kPackingUnits);
+    const Facets facets = make_facets(mesh);
+    const double area = std::accumulate(facets.areas.begin(), facets.areas.end(), 0.0);
+
+    std::vector<std::vector<Chart>> pages;
+    for (std::uint32_t page = 0; page < page_count; ++page)
+        pages.push_back(settings.blended
+                            ? make_axis_charts(mesh, facets, static_cast<int>(page), meter)
+                            : make_charts(mesh, facets, texel_of(mesh, settings, area), meter));
+
+    std::vector<Shape> shapes;
+    for (std::uint32_t page = 0; page < page_count; ++page)
+        for (const Chart& chart : pages[page])
+            shapes.push_back(shape_of(mesh, facets, chart, page));
+    const double diagonal = geometry.frame.diagonal;
+    PackingSettings packing_settings{settings.size, {}, settings.padding, page_count};
+    if (settings.texels_per_unit)
+        packing_settings.scale = *settings.texels_per_unit * diagonal;
+    const Packing packing = pack(shapes, packing_settings, meter);
+
+    Atlas atlas;
+    atlas.layout.size = {packing.size, packing.size};
+    atlas.layout.is_blended = settings.blended;
+    double seams = 0.0;
+    for (const std::vector<Chart>& charts : pages) {
+        const std::span<const Placement> placements =
+            std::span(packing.placements).subspan(atlas.chart_count, charts.size());
+        atlas.layout.pages.push_back(uvs_of(mesh, facets, charts, placements, packing.size));
+        std::vector<std::uint32_t>& chart_of = atlas.chart_of.emplace_back(count, kNoChart);
+        for (std::uint32_t c = 0; c < charts.size(); ++c)
+            for (const std::uint32_t t : charts[c].triangles)
+                chart_of[t] = atlas.chart_count + c;
+        atlas.chart_count += static_cast<std::uint32_t>(charts.size());
+        seams += length_of_seams(mesh, facets, chart_of);
+    }
+    measure_stretch(facets, pages, atlas);
+    atlas.seam_length = area > 0.0 ? seams / std::sqrt(area) : 0.0;
+    atlas.texels_per_unit = packing.scale / diagonal;
+    atlas.use = static_cast<double>(packing.covered) /
+                (static_cast<double>(atlas.layout.size.count()) * page_count);
+    return atlas;
+}
+
+}  // namespace surfelao

@@ -1,0 +1,428 @@
+#include "atlas/charts.h"
+
+#include "atlas/layout.h"
+#include "atlas/occupancy.h"
+#include "surfels/errors.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace surfelao {
+namespace {
+
+constexpr std::uint32_t kUnassigned = 0xffffffff;
+constexpr int kTrialGrowths = 3;
+constexpr std::size_t kFacetGrain = 4096;
+
+double cos_deg(double degrees)
+{
+    return std::cos(glm::radians(degrees));
+}
+
+glm::dvec3 doubled_area(const Geometry& geometry, glm::uvec3 corners)
+{
+    const glm::dvec3 a(geometry.positions[corners.x]);
+    return glm::cross(glm::dvec3(geometry.positions[corners.y]) - a,
+                      glm::dvec3(geometry.positions[corners.z]) - a);
+}
+
+/// A chart without triangles.
+Chart chart_along(glm::dvec3 axis)
+{
+    Chart chart;
+    chart.axis = axis;
+    const glm::dvec3 across = std::abs(axis.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    chart.right = glm::normalize(glm::cross(across, axis));
+    chart.up = glm::cross(axis, chart.right);
+    return chart;
+}
+
+/// A chart while it is made.
+struct Draft {
+    Chart chart;
+    std::uint32_t sheet = 0;  ///< its plane
+    glm::dvec3 normals{0.0};  ///< weighted by area
+};
+
+/// Two charts with a common border.
+struct Border {
+    std::uint32_t first, second;  ///< first < second
+    double length;
+};
+
+class ChartMaker {
+public:
+    ChartMaker(const Mesh& mesh, const Facets& facets, ProgressMeter& progress)
+        : positions_(mesh.geometry.positions),
+          facets_(facets),
+          progress_(progress),
+          occupancy_(facets.areas.size()),
+          chart_of_(facets.areas.size(), kUnassigned),
+          stamp_(facets.areas.size(), 0)
+    {
+    }
+
+    /// Charts of the triangles in the list, from the largest on. axis_for(triangle): of the chart
+    /// that it begins. All keep facing their axis within the limit.
+    void grow(std::vector<std::uint32_t> members,
+              const std::function<glm::dvec3(std::uint32_t)>& axis_for, double limit)
+    {
+        const double least = cos_deg(limit);
+        is_free_.assign(facets_.areas.size(), 0);
+        for (const std::uint32_t t : members)
+            is_free_[t] = 1;
+        std::ranges::stable_sort(members, std::greater{},
+                                 [&](std::uint32_t t) { return facets_.areas[t]; });
+        for (const std::uint32_t seed : members)
+            if (is_free_[seed] != 0)
+                grow_from(seed, axis_for(seed), least);
+    }
+
+    /// The mean normal of what would belong to a chart that begins here, three times over.
+    [[nodiscard]] glm::dvec3 fitted_axis(std::uint32_t seed, double limit)
+    {
+        const double least = cos_deg(limit);
+        glm::dvec3 axis = facets_.normals[seed];
+        for (int trial = 0; trial < kTrialGrowths; ++trial) {
+            ++last_stamp_;
+            stamp_[seed] = last_stamp_;
+            queue_.assign(1, seed);
+            glm::dvec3 sum(0.0);
+            for (std::size_t head = 0; head < queue_.size(); ++head) {
+                const std::uint32_t t = queue_[head];
+                sum += facets_.areas[t] * glm::dvec3(facets_.normals[t]);
+                for (const std::uint32_t next : facets_.neighbours[t]) {
+                    if (next == kNoTriangle || is_free_[next] == 0 || stamp_[next] == last_stamp_ ||
+                        !faces(next, axis, least))
+                        continue;
+                    stamp_[next] = last_stamp_;
+                    queue_.push_back(next);
+                }
+            }
+            const glm::dvec3 mean = glm::normalize(sum);
+            if (!faces(seed, mean, least))
+                break;
+            axis = mean;
+        }
+        return axis;
+    }
+
+    /// Makes one of charts with a common border, as long as any two can be.
+    void join(double texel)
+    {
+        std::set<std::pair<std::uint32_t, std::uint32_t>> refused;
+        for (bool has_joined = true; has_joined;) {
+            has_joined = false;
+            for (const Border& border : borders()) {
+                const std::uint32_t a = owner(border.first), b = owner(border.second);
+                const auto pair = std::minmax(a, b);
+                if (a == b || refused.contains(pair))
+                    continue;
+                if (join_two(a, b, texel))
+                    has_joined = true;
+                else
+                    refused.insert(pair);
+            }
+        }
+    }
+
+    [[nodiscard]] std::vector<Chart> charts()
+    {
+        std::vector<Chart> list;
+        for (Draft& draft : drafts_) {
+            Chart& chart = draft.chart;
+            if (chart.triangles.empty())
+                continue;
+            std::ranges::sort(chart.triangles);
+            double flat = 0.0;
+            for (const std::uint32_t t : chart.triangles)
+                flat += 0.5 * twice_area(projected(chart, t));
+            chart.scale = flat > 0.0 ? std::sqrt(chart.area / flat) : 1.0;
+            list.push_back(std::move(chart));
+        }
+        return list;
+    }
+
+private:
+    [[nodiscard]] bool faces(std::uint32_t t, glm::dvec3 axis, double least) const
+    {
+        return glm::dot(glm::dvec3(facets_.shading[t]), axis) > least &&
+               glm::dot(glm::dvec3(facets_.normals[t]), axis) > steepest_;
+    }
+
+    [[nodiscard]] FlatTriangle projected(const Chart& chart, std::uint32_t t) const
+    {
+        FlatTriangle flat;
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3 p(positions_[facets_.corners[t][k]]);
+            flat[static_cast<std::size_t>(k)] = {glm::dot(chart.right, p), glm::dot(chart.up, p)};
+        }
+        return flat;
+    }
+
+    /// Lays a triangle into a chart, unless its place is taken.
+    bool lay(const Draft& draft, std::uint32_t t)
+    {
+        const FlatTriangle flat = projected(draft.chart, t);
+        const bool fits = occupancy_.fits(draft.sheet, flat);
+        if (fits)
+            occupancy_.add(draft.sheet, flat);
+        return fits;
+    }
+
+    void take(Draft& draft, std::uint32_t id, std::uint32_t t)
+    {
+        draft.chart.triangles.push_back(t);
+        draft.chart.area += facets_.areas[t];
+        draft.normals += facets_.areas[t] * glm::dvec3(facets_.normals[t]);
+        chart_of_[t] = id;
+    }
+
+    void grow_from(std::uint32_t seed, glm::dvec3 axis, double least)
+    {
+        const auto id = static_cast<std::uint32_t>(drafts_.size());
+        drafts_.push_back({chart_along(axis), occupancy_.add_sheet()});
+        Draft& draft = drafts_.back();
+        root_.push_back(id);
+        const auto take_free = [&](std::uint32_t t) {
+            is_free_[t] = 0;
+            take(draft, id, t);
+        };
+        lay(draft, seed);  // a triangle that rounding makes flat belongs to its chart all the same
+        take_free(seed);
+        for (std::size_t head = 0; head < draft.chart.triangles.size(); ++head) {
+            for (const std::uint32_t next : facets_.neighbours[draft.chart.triangles[head]]) {
+                if (next != kNoTriangle && is_free_[next] != 0 && faces(next, axis, least) &&
+                    lay(draft, next))
+                    take_free(next);
+            }
+        }
+        progress_.add(draft.chart.triangles.size());
+    }
+
+    std::uint32_t owner(std::uint32_t chart)
+    {
+        while (root_[chart] != chart)
+            chart = root_[chart] = root_[root_[chart]];
+        return chart;
+    }
+
+    /// Longest first.
+    [[nodiscard]] std::vector<Border> borders() const
+    {
+        std::vector<Border> sides;
+        for (std::uint32_t t = 0; t < chart_of_.size(); ++t) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t other = facets_.neighbours[t][k];
+                if (other == kNoTriangle || chart_of_[t] >= chart_of_[other])
+                    continue;
+                const glm::vec3 from = positions_[facets_.corners[t][static_cast<int>(k)]];
+                const glm::vec3 to = positions_[facets_.corners[t][static_cast<int>((k + 1) % 3)]];
+                sides.push_back({chart_of_[t], chart_of_[other], double{glm::distance(from, to)}});
+            }
+        }
+        std::ranges::stable_sort(
+            sides, {}, [](const Border& border) { return std::pair(border.first, border.second); });
+        std::vector<Border> whole;
+        for (const Border& side : sides) {
+            if (!whole.empty() && whole.back().first == side.first &&
+                whole.back().second == side.second)
+                whole.back().length += side.length;
+            else
+                whole.push_back(side);
+        }
+        std::ranges::stable_sort(whole, std::greater{}, &Border::length);
+        return whole;
+    }
+
+    [[nodiscard]] bool is_small(const Chart& chart, double texel) const
+    {
+        return chart.triangles.size() < kSmallChartTriangles ||
+               chart.area < kSmallChartTexels * texel * texel;
+    }
+
+    bool join_two(std::uint32_t a, std::uint32_t b, double texel)
+    {
+        if (drafts_[a].chart.area < drafts_[b].chart.area)
+            std::swap(a, b);
+        const bool b_is_small = is_small(drafts_[b].chart, texel);
+        const double least = cos_deg(b_is_small ? kSteepest : kChartLimit);
+        return absorb(a, b, least) || (!b_is_small && unite(a, b, least));
+    }
+
+    /// Adds b to a, along a's axis.
+    bool absorb(std::uint32_t a, std::uint32_t b, double least)
+    {
+        Draft& larger = drafts_[a];
+        Draft& smaller = drafts_[b];
+        if (!all_face(smaller, larger.chart.axis, least) || !lay_all(larger, smaller, 0))
+            return false;
+        for (const std::uint32_t t : smaller.chart.triangles)
+            take(larger, a, t);
+        smaller.chart.triangles.clear();
+        root_[b] = a;
+        return true;
+    }
+
+    /// Makes a new chart of both, along their mean normal.
+    bool unite(std::uint32_t a, std::uint32_t b, double least)
+    {
+        const glm::dvec3 axis = glm::normalize(drafts_[a].normals + drafts_[b].normals);
+        if (!all_face(drafts_[a], axis, least) || !all_face(drafts_[b], axis, least))
+            return false;
+        const auto id = static_cast<std::uint32_t>(drafts_.size());
+        Draft both{chart_along(axis), occupancy_.add_sheet()};
+        if (!lay_all(both, drafts_[a], 0) ||
+            !lay_all(both, drafts_[b], drafts_[a].chart.triangles.size()))
+            return false;
+        for (const std::uint32_t part : {a, b}) {
+            for (const std::uint32_t t : drafts_[part].chart.triangles)
+                take(both, id, t);
+            drafts_[part].chart.triangles.clear();
+            root_[part] = id;
+        }
+        drafts_.push_back(std::move(both));
+        root_.push_back(id);
+        return true;
+    }
+
+    [[nodiscard]] bool all_face(const Draft& draft, glm::dvec3 axis, double least) const
+    {
+        return std::ranges::all_of(draft.chart.triangles,
+                                   [&](std::uint32_t t) { return faces(t, axis, least); });
+    }
+
+    /// Lays all of `from` into `draft`, or takes back also the `before` that were laid last.
+    bool lay_all(const Draft& draft, const Draft& from, std::size_t before)
+    {
+        std::size_t laid = 0;
+        for (const std::uint32_t t : from.chart.triangles) {
+            if (!lay(draft, t)) {
+                occupancy_.drop_last(draft.sheet, laid + before);
+                return false;
+            }
+            ++laid;
+        }
+        return true;
+    }
+
+    const std::vector<glm::vec3>& positions_;
+    const Facets& facets_;
+    ProgressMeter& progress_;
+    const double steepest_ = cos_deg(kSteepest);
+    Occupancy occupancy_;
+    std::vector<Draft> drafts_;
+    std::vector<std::uint32_t> root_;      ///< per draft, the one it has become part of
+    std::vector<std::uint32_t> chart_of_;  ///< per triangle
+    std::vector<std::uint8_t> is_free_;
+    std::vector<std::uint32_t> stamp_;  ///< of the last trial growth that saw a triangle
+    std::uint32_t last_stamp_ = 0;
+    std::vector<std::uint32_t> queue_;
+};
+
+/// Whether any normal between those of a triangle's corners is within kLeastPageAngle of the side
+/// of the axis that the triangle faces.
+bool has_weight_on_page(const Mesh& mesh, const Facets& facets, std::uint32_t t, int axis)
+{
+    const glm::vec3 own = facets.normals[t];
+    const glm::vec3 sizes = glm::abs(own);
+    if (sizes[axis] == std::max({sizes.x, sizes.y, sizes.z}))
+        return true;
+    if (sizes[axis] <= static_cast<float>(cos_deg(kSteepest)))
+        return false;
+    const glm::vec3 mean = facets.shading[t];
+    float least = 1.0f;  // of mean . corner: all normals between them are in this cone
+    for (int k = 0; k < 3; ++k)
+        least = std::min(least, glm::dot(mean, mesh.surface.normals[mesh.surface.corners[t][k]]));
+    const float spread = std::acos(std::clamp(least, -1.0f, 1.0f));
+    const float away =
+        std::acos(std::clamp(std::copysign(mean[axis], mean[axis] * own[axis]), -1.0f, 1.0f));
+    return away - spread < std::acos(std::sqrt(kLeastPageWeight));
+}
+
+}  // namespace
+
+glm::dvec2 Chart::at(glm::dvec3 position) const
+{
+    return scale * glm::dvec2(glm::dot(right, position), glm::dot(up, position));
+}
+
+Facets make_facets(const Mesh& mesh)
+{
+    const Geometry& geometry = mesh.geometry;
+    const std::size_t count = geometry.triangles.size();
+    Facets facets;
+    facets.corners.resize(count);
+    facets.normals.resize(count);
+    facets.shading.resize(count);
+    facets.areas.resize(count);
+    facets.neighbours = neighbours_of(geometry);
+    std::vector<std::uint8_t> is_alone(count, 0);
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, kFacetGrain),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+            for (std::size_t t = range.begin(); t < range.end(); ++t) {
+                const glm::uvec3 own = geometry.triangles[t];
+                const glm::uvec3 welded(geometry.welded[own.x], geometry.welded[own.y],
+                                        geometry.welded[own.z]);
+                const glm::dvec3 true_area = doubled_area(geometry, own);
+                is_alone[t] = glm::dot(doubled_area(geometry, welded), true_area) > 0.0 ? 0 : 1;
+                facets.corners[t] = is_alone[t] != 0 ? own : welded;
+                const glm::dvec3 doubled = doubled_area(geometry, facets.corners[t]);
+                facets.areas[t] = 0.5 * glm::length(doubled);
+                facets.normals[t] = glm::vec3(doubled / glm::length(doubled));
+                glm::vec3 sum(0.0f);
+                for (int k = 0; k < 3; ++k)
+                    sum += mesh.surface.normals[mesh.surface.corners[t][k]];
+                const float length = glm::length(sum);
+                facets.shading[t] = length > 0.1f ? sum / length : facets.normals[t];
+            }
+        });
+    for (std::size_t t = 0; t < count; ++t)
+        for (std::uint32_t& other : facets.neighbours[t])
+            if (other != kNoTriangle && (is_alone[t] != 0 || is_alone[other] != 0))
+                other = kNoTriangle;
+    return facets;
+}
+
+std::vector<Chart> make_charts(const Mesh& mesh, const Facets& facets, double texel,
+                               ProgressMeter& progress)
+{
+    ChartMaker maker(mesh, facets, progress);
+    std::vector<std::uint32_t> all(facets.areas.size());
+    std::iota(all.begin(), all.end(), 0u);
+    maker.grow(
+        std::move(all), [&](std::uint32_t seed) { return maker.fitted_axis(seed, kChartLimit); },
+        kChartLimit);
+    maker.join(texel);
+    return maker.charts();
+}
+
+std::vector<Chart> make_axis_charts(const Mesh& mesh, const Facets& facets, int axis,
+                                    ProgressMeter& progress)
+{
+    ChartMaker maker(mesh, facets, progress);
+    for (const double side : {1.0, -1.0}) {
+        std::vector<std::uint32_t> members;
+        for (std::uint32_t t = 0; t < facets.areas.size(); ++t)
+            if (side * double{facets.normals[t][axis]} > 0.0 &&
+                has_weight_on_page(mesh, facets, t, axis))
+                members.push_back(t);
+        glm::dvec3 direction(0.0);
+        direction[axis] = side;
+        maker.grow(
+            std::move(members), [&](std::uint32_t) { return direction; }, 180.0);
+    }
+    return maker.charts();
+}
+
+}  // namespace surfelao
