@@ -173,28 +173,17 @@ void set_times(CompareRow& row, const std::vector<JobSeconds>& rounds, std::size
         row.solve_s * 1e6 / static_cast<double>(std::max<std::size_t>(1, receiver_count));
 }
 
-/// Over the first texture coordinates of the file, or those asked for.
-MapLayout layout_for(const Mesh& mesh, const TexelSettings& texels)
-{
-    const std::vector<UvSet>& sets = mesh.scene.uvs;
-    std::uint32_t set = texels.uv_set.value_or(0);
-    while (!texels.uv_set && set < sets.size() && sets[set].empty())
-        ++set;
-    if (set >= sets.size() || sets[set].empty())
-        throw InputError(mesh.scene.name + ": has no such texture coordinates for a map");
-    return {.size = {texels.size, texels.size}, .pages = {sets[set]}};
-}
-
 /// The layout is told in the comparison.
 std::unique_ptr<const CompareTarget> target_of(const CompareSettings& settings,
                                                Comparison& comparison)
 {
     if (!settings.texels)
         return vertices_to_compare(comparison.mesh, settings.target);
-    MapLayout layout = layout_for(*comparison.mesh, *settings.texels);
-    comparison.page = layout.size;
-    comparison.pages = layout.pages.size();
-    return map_to_compare(comparison.mesh, std::move(layout), settings.texels->padding,
+    TexelLayout found = layout_for(*comparison.mesh, *settings.texels, /*can_hold_new=*/true);
+    comparison.page = found.layout.size;
+    comparison.pages = found.layout.pages.size();
+    comparison.uv_set = found.uv_set;
+    return map_to_compare(comparison.mesh, std::move(found.layout), settings.texels->padding,
                           settings.target);
 }
 

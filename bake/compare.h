@@ -86,6 +86,7 @@ struct Comparison {
     std::optional<TexelSettings> texels;  ///< empty: values at the vertices
     MapSize page;                         ///< of a map: the size of each page
     std::uint64_t pages = 0;
+    std::optional<std::uint32_t> uv_set;  ///< the file's coordinates; empty: new ones
     std::vector<float> reference;  ///< as CompareRow::errors: occlusion of the floor's values
     std::uint64_t vertices = 0;
     std::uint64_t triangles = 0;

@@ -76,11 +76,11 @@ std::string csv_rows_of(const Comparison& comparison)
 
 std::string target_text(const Comparison& comparison)
 {
-    if (!comparison.texels)
-        return "vertices";
     return std::to_string(comparison.page.width) + " x " + std::to_string(comparison.page.height) +
            " texels" +
-           (comparison.pages > 1 ? " on " + std::to_string(comparison.pages) + " pages" : "");
+           (comparison.pages > 1 ? " on " + std::to_string(comparison.pages) + " pages" : "") +
+           (comparison.uv_set ? " (texture coordinates " + std::to_string(*comparison.uv_set) + ")"
+                              : " (new texture coordinates)");
 }
 
 std::string bent_text(const Comparison& comparison, double degrees)

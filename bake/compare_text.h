@@ -12,7 +12,7 @@ namespace surfelao {
 [[nodiscard]] std::string csv_head();
 [[nodiscard]] std::string csv_rows_of(const Comparison& comparison);
 
-/// "1024 x 1024 texels", with " on 3 pages" where there are several; "vertices".
+/// "1024 x 1024 texels", " on 3 pages" where there are several, and whose coordinates.
 [[nodiscard]] std::string target_text(const Comparison& comparison);
 
 /// "4.81"; "4.81*" where extrapolated, "-" where there is none.

@@ -227,10 +227,12 @@ Json json_object_of(const Comparison& comparison)
     add(json["target"], comparison.target);
     if (comparison.texels) {
         json["target"]["values"] = nullptr;
-        json["target"]["texels"] = {{"width", comparison.page.width},
-                                    {"height", comparison.page.height},
-                                    {"pages", comparison.pages},
-                                    {"padding", comparison.texels->padding}};
+        json["target"]["texels"] = {
+            {"width", comparison.page.width},
+            {"height", comparison.page.height},
+            {"pages", comparison.pages},
+            {"uv_set", comparison.uv_set ? Json(*comparison.uv_set) : Json()},
+            {"padding", comparison.texels->padding}};
     } else {
         json["target"]["texels"] = nullptr;
     }

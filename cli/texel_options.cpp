@@ -44,7 +44,7 @@ void add_layout_options(CLI::App& command, TexelOptions& options, const std::str
         ->check(CLI::PositiveNumber)
         ->type_name("D")
         ->excludes(command.get_option("--size"))
-        ->group(kGroup);
+        ->group(group);
     command
         .add_option("--uv", options.uv,
                     "The file's texture coordinates by number; new ones, charts of our own; or "
@@ -61,12 +61,7 @@ void add_layout_options(CLI::App& command, TexelOptions& options, const std::str
         ->check(CLI::IsMember({"planar", "blended"}))
         ->type_name("planar|blended")
         ->default_str("planar")
-        ->group(kGroup);
-    command
-        .add_flag("--udim", options.udim,
-                  "The file's coordinates go over several tiles: a picture each, NAME.1001.png "
-                  "and so on")
-        ->group(kGroup);
+        ->group(group);
     command
         .add_option("--padding", options.padding,
                     "Texels around what is covered that go on with it; the others hold the mean")
@@ -80,6 +75,11 @@ void add_texel_options(CLI::App& command, TexelOptions& options)
 {
     constexpr const char* kGroup = "Maps (-o NAME.png, .tif, .exr, or --at texels)";
     add_layout_options(command, options, kGroup);
+    command
+        .add_flag("--udim", options.udim,
+                  "The file's coordinates go over several tiles: a picture each, NAME.1001.png "
+                  "and so on")
+        ->group(kGroup);
     command
         .add_option("--depth", options.depth,
                     "Bits of each number: .png 8, 16; .tif 8, 16, 32; .exr 16, 32 (floats)")

@@ -1,16 +1,19 @@
 // map_tables: maps of whatever maker, judged alike.
 //
-//     map_tables write MESH OUT.obj     the triangles that have an area, with our corner normals
-//                                       and the coordinates of the map: what all makers are given
+//     map_tables write MESH OUT.obj [SIZE]
+//                                       the triangles that have an area, with our corner normals
+//                                       and the coordinates of the map, new ones for a map of that
+//                                       size: what all makers are given
 //     map_tables judge MESH MAP...      JSON: for each map, a linear picture of the visibility,
 //                                       what it displays against robust rays at points all over
 //                                       the surface, of which points are told too
 //
-// The file's first texture coordinates count. Points, rays and what is left out are those of
+// The file's texture coordinates of number 0 count. Points, rays and what is left out are those of
 // `surfelao compare --at texels` (bake/surface_error.h).
 
 #include "atlas/layout.h"
 #include "bake/surface_error.h"
+#include "bake/texel_layout.h"
 #include "files/scene_io.h"
 #include "image/image_file.h"
 #include "surfels/atomic_file.h"
@@ -18,6 +21,7 @@
 #include "surfels/number_text.h"
 
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -26,14 +30,13 @@ namespace {
 using namespace surfelao;
 
 struct World {
-    explicit World(const std::filesystem::path& path) : mesh(make_mesh(read_scene(path)))
+    /// size: of new coordinates; 0: the file's.
+    World(const std::filesystem::path& path, std::uint32_t size) : mesh(make_mesh(read_scene(path)))
     {
-        for (const UvSet& set : mesh.scene.uvs) {
-            if (!set.empty() && layout.pages.empty())
-                layout.pages.push_back(set);
-        }
-        if (layout.pages.empty())
-            throw InputError(path.string() + ": has no texture coordinates");
+        TexelSettings settings;
+        settings.uvs = size > 0 ? UvChoice::made : UvChoice::file;
+        settings.size = size > 0 ? size : settings.size;
+        layout = layout_for(mesh, settings, /*can_hold_new=*/true).layout;
     }
     Mesh mesh;
     MapLayout layout;
@@ -119,11 +122,14 @@ int main(int argument_count, char** arguments)
 try {
     const std::string task = argument_count > 3 ? arguments[1] : "";
     if (task == "write") {
-        write_atomically(arguments[3], obj_of(World(arguments[2])));
+        const auto size =
+            static_cast<std::uint32_t>(argument_count > 4 ? std::atoi(arguments[4]) : 0);
+        write_atomically(arguments[3], obj_of(World(arguments[2], size)));
     } else if (task == "judge") {
-        std::fputs(judged(World(arguments[2]), argument_count - 3, arguments + 3).c_str(), stdout);
+        std::fputs(judged(World(arguments[2], 0), argument_count - 3, arguments + 3).c_str(),
+                   stdout);
     } else {
-        std::fputs("usage: map_tables write MESH OUT.obj | judge MESH MAP...\n", stderr);
+        std::fputs("usage: map_tables write MESH OUT.obj [SIZE] | judge MESH MAP...\n", stderr);
         return 2;
     }
     return 0;
