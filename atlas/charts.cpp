@@ -46,6 +46,30 @@ Chart chart_along(glm::dvec3 axis)
     return chart;
 }
 
+FlatTriangle projected(const Geometry& geometry, const Facets& facets, const Chart& chart,
+                       std::uint32_t t)
+{
+    FlatTriangle flat;
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 p(geometry.positions[facets.corners[t][k]]);
+        flat[static_cast<std::size_t>(k)] = {glm::dot(chart.right, p), glm::dot(chart.up, p)};
+    }
+    return flat;
+}
+
+/// Puts the triangles in order and sets what follows from them.
+void finish(const Geometry& geometry, const Facets& facets, Chart& chart)
+{
+    std::ranges::sort(chart.triangles);
+    chart.area = 0.0;
+    double flat = 0.0;
+    for (const std::uint32_t t : chart.triangles) {
+        chart.area += facets.areas[t];
+        flat += 0.5 * twice_area(projected(geometry, facets, chart, t));
+    }
+    chart.scale = flat > 0.0 ? std::sqrt(chart.area / flat) : 1.0;
+}
+
 /// A chart while it is made.
 struct Draft {
     Chart chart;
@@ -62,7 +86,7 @@ struct Border {
 class ChartMaker {
 public:
     ChartMaker(const Mesh& mesh, const Facets& facets, ProgressMeter& progress)
-        : positions_(mesh.geometry.positions),
+        : geometry_(mesh.geometry),
           facets_(facets),
           progress_(progress),
           occupancy_(facets.areas.size()),
@@ -139,15 +163,10 @@ public:
     {
         std::vector<Chart> list;
         for (Draft& draft : drafts_) {
-            Chart& chart = draft.chart;
-            if (chart.triangles.empty())
+            if (draft.chart.triangles.empty())
                 continue;
-            std::ranges::sort(chart.triangles);
-            double flat = 0.0;
-            for (const std::uint32_t t : chart.triangles)
-                flat += 0.5 * twice_area(projected(chart, t));
-            chart.scale = flat > 0.0 ? std::sqrt(chart.area / flat) : 1.0;
-            list.push_back(std::move(chart));
+            finish(geometry_, facets_, draft.chart);
+            list.push_back(std::move(draft.chart));
         }
         return list;
     }
@@ -159,20 +178,10 @@ private:
                glm::dot(glm::dvec3(facets_.normals[t]), axis) > steepest_;
     }
 
-    [[nodiscard]] FlatTriangle projected(const Chart& chart, std::uint32_t t) const
-    {
-        FlatTriangle flat;
-        for (int k = 0; k < 3; ++k) {
-            const glm::dvec3 p(positions_[facets_.corners[t][k]]);
-            flat[static_cast<std::size_t>(k)] = {glm::dot(chart.right, p), glm::dot(chart.up, p)};
-        }
-        return flat;
-    }
-
     /// Lays a triangle into a chart, unless its place is taken.
     bool lay(const Draft& draft, std::uint32_t t)
     {
-        const FlatTriangle flat = projected(draft.chart, t);
+        const FlatTriangle flat = projected(geometry_, facets_, draft.chart, t);
         const bool fits = occupancy_.fits(draft.sheet, flat);
         if (fits)
             occupancy_.add(draft.sheet, flat);
@@ -225,8 +234,9 @@ private:
                 const std::uint32_t other = facets_.neighbours[t][k];
                 if (other == kNoTriangle || chart_of_[t] >= chart_of_[other])
                     continue;
-                const glm::vec3 from = positions_[facets_.corners[t][static_cast<int>(k)]];
-                const glm::vec3 to = positions_[facets_.corners[t][static_cast<int>((k + 1) % 3)]];
+                const glm::vec3 from = geometry_.positions[facets_.corners[t][static_cast<int>(k)]];
+                const glm::vec3 to =
+                    geometry_.positions[facets_.corners[t][static_cast<int>((k + 1) % 3)]];
                 sides.push_back({chart_of_[t], chart_of_[other], double{glm::distance(from, to)}});
             }
         }
@@ -315,7 +325,7 @@ private:
         return true;
     }
 
-    const std::vector<glm::vec3>& positions_;
+    const Geometry& geometry_;
     const Facets& facets_;
     ProgressMeter& progress_;
     const double steepest_ = cos_deg(kSteepest);
@@ -405,6 +415,33 @@ std::vector<Chart> make_charts(const Mesh& mesh, const Facets& facets, double te
         kChartLimit);
     maker.join(texel);
     return maker.charts();
+}
+
+std::vector<Chart> cut(const Mesh& mesh, const Facets& facets, const Chart& chart,
+                       const std::vector<std::uint8_t>& is_beyond)
+{
+    constexpr std::uint8_t kElsewhere = 2;
+    std::vector<std::uint8_t> side(facets.areas.size(), kElsewhere);
+    for (std::size_t i = 0; i < chart.triangles.size(); ++i)
+        side[chart.triangles[i]] = is_beyond[i];
+    std::vector<Chart> pieces;
+    for (const std::uint32_t start : chart.triangles) {
+        if (side[start] == kElsewhere)
+            continue;
+        const std::uint8_t own = std::exchange(side[start], kElsewhere);
+        Chart piece{chart.right, chart.up, chart.axis, {start}};
+        for (std::size_t head = 0; head < piece.triangles.size(); ++head) {
+            for (const std::uint32_t next : facets.neighbours[piece.triangles[head]]) {
+                if (next == kNoTriangle || side[next] != own)
+                    continue;
+                side[next] = kElsewhere;
+                piece.triangles.push_back(next);
+            }
+        }
+        finish(mesh.geometry, facets, piece);
+        pieces.push_back(std::move(piece));
+    }
+    return pieces;
 }
 
 std::vector<Chart> make_axis_charts(const Mesh& mesh, const Facets& facets, int axis,

@@ -60,6 +60,11 @@ inline constexpr double kSmallChartTexels = 16.0;
 [[nodiscard]] std::vector<Chart> make_charts(const Mesh& mesh, const Facets& facets, double texel,
                                              ProgressMeter& progress);
 
+/// The two sides of a chart as charts of their own, each of them in its connected pieces: the
+/// triangles with is_beyond (one per triangle of the chart, in their order), and the others. O(n).
+[[nodiscard]] std::vector<Chart> cut(const Mesh& mesh, const Facets& facets, const Chart& chart,
+                                     const std::vector<std::uint8_t>& is_beyond);
+
 /// The charts of one page of a blended map (layout.h): of the triangles that have a weight there,
 /// by the sides of the axis (0 to 2 for x, y, z) that they face. Each triangle lies on at least one
 /// of the three pages, in one chart of each.

@@ -1,6 +1,7 @@
 /// bake.h: the job: a mesh file in, the same mesh with occlusion at every vertex out.
 #pragma once
 
+#include "atlas/seams.h"
 #include "bake/map_bake.h"
 #include "bake/texel_layout.h"
 #include "bake/vertex_bake.h"
@@ -40,19 +41,22 @@ struct BakeSeconds : VertexBakeSeconds {
     double read = 0.0;    ///< the file, and the clean geometry
     double charts = 0.0;  ///< texels: charts of our own
     double raster = 0.0;  ///< texels: which of them, and where each is asked
-    double fill = 0.0;    ///< texels: those that nothing covers
+    double fill = 0.0;    ///< texels: those that nothing covers or nobody sees, and seams
     double write = 0.0;   ///< the file, and the notes meanwhile
     double total = 0.0;
 };
 
 struct TexelReport {
     MapSize size;
-    std::optional<std::uint32_t> uv_set;  ///< of the file; empty: charts of our own
-    std::vector<std::uint32_t> tiles;     ///< UDIM
-    std::optional<ChartReport> charts;    ///< of our own
-    std::uint64_t covered = 0;            ///< texels
-    std::uint64_t overlapping = 0;        ///< texels of several sheets: they hold the mean
-    double spread = 0.0;                  ///< of these: RMS difference of a sheet to it
+    std::optional<std::uint32_t> uv_set;        ///< of the file; empty: charts of our own
+    std::vector<std::uint32_t> tiles;           ///< UDIM
+    std::optional<ChartReport> charts;          ///< of our own
+    std::uint64_t covered = 0;                  ///< texels
+    std::uint64_t overlapping = 0;              ///< texels of several sheets: they hold the mean
+    double spread = 0.0;                        ///< of these: RMS difference of a sheet to it
+    std::uint64_t hidden = 0;                   ///< texels that nobody sees (hidden_texels.h)
+    std::uint64_t seams = 0, smooth_seams = 0;  ///< edges of the surface (atlas/seams.h)
+    SeamJump jump;                              ///< at the smooth ones
     std::uint64_t flat_triangles = 0;
     std::uint64_t outside_triangles = 0;
     std::uint64_t misses = 0;                    ///< points that met nothing of the high mesh

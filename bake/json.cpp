@@ -110,6 +110,12 @@ Json json_of(const BakeReport& report, const TexelReport& texels)
             {"covered", texels.covered},
             {"overlapping", texels.overlapping},
             {"spread", texels.spread},
+            {"hidden", texels.hidden},
+            {"seams",
+             {{"count", texels.seams},
+              {"smooth", texels.smooth_seams},
+              {"jump_rms", texels.jump.rms},
+              {"jump_max", texels.jump.most}}},
             {"flat_triangles", texels.flat_triangles},
             {"outside_triangles", texels.outside_triangles},
             {"written", written}};

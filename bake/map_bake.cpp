@@ -1,5 +1,6 @@
 #include "bake/map_bake.h"
 
+#include "bake/hidden_texels.h"
 #include "bake/high_to_low.h"
 #include "bake/vertex_fit.h"
 #include "surfels/errors.h"
@@ -147,7 +148,13 @@ public:
 
         enter("fill");
         Stopwatch watch;
-        finish_pages(bake, known);
+        leave_out_hidden(engine.definition, bake, known);
+        fill_pages(bake, known);
+        for (Map& map : bake.bent)
+            encode_directions(map);
+        for (std::vector<Map>* maps : {&bake.visibility, &bake.bent})
+            for (Map& map : *maps)
+                round_to_depth(map, settings_.depth, settings_.half_is_whole);
         seconds_.fill += watch.lap();
         if (count_ > 0)
             bake.error = error_of(bake);
@@ -191,6 +198,12 @@ private:
         return prepared;
     }
 
+    [[nodiscard]] std::uint32_t band_rows() const
+    {
+        return static_cast<std::uint32_t>(
+            std::clamp<std::uint64_t>(kBandTexels / layout_.size.width, 1, layout_.size.height));
+    }
+
     const Geometry& occluders() const { return high_ ? high_->mesh().geometry : mesh_.geometry; }
 
     std::vector<Receiver> receivers_of(std::span<const SurfacePoint> points,
@@ -206,8 +219,7 @@ private:
     {
         MapWriter writer(bake, known, settings_.bent);
         const std::uint32_t height = layout_.size.height;
-        const auto rows = static_cast<std::uint32_t>(
-            std::clamp<std::uint64_t>(kBandTexels / layout_.size.width, 1, height));
+        const std::uint32_t rows = band_rows();
         const auto pages = static_cast<double>(layout_.pages.size());
         std::vector<std::uint8_t> shown(mesh_.geometry.triangles.size(), 0);
         for (std::size_t page = 0; page < layout_.pages.size(); ++page) {
@@ -239,19 +251,76 @@ private:
         bake.flat_triangles = static_cast<std::uint64_t>(std::ranges::count(shown, 0));
     }
 
-    /// What nothing covers, and what files hold.
-    void finish_pages(MapBake& bake, Known& known) const
+    /// Texels that nobody sees are no longer known.
+    void leave_out_hidden(const Definition& definition, MapBake& bake, Known& known) const
     {
+        std::optional<RayScene> scene;
         for (std::size_t page = 0; page < known.size(); ++page) {
-            if (settings_.bent) {
-                std::vector<std::uint8_t> bent_known = known[page];
-                fill_around(bake.bent[page], bent_known, settings_.padding);
-                encode_directions(bake.bent[page]);
-                round_to_depth(bake.bent[page], settings_.depth, settings_.half_is_whole);
+            std::vector<std::uint8_t> hidden =
+                texels_maybe_hidden(bake.visibility[page], known[page]);
+            if (hidden.empty())
+                continue;
+            const std::vector<Texel> texels = marked_texels(page, hidden);
+            std::vector<SurfacePoint> points;
+            points.reserve(texels.size());
+            for (const Texel& texel : texels)
+                points.push_back(texel.point);
+            if (!scene)
+                scene.emplace(occluders(), RayScene::Build::quick);
+            const std::vector<std::uint8_t> inside =
+                inside_bodies(occluders(), *scene, receivers_of(points), definition.max_distance);
+            for (std::size_t i = 0; i < texels.size(); ++i)
+                if (inside[i] == 0)  // one sheet of a texel that is seen is enough
+                    hidden[index_of(texels[i])] = 0;
+            for (std::size_t i = 0; i < hidden.size(); ++i) {
+                bake.hidden += hidden[i];
+                known[page][i] &= hidden[i] == 0;
             }
-            fill_around(bake.visibility[page], known[page], settings_.padding);
-            round_to_depth(bake.visibility[page], settings_.depth, settings_.half_is_whole);
         }
+    }
+
+    [[nodiscard]] std::size_t index_of(const Texel& texel) const
+    {
+        return std::size_t{texel.y} * layout_.size.width + texel.x;
+    }
+
+    std::vector<Texel> marked_texels(std::size_t page,
+                                     const std::vector<std::uint8_t>& marked) const
+    {
+        const MapRaster raster(mesh_.geometry, layout_.pages[page], layout_.size);
+        const std::uint32_t width = layout_.size.width;
+        std::vector<Texel> texels;
+        for (std::uint32_t first = 0; first < layout_.size.height; first += band_rows()) {
+            const std::uint32_t rows = std::min(band_rows(), layout_.size.height - first);
+            const auto begin = marked.begin() + std::ptrdiff_t{first} * width;
+            if (std::find(begin, begin + std::ptrdiff_t{rows} * width, 1) ==
+                begin + std::ptrdiff_t{rows} * width)
+                continue;
+            for (const Texel& texel : raster.texels(first, rows))
+                if (marked[index_of(texel)] != 0)
+                    texels.push_back(texel);
+        }
+        return texels;
+    }
+
+    /// What has no value gets one, and smooth seams show the same on both sides.
+    void fill_pages(MapBake& bake, const Known& known) const
+    {
+        const Seams seams = seams_of(mesh_, layout_);
+        const std::uint32_t rings =
+            bake.hidden == 0 ? settings_.padding : std::max(settings_.padding, kHiddenRings / 2);
+        for (std::vector<Map>* maps : {&bake.visibility, &bake.bent}) {
+            if (maps->empty())
+                continue;
+            Known filled = known;
+            fill_across(mesh_, layout_, seams, settings_.padding, *maps, filled);
+            for (std::size_t page = 0; page < maps->size(); ++page)
+                fill_around((*maps)[page], filled[page], rings);
+            stitch(seams, *maps);
+        }
+        bake.seams = seams.list.size();
+        bake.smooth_seams = seams.smooth_count();
+        bake.jump = seam_jump(seams, bake.visibility);
     }
 
     StatedError error_of(const MapBake& bake)
@@ -268,6 +337,7 @@ private:
                 mesh_.geometry, density,
                 [&](std::span<const SurfacePoint> points) { return receivers_of(points); },
                 occluders(), count_);
+            check_->leave_out_hidden();
             check_->trace(
                 bake.engine.definition, shown,
                 [&](double done) { return !progress_ || progress_("check", done); }, asked_);

@@ -2,11 +2,14 @@
 ///
 /// Texels are receivers (surfels/texels.h), solved band by band, page by page: memory follows the
 /// band, not the map, and the bytes do not depend on it. Where sheets lie on each other a texel
-/// holds their mean, and how far they differ is told. Texels that nothing covers take what
-/// surrounds them (image/map.h), so that filters and mip levels fetch no emptiness.
+/// holds their mean, and how far they differ is told. Texels that nothing covers, or what nobody
+/// sees (hidden_texels.h), take what lies beyond the seam (atlas/seams.h) or surrounds them
+/// (image/map.h), so that filters and mip levels fetch no emptiness. At last both sides of smooth
+/// seams are made to show the same.
 #pragma once
 
 #include "atlas/layout.h"
+#include "atlas/seams.h"
 #include "bake/vertex_bake.h"
 #include "engines/engine.h"
 #include "image/map.h"
@@ -43,7 +46,7 @@ struct MapSeconds {
     double surfels = 0.0;
     double tree = 0.0;
     double solve = 0.0;
-    double fill = 0.0;
+    double fill = 0.0;  ///< hidden texels, seams, and what nothing covers
     double check = 0.0;
 };
 
@@ -56,7 +59,10 @@ struct MapBake {
     std::uint64_t receivers = 0;       ///< points that were asked
     std::uint64_t covered = 0;         ///< texels that show the surface
     std::uint64_t overlapping = 0;     ///< texels with several sheets
-    double mean_occlusion = 0.0;       ///< over covered texels
+    std::uint64_t hidden = 0;  ///< of the covered ones: inside of a body, filled as if not covered
+    std::uint64_t seams = 0, smooth_seams = 0;  ///< edges of the surface
+    SeamJump jump;                              ///< at the smooth ones, before rounding
+    double mean_occlusion = 0.0;                ///< over covered texels
     double spread = 0.0;  ///< of these: RMS difference of the sheets' occlusion to their mean
     std::uint64_t flat_triangles = 0;     ///< that show no texel
     std::uint64_t outside_triangles = 0;  ///< that reach out of the map

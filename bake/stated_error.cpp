@@ -1,5 +1,6 @@
 #include "bake/stated_error.h"
 
+#include "bake/hidden_texels.h"
 #include "bake/surface_error.h"
 #include "reference/rays.h"
 #include "reference/well_defined.h"
@@ -171,9 +172,12 @@ void ErrorCheck::trace(const Definition& definition, const Shown& shown, const P
     }
     const std::vector<float> changes =
         placement_change(scene, suspicious, definition, {}, kPlacementRays);
+    const std::vector<std::uint8_t> inside =
+        leaves_out_hidden_ ? inside_bodies(occluders_, scene, suspicious, definition.max_distance)
+                           : std::vector<std::uint8_t>(suspects.size(), 0);
     std::size_t kept = 0;
     for (std::size_t s = 0; s < suspects.size(); ++s)
-        if (changes[s] > kIllDefined)
+        if (changes[s] > kIllDefined || inside[s] != 0)
             suspects[kept++] = suspects[s];
     leave_out(std::span(suspects).first(kept));
 }

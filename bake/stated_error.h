@@ -96,6 +96,10 @@ public:
     /// outlive this; before trace().
     void add_floor(const VertexTarget& target, std::span<const double> density);
 
+    /// Before trace(): points inside of bodies (hidden_texels.h) that err by more than kSuspicious
+    /// count no more either. Nobody sees them, and maps show there what is beside them.
+    void leave_out_hidden() { leaves_out_hidden_ = true; }
+
     /// Traces rays at the points: before error_of(). Points that are ill-defined
     /// (reference/well_defined.h) and err by more than kSuspicious count no more. O(n) for the ray
     /// tracer's hierarchy, with a small factor. least: what is to be known even where the values
@@ -134,6 +138,7 @@ private:
     std::vector<Receiver> receivers_;  ///< at points_, then at samples_
     std::uint32_t rays_ = 0;           ///< per point
     std::uint32_t ill_defined_ = 0;
+    bool leaves_out_hidden_ = false;
 };
 
 }  // namespace surfelao

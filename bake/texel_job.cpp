@@ -113,6 +113,10 @@ void report_map(const MapBake& map, BakeReport& report)
     told.covered = map.covered;
     told.overlapping = map.overlapping;
     told.spread = map.spread;
+    told.hidden = map.hidden;
+    told.seams = map.seams;
+    told.smooth_seams = map.smooth_seams;
+    told.jump = map.jump;
     told.flat_triangles = map.flat_triangles;
     told.outside_triangles = map.outside_triangles;
     told.misses = map.misses;

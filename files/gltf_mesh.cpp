@@ -1,7 +1,5 @@
 #include "files/gltf_mesh.h"
 
-#include "files/gltf_added.h"
-
 #include <tiny_gltf.h>
 #include <nlohmann/json.hpp>
 
@@ -50,8 +48,7 @@ public:
     MeshResolver(const tinygltf::Model& model, std::size_t mesh, GltfAsset& asset)
         : model_(model),
           mesh_(mesh),
-          asset_(asset),
-          resolver_(model, asset),
+          resolver_(asset),
           colors_(asset.colors),
           group_of_primitive_(asset.group_of_primitive[mesh])
     {
@@ -158,15 +155,13 @@ private:
         return influences;
     }
 
-    /// Those of an earlier bake (gltf_added.h) are places in a ramp: the mesh has none of them.
     void add_uvs(const tinygltf::Primitive& source, const std::string& element, Group& group,
                  Primitive& primitive) const
     {
         for (std::size_t set = 0; set < kMostUvSets; ++set) {
             const std::string name = "TEXCOORD_" + std::to_string(set);
             const int index = attribute(source.attributes, name);
-            if (index == kNone ||
-                is_added((*asset_.document)["accessors"][static_cast<std::size_t>(index)]))
+            if (index == kNone)
                 continue;
             NamedAccessor named = resolver_.resolve(index, element + ' ' + name);
             if (named.accessor.dimension != 2)
@@ -203,21 +198,18 @@ private:
     void find_colors(const tinygltf::Primitive& primitive, std::size_t vertex_count,
                      const std::string& element)
     {
-        for (const char* name : {"COLOR_0", "_OWN_COLOR"}) {
-            const int index = attribute(primitive.attributes, name);
-            if (index == kNone)
-                continue;
-            const NamedAccessor named = resolver_.resolve(index, element + ' ' + name);
-            if (named.accessor.dimension != 3 && named.accessor.dimension != 4)
-                resolver_.fail(named.element, "is neither of type VEC3 nor VEC4");
-            resolver_.check_count(named, vertex_count);
-            colors_.insert_or_assign(static_cast<std::size_t>(index), named.accessor);
-        }
+        const int index = attribute(primitive.attributes, "COLOR_0");
+        if (index == kNone)
+            return;
+        const NamedAccessor named = resolver_.resolve(index, element + " COLOR_0");
+        if (named.accessor.dimension != 3 && named.accessor.dimension != 4)
+            resolver_.fail(named.element, "is neither of type VEC3 nor VEC4");
+        resolver_.check_count(named, vertex_count);
+        colors_.insert_or_assign(static_cast<std::size_t>(index), named.accessor);
     }
 
     const tinygltf::Model& model_;
     std::size_t mesh_;
-    const GltfAsset& asset_;
     AccessorResolver resolver_;
     std::map<std::size_t, GltfAccessor>& colors_;
     std::vector<std::int32_t>& group_of_primitive_;

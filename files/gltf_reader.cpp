@@ -5,6 +5,7 @@
 #include "files/gltf_mesh.h"
 #include "files/gltf_nodes.h"
 #include "files/gltf_notes.h"
+#include "files/gltf_old_results.h"
 #include "files/gltf_pose.h"
 #include "files/gltf_schema.h"
 #include "surfels/errors.h"
@@ -32,9 +33,8 @@ namespace fs = std::filesystem;
 
 /// The checked document as tinygltf's structs. tinygltf trusts what it reads and opens files, so it
 /// is handed neither more than geometry_text() lets through nor any uri.
-tinygltf::Model parse_model(const GltfAsset& asset)
+tinygltf::Model parse_model(const GltfAsset& asset, const std::string& text)
 {
-    const std::string text = geometry_text(*asset.document, asset.path);
     if (text.size() > std::numeric_limits<unsigned int>::max())
         fail_gltf(asset.path, "JSON", "is larger than 4 GiB");
     tinygltf::TinyGLTF parser;
@@ -135,7 +135,7 @@ public:
         : model_(model),
           asset_(asset),
           scene_(scene),
-          resolver_(model, asset),
+          resolver_(asset),
           nodes_(place_nodes(model, asset.path)),
           meshes_(model.meshes.size()),
           joints_(model.skins.size())
@@ -252,7 +252,7 @@ private:
         part.first_triangle = static_cast<std::uint32_t>(scene_.triangles.size());
         part.vertex_count = static_cast<std::uint32_t>(vertices.positions.size());
         lost_count_ += vertices.lost_count;
-        asset_.parts.push_back({asset_.uses.size() - 1, glm::dmat3(1.0), {}});
+        asset_.parts.push_back({asset_.uses.size() - 1, glm::dmat3(1.0), {}, {}, {}});
         part_uvs_ = {};
         // without joints the node moves the mesh, skin or not
         if (use.skin && !group.influences.empty()) {
@@ -361,6 +361,8 @@ private:
                        IsMirrored&& is_mirrored)
     {
         const std::vector<std::uint32_t> uvs = uv_begins(group, primitive);
+        GltfPart& in_file = asset_.parts.back();
+        const auto first = static_cast<std::uint32_t>(scene_.triangles.size());
         std::vector<std::uint32_t> indices;
         if (primitive.indices)
             indices = load_indices(primitive, part.vertex_count);
@@ -382,7 +384,8 @@ private:
             if (strip &&
                 (triangle.x == triangle.y || triangle.y == triangle.z || triangle.z == triangle.x))
                 continue;
-            if (is_mirrored(triangle))
+            in_file.turned.push_back(is_mirrored(triangle));
+            if (in_file.turned.back())
                 std::swap(triangle.y, triangle.z);
             scene_.triangles.push_back(triangle);
             for (std::size_t set = 0; set < uvs.size(); ++set)
@@ -390,6 +393,8 @@ private:
                                                       ? glm::uvec3(UvSet::kNone)
                                                       : triangle - part.first_vertex + uvs[set]);
         }
+        const auto end = static_cast<std::uint32_t>(scene_.triangles.size());
+        in_file.primitives.push_back({primitive.index, first, end - first});
     }
 
     std::vector<std::uint32_t> load_indices(const Primitive& primitive,
@@ -434,7 +439,10 @@ Scene read_gltf(const fs::path& path, std::string contents)
 {
     const auto asset = std::make_shared<GltfAsset>();
     load_gltf_asset(path, std::move(contents), *asset);
-    const tinygltf::Model model = parse_model(*asset);
+    std::string text = geometry_text(*asset->document, path);
+    if (drop_old_results(*asset))
+        text = geometry_text(*asset->document, path);
+    const tinygltf::Model model = parse_model(*asset, text);
     Scene scene;
     scene.name = path.filename().string();
     SceneBuilder(model, *asset, scene).build();

@@ -69,7 +69,7 @@ constexpr Field kPrimitive[] = {
 };
 constexpr Field kAccessorIndex = {"", Kind::index, Need::optional, "accessors"};
 /// For is_listed().
-constexpr std::string_view kAttributes[] = {"POSITION", "NORMAL",   "COLOR_0",  "_OWN_COLOR",
+constexpr std::string_view kAttributes[] = {"POSITION", "NORMAL",   "COLOR_0",
                                             "JOINTS_",  "WEIGHTS_", "TEXCOORD_"};
 constexpr std::string_view kTargetAttributes[] = {"POSITION", "NORMAL"};
 constexpr Field kNode[] = {

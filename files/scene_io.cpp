@@ -12,6 +12,8 @@
 #include "surfels/atomic_file.h"
 #include "surfels/errors.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -60,6 +62,27 @@ WrittenFile contents_for(const fs::path& path, const Scene& scene,
         default:
             return gltf_contents(path, scene, occlusion, options);
     }
+}
+
+/// Throws SettingsError where a triangle of the scene would have no place to look up.
+void check_places(const Scene& scene, const UvSet& uvs)
+{
+    const bool of_vertices = uvs.corners.empty();
+    require(of_vertices ? uvs.values.size() == scene.positions.size()
+                        : uvs.corners.size() == scene.triangles.size(),
+            "new texture coordinates are one for each vertex, or for each corner of a triangle");
+    require(std::ranges::all_of(uvs.values,
+                                [](const glm::dvec2& uv) { return std::isfinite(uv.x + uv.y); }),
+            "new texture coordinates are finite");
+    require(std::ranges::all_of(uvs.corners,
+                                [&](const glm::uvec3& corner) {
+                                    const auto is_there = [&](std::uint32_t uv) {
+                                        return uv < uvs.values.size() || uv == UvSet::kNone;
+                                    };
+                                    return is_there(corner.x) && is_there(corner.y) &&
+                                           is_there(corner.z);
+                                }),
+            "a corner of a triangle has texture coordinates that there are not");
 }
 
 }  // namespace
@@ -135,6 +158,8 @@ std::vector<std::string> write_scene_with_map(const fs::path& path, const Scene&
                                               const OcclusionMap& map, const WriteOptions& options)
 {
     check_output_with_map(path, path);
+    if (map.uvs)
+        check_places(scene, *map.uvs);
     WrittenFile written = gltf_contents_with_map(path, scene, map, options);
     const std::optional<fs::path> file = map_file_of(path);
     std::error_code error;

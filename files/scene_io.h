@@ -55,7 +55,9 @@ std::vector<std::string> write_scene(const std::filesystem::path& path, const Sc
 struct OcclusionMap {
     std::string png;           ///< a file's contents; red is the visibility, linear: 1 = open
     std::uint32_t uv_set = 0;  ///< of Scene::uvs: glTF's TEXCOORD_n
-    std::optional<UvSet> uvs = {};  ///< new ones, in place of uv_set
+    /// New ones, in place of uv_set: finite, one for each corner or vertex (UvSet). As they are in
+    /// files they are floats.
+    std::optional<UvSet> uvs = {};
 };
 
 /// Where the map of a result at `output` stands: STEM.ao.png beside a .gltf; nothing for a .glb,
@@ -69,7 +71,7 @@ void check_output_with_map(const std::filesystem::path& input, const std::filesy
 
 /// write_scene() with a map in place of values at vertices (gltf_io.h); the file of the map is
 /// written as well. Throws InputError as check_output_with_map() does and where nothing in the file
-/// has the coordinates.
+/// has the coordinates; SettingsError where map.uvs does not fit the scene.
 std::vector<std::string> write_scene_with_map(const std::filesystem::path& path, const Scene& scene,
                                               const OcclusionMap& map,
                                               const WriteOptions& options = {});

@@ -3,9 +3,9 @@
 #include "bake/bent_space.h"
 #include "engines/threads.h"
 #include "scenes.h"
+#include "seen_of_wall.h"
 
 #include <gtest/gtest.h>
-#include <glm/gtc/constants.hpp>
 
 #include <cmath>
 #include <functional>
@@ -33,17 +33,6 @@ struct MappedWorld {
     }
     Mesh mesh;
 };
-
-/// What a square foot of a wall sees of it from the distance d: the wall is `height` high and ends
-/// `left` and `right` (Howell. A Catalog of Radiation Heat Transfer Configuration Factors. B-4).
-double seen_of_wall(double d, double height, double left, double right)
-{
-    const double far = std::hypot(d, height);
-    double sum = 0.0;
-    for (const double side : {left, right})
-        sum += std::atan(side / d) - d / far * std::atan(side / far);
-    return sum / (2.0 * glm::pi<double>());
-}
 
 // One chart over the foot of a wall, symmetric.
 TEST(MapBake, HasTheProfileOfAWallAtItsFoot)
