@@ -4,11 +4,13 @@
 #include "atlas/packing.h"
 #include "surfels/errors.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <span>
 #include <string>
@@ -19,6 +21,15 @@ namespace {
 
 /// What charts usually cover of a page: for the size of a texel, before it is known.
 constexpr double kLikelyUse = 0.65;
+
+/// Where charts cover less than this, the longest is cut in two: a few large ones fill no page. At
+/// most so often, and only what is longer than this share of the page.
+constexpr double kWantedUse = 0.65;
+constexpr int kMostCuts = 6;
+constexpr double kLongShare = 0.5;
+/// What a cut must gain of the use, and how many may fail to in a row.
+constexpr double kCutGain = 1.01;
+constexpr int kVainCuts = 2;
 
 void check_settings(const AtlasSettings& settings)
 {
@@ -117,6 +128,79 @@ void measure_stretch(const Facets& facets, std::span<const std::vector<Chart>> p
     atlas.mean_stretch = area > 0.0 ? sum / area : 1.0;
 }
 
+std::vector<Shape> shapes_of(const Mesh& mesh, const Facets& facets,
+                             std::span<const std::vector<Chart>> pages)
+{
+    std::vector<Shape> shapes;
+    for (std::uint32_t page = 0; page < pages.size(); ++page)
+        for (const Chart& chart : pages[page])
+            shapes.push_back(shape_of(mesh, facets, chart, page));
+    return shapes;
+}
+
+/// A chart in the map.
+struct Extent {
+    glm::dvec2 low{HUGE_VAL}, high{-HUGE_VAL};
+    [[nodiscard]] int longer() const { return high.x - low.x >= high.y - low.y ? 0 : 1; }
+    [[nodiscard]] double length() const { return high[longer()] - low[longer()]; }
+};
+
+Extent extent_of(const Shape& shape, const Placement& placement)
+{
+    Extent extent;
+    for (const auto& triangle : shape.triangles) {
+        for (const glm::dvec2 corner : triangle) {
+            extent.low = glm::min(extent.low, placement.at(corner));
+            extent.high = glm::max(extent.high, placement.at(corner));
+        }
+    }
+    return extent;
+}
+
+/// Cuts charts of a single page, the longest across its middle, until the page is full enough, and
+/// keeps the fullest of all that were seen.
+void cut_to_fill(const Mesh& mesh, const Facets& facets, const PackingSettings& settings,
+                 std::vector<std::vector<Chart>>& pages, Packing& packing, ProgressMeter& meter)
+{
+    const double wanted = kWantedUse * settings.size * settings.size;
+    std::vector<std::vector<Chart>> tried_pages = pages;
+    Packing tried = packing;
+    int vain = 0;
+    for (int cuts = 0; cuts < kMostCuts && static_cast<double>(packing.covered) < wanted; ++cuts) {
+        std::vector<Chart>& charts = tried_pages.front();
+        const std::vector<Shape> shapes = shapes_of(mesh, facets, tried_pages);
+        std::size_t longest = 0;
+        Extent extent;
+        for (std::size_t c = 0; c < charts.size(); ++c) {
+            const Extent found = extent_of(shapes[c], tried.placements[c]);
+            if (c == 0 || found.length() > extent.length()) {
+                longest = c;
+                extent = found;
+            }
+        }
+        if (extent.length() < kLongShare * settings.size || charts[longest].triangles.size() < 2)
+            return;
+        const int axis = extent.longer();
+        const double middle = 0.5 * (extent.low[axis] + extent.high[axis]);
+        std::vector<std::uint8_t> is_beyond;
+        for (const auto& [a, b, c] : shapes[longest].triangles)
+            is_beyond.push_back(tried.placements[longest].at((a + b + c) / 3.0)[axis] > middle);
+        std::vector<Chart> pieces = cut(mesh, facets, charts[longest], is_beyond);
+        charts.erase(charts.begin() + static_cast<std::ptrdiff_t>(longest));
+        std::ranges::move(pieces, std::back_inserter(charts));
+        tried = pack(shapes_of(mesh, facets, tried_pages), settings, meter);
+        ++vain;
+        if (static_cast<double>(tried.covered) >
+            static_cast<double>(packing.covered) * std::pow(kCutGain, vain)) {
+            packing = tried;
+            pages = tried_pages;
+            vain = 0;
+        } else if (vain == kVainCuts) {
+            return;
+        }
+    }
+}
+
 double texel_of(const Mesh& mesh, const AtlasSettings& settings, double area)
 {
     return settings.texels_per_unit
@@ -141,16 +225,13 @@ Atlas make_atlas(const Mesh& mesh, const AtlasSettings& settings, const Progress
         pages.push_back(settings.blended
                             ? make_axis_charts(mesh, facets, static_cast<int>(page), meter)
                             : make_charts(mesh, facets, texel_of(mesh, settings, area), meter));
-
-    std::vector<Shape> shapes;
-    for (std::uint32_t page = 0; page < page_count; ++page)
-        for (const Chart& chart : pages[page])
-            shapes.push_back(shape_of(mesh, facets, chart, page));
     const double diagonal = geometry.frame.diagonal;
     PackingSettings packing_settings{settings.size, {}, settings.padding, page_count};
     if (settings.texels_per_unit)
         packing_settings.scale = *settings.texels_per_unit * diagonal;
-    const Packing packing = pack(shapes, packing_settings, meter);
+    Packing packing = pack(shapes_of(mesh, facets, pages), packing_settings, meter);
+    if (page_count == 1 && !settings.texels_per_unit)
+        cut_to_fill(mesh, facets, packing_settings, pages, packing, meter);
 
     Atlas atlas;
     atlas.layout.size = {packing.size, packing.size};

@@ -154,6 +154,9 @@ void draw(const std::array<glm::dvec2, 3>& p, BitMask& mask)
     }
 }
 
+/// Rows of a stencil that are looked at before all of it is.
+constexpr std::uint32_t kProbes = 6;
+
 /// A shape as the packing sees it, in cells and in one of its turns, with its padding.
 struct Stencil {
     explicit Stencil(BitMask cells) : mask(std::move(cells))
@@ -168,9 +171,9 @@ struct Stencil {
             const bool is_near = std::ranges::any_of(probes, [&](const auto& probe) {
                 const std::uint32_t away =
                     std::max(probe.first, run.first) - std::min(probe.first, run.first);
-                return away < mask.height() / 4;
+                return away < mask.height() / (2 * kProbes);
             });
-            if (probes.size() < 3 && !is_near)
+            if (probes.size() < kProbes && !is_near)
                 probes.push_back(run);
         }
     }
@@ -200,8 +203,7 @@ public:
         if (mask.width() > taken_.width() || mask.height() > taken_.height())
             return {};
         end = std::min(end, taken_.height() - mask.height() + 1);
-        std::uint32_t& from = from_[{mask.width(), mask.height()}];
-        for (std::uint32_t y = from; y < end; ++y) {
+        for (std::uint32_t y = from_[kind_of(mask)]; y < end; ++y) {
             const bool may_fit = std::ranges::all_of(stencil.probes, [&](const auto& probe) {
                 return free_run_[y + probe.first] >= probe.second.length;
             });
@@ -218,10 +220,21 @@ public:
         taken_.stamp(mask, spot.x, spot.y);
         for (std::uint32_t y = spot.y; y < spot.y + mask.height(); ++y)
             free_run_[y] = longest_run(taken_.row(y), taken_.width(), false).length;
-        from_[{mask.width(), mask.height()}] = spot.y;
+        from_[kind_of(mask)] = spot.y;
     }
 
 private:
+    /// Stencils of one kind are much alike, and the later ones smaller.
+    using Kind = std::pair<std::uint32_t, std::uint32_t>;
+    static Kind kind_of(const BitMask& mask)
+    {
+        const auto step = [](std::uint32_t length) {
+            const auto octave = static_cast<std::uint32_t>(std::bit_width(length));
+            return octave * 8 + (octave > 4 ? length >> (octave - 4) & 7 : length);
+        };
+        return {step(mask.width()), step(mask.height())};
+    }
+
     std::optional<std::uint32_t> find_in_row(const Stencil& stencil, std::uint32_t y)
     {
         // what the probes leave over
@@ -231,8 +244,13 @@ private:
             std::ranges::copy(taken_.row(y + row), row_.begin());
             smear_down(row_, run.length);
             shift_down(row_, run.begin);
-            for (std::size_t i = 0; i < blocked_.size(); ++i)
+            bool has_place = false;
+            for (std::size_t i = 0; i < blocked_.size(); ++i) {
                 blocked_[i] |= row_[i];
+                has_place = has_place || blocked_[i] != ~std::uint64_t{0};
+            }
+            if (!has_place)
+                return {};
         }
         for (std::size_t i = 0; i < blocked_.size(); ++i) {
             for (std::uint64_t open = ~blocked_[i]; open != 0; open &= open - 1) {
@@ -247,9 +265,17 @@ private:
 
     BitMask taken_;
     std::vector<std::uint32_t> free_run_;  ///< longest, per row
-    /// Where the search for a stencil of this size begins: where the last one came to lie.
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> from_;
+    std::map<Kind, std::uint32_t> from_;   ///< where the last of its kind came to lie
     std::vector<std::uint64_t> row_, blocked_;
+};
+
+/// Which shapes go first: the widest across, or with the largest rectangle, longest rectangle, or
+/// area. None is always best.
+constexpr std::size_t kOrders = 4;
+
+struct Trial {
+    double scale = 0.0;
+    std::size_t order = 0;
 };
 
 class Packer {
@@ -258,15 +284,22 @@ public:
         : shapes_(shapes),
           pages_(settings.pages),
           padding_(std::max(1u, settings.padding)),
-          upright_(shapes.size()),
-          order_(shapes.size())
+          upright_(shapes.size())
     {
         tbb::parallel_for(std::size_t{0}, shapes.size(),
                           [&](std::size_t i) { upright_[i] = upright(shapes[i]); });
-        std::iota(order_.begin(), order_.end(), std::size_t{0});
-        std::ranges::stable_sort(order_, std::greater{}, [&](std::size_t i) {
-            return std::pair(upright_[i].extent.y, upright_[i].extent.x);
-        });
+        const std::array<std::function<double(const Upright&)>, kOrders> sizes{
+            [](const Upright& one) { return one.extent.y; },
+            [](const Upright& one) { return one.extent.x * one.extent.y; },
+            [](const Upright& one) { return one.extent.x + one.extent.y; },
+            [](const Upright& one) { return one.area; }};
+        for (std::size_t k = 0; k < kOrders; ++k) {
+            orders_[k].resize(shapes.size());
+            std::iota(orders_[k].begin(), orders_[k].end(), std::size_t{0});
+            std::ranges::stable_sort(orders_[k], std::greater{}, [&](std::size_t i) {
+                return std::pair(sizes[k](upright_[i]), upright_[i].extent.x);
+            });
+        }
     }
 
     /// The area of the fullest page, and of the longest shape.
@@ -286,19 +319,30 @@ public:
     }
 
     /// Nothing where they do not fit.
-    [[nodiscard]] std::optional<Packing> at(double scale, std::uint32_t size) const
+    [[nodiscard]] std::optional<Packing> at(const Trial& trial, std::uint32_t size) const
     {
+        const double scale = trial.scale;
         if (longest() * scale + 2.0 * padding_ > size)
             return {};
         const std::uint32_t cell = (size + kMostCells - 1) / kMostCells;
-        std::vector<BitMask> masks(shapes_.size());
-        tbb::parallel_for(std::size_t{0}, shapes_.size(),
-                          [&](std::size_t i) { masks[i] = drawn(i, scale); });
+        std::vector<BitMask> masks(shapes_.size());  // with padding
+        std::vector<std::uint64_t> covered(shapes_.size());
+        tbb::parallel_for(std::size_t{0}, shapes_.size(), [&](std::size_t i) {
+            const BitMask own = drawn(i, scale);
+            covered[i] = own.count();
+            const bool is_speck = std::max(own.width(), own.height()) <= kSpeckTexels;
+            masks[i] = own.dilated(is_speck ? 1 : padding_);
+        });
+        std::vector<std::uint64_t> needed(pages_, 0);
+        for (std::size_t i = 0; i < shapes_.size(); ++i)
+            needed[shapes_[i].page] += masks[i].count();
+        if (std::ranges::max(needed) > std::uint64_t{size} * size)
+            return {};
         Packing packing{size, scale, std::vector<Placement>(shapes_.size()), 0};
+        packing.covered = std::accumulate(covered.begin(), covered.end(), std::uint64_t{0});
         std::vector<Page> pages(pages_, Page(size / cell));
-        for (const std::size_t i : order_) {
-            packing.covered += masks[i].count();
-            const auto spot = put(masks[i].dilated(padding_), cell, pages[shapes_[i].page]);
+        for (const std::size_t i : orders_[trial.order]) {
+            const auto spot = put(masks[i], cell, pages[shapes_[i].page]);
             if (!spot)
                 return {};
             packing.placements[i] = placement(i, scale, masks[i], cell, *spot);
@@ -338,7 +382,7 @@ private:
         for (std::uint32_t turn = 0; turn < 4; ++turn) {
             if (turn > 0)
                 texels = texels.turned();
-            const Stencil stencil(texels.coarser(cell));
+            const Stencil stencil(cell > 1 ? texels.coarser(cell) : texels);
             if (const auto spot = page.find(stencil, end)) {
                 best = Spot{spot->x, spot->y, turn};
                 end = spot->y;
@@ -354,8 +398,7 @@ private:
                                       std::uint32_t cell, Spot spot) const
     {
         Placement place = local(i, scale, mask);
-        place.origin += glm::dvec2(padding_);
-        double width = mask.width() + 2.0 * padding_, height = mask.height() + 2.0 * padding_;
+        double width = mask.width(), height = mask.height();
         for (std::uint32_t turn = 0; turn < spot.turn; ++turn) {
             place.right = product({0.0, 1.0}, place.right);
             place.origin = {height - place.origin.y, place.origin.x};
@@ -368,23 +411,23 @@ private:
     std::span<const Shape> shapes_;
     std::uint32_t pages_, padding_;
     std::vector<Upright> upright_;
-    std::vector<std::size_t> order_;  ///< widest first
+    std::array<std::vector<std::size_t>, kOrders> orders_;
 };
 
-/// Scales tried at a time, whatever the number of cores.
+/// Tried at a time, whatever the number of cores.
 constexpr std::size_t kTrials = 4;
+using Trials = std::array<Trial, kTrials>;
+static_assert(kTrials == kOrders);
 
 class Search {
 public:
     Search(const Packer& packer, ProgressMeter& progress) : packer_(packer), progress_(progress) {}
 
-    /// The largest of the scales that fits, by rising index first.
-    std::optional<Packing> first_that_fits(const std::array<double, kTrials>& scales,
-                                           std::uint32_t size)
+    std::optional<Packing> first_that_fits(const Trials& trials, std::uint32_t size)
     {
         std::array<std::optional<Packing>, kTrials> found;
         tbb::parallel_for(std::size_t{0}, kTrials,
-                          [&](std::size_t i) { found[i] = packer_.at(scales[i], size); });
+                          [&](std::size_t i) { found[i] = packer_.at(trials[i], size); });
         tell();
         for (std::optional<Packing>& one : found)
             if (one)
@@ -394,7 +437,7 @@ public:
 
     std::optional<Packing> at(double scale, std::uint32_t size)
     {
-        std::optional<Packing> found = packer_.at(scale, size);
+        std::optional<Packing> found = packer_.at({scale, 0}, size);
         tell();
         return found;
     }
@@ -418,7 +461,11 @@ private:
 /// The share of a page that shapes may cover at most, and the first step down from there.
 constexpr double kMostUse = 0.95;
 constexpr double kUseStep = 0.87;
-constexpr int kRefinements = 2;
+/// From the best scale up, in steps of about a percent of use, in any order that fits.
+constexpr double kClimb = 1.005;
+constexpr int kMostClimbs = 8;
+/// Of more shapes the order makes no difference.
+constexpr std::size_t kMostOrdered = 500;
 
 std::optional<Packing> largest_scale(const Packer& packer, const PackingSettings& settings,
                                      Search& search)
@@ -430,22 +477,31 @@ std::optional<Packing> largest_scale(const Packer& packer, const PackingSettings
     std::optional<Packing> best;
     double step = std::sqrt(kUseStep);
     for (bool is_last = false; !best && !is_last; step = best ? step : step * step) {
-        std::array<double, kTrials> scales;
-        for (double& one : scales) {
-            one = scale;
+        Trials trials;
+        for (Trial& trial : trials) {
+            trial.scale = scale;
             scale *= step;
         }
-        is_last = !(packer.longest() * scales.back() >= 1.0);
-        best = search.first_that_fits(scales, settings.size);
+        is_last = !(packer.longest() * scale >= step);
+        best = search.first_that_fits(trials, settings.size);
     }
+    if (!best)
+        return {};
     // the next larger scale did not fit: what is between?
-    for (int round = 0; round < kRefinements && best; ++round) {
-        step = std::pow(step, 1.0 / (kTrials + 1));
-        std::array<double, kTrials> scales;
+    Trials trials;
+    for (std::size_t i = 0; i < kTrials; ++i)
+        trials[i].scale = best->scale * std::pow(step, -static_cast<double>(kTrials - i) /
+                                                           static_cast<double>(kTrials + 1));
+    if (auto better = search.first_that_fits(trials, settings.size))
+        best = std::move(better);
+    const int most = best->placements.size() <= kMostOrdered ? kMostClimbs : 0;
+    for (int climbs = 0; climbs < most; ++climbs) {
         for (std::size_t i = 0; i < kTrials; ++i)
-            scales[i] = best->scale * std::pow(step, -static_cast<double>(kTrials - i));
-        if (auto better = search.first_that_fits(scales, settings.size))
-            best = std::move(better);
+            trials[i] = {best->scale * kClimb, i};
+        auto better = search.first_that_fits(trials, settings.size);
+        if (!better)
+            break;
+        best = std::move(better);
     }
     return best;
 }

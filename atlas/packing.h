@@ -62,4 +62,8 @@ struct Packing {
 
 inline constexpr std::uint64_t kPackingUnits = 1024;
 
+/// Shapes of at most so many texels in both directions have a padding of 1, whatever is asked:
+/// coarser maps do not show them, and thousands of them would fill the page with padding.
+inline constexpr std::uint32_t kSpeckTexels = 4;
+
 }  // namespace surfelao

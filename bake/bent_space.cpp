@@ -46,10 +46,10 @@ UvSet joined_tiles(const MapLayout& layout)
 std::vector<Tangents> tangents_of_pages(const Mesh& mesh, const MapLayout& layout)
 {
     if (!layout.tiles.empty())
-        return {make_tangents(mesh, joined_tiles(layout))};
+        return {make_tangents(mesh, joined_tiles(layout), mesh.scene.tangents)};
     std::vector<Tangents> tangents;
     for (const UvSet& page : layout.pages)
-        tangents.push_back(make_tangents(mesh, page));
+        tangents.push_back(make_tangents(mesh, page, mesh.scene.tangents));
     return tangents;
 }
 

@@ -23,29 +23,27 @@ bool is_picture(const std::filesystem::path& output)
 
 }  // namespace
 
-void add_texel_options(CLI::App& command, TexelOptions& options)
+void add_layout_options(CLI::App& command, TexelOptions& options, const std::string& group)
 {
-    constexpr const char* kGroup = "Maps (-o NAME.png, .tif, .exr, or --at texels)";
     command
-        .add_option(
-            "--at", options.at,
-            "Where: vertices, or texels of a map over the file's texture coordinates, which "
-            "a glTF gets as its occlusionTexture (default: texels for pictures)")
+        .add_option("--at", options.at,
+                    "Where occlusion is asked: vertices, or texels of a map on the triangles "
+                    "(default: vertices; of bake, texels for pictures)")
         ->check(CLI::IsMember({"vertices", "texels"}))
         ->type_name("vertices|texels")
-        ->group(kGroup);
+        ->group(group);
     command.add_option("--size", options.size, "Texels of each side of the map")
         ->check(CLI::Range(1u, kMostTexels))
         ->type_name("N")
         ->default_str("1024")
-        ->group(kGroup);
+        ->group(group);
     command
         .add_option("--texels-per-unit", options.texels_per_unit,
                     "Charts of our own at this density: the size follows")
         ->check(CLI::PositiveNumber)
         ->type_name("D")
         ->excludes(command.get_option("--size"))
-        ->group(kGroup);
+        ->group(group);
     command
         .add_option("--uv", options.uv,
                     "The file's texture coordinates by number; new ones, charts of our own; or "
@@ -54,7 +52,7 @@ void add_texel_options(CLI::App& command, TexelOptions& options)
         ->check(CLI::IsMember({"auto", "0", "1", "2", "3", "new"}))
         ->type_name("auto|0|1|2|3|new")
         ->default_str("auto")
-        ->group(kGroup);
+        ->group(group);
     command
         .add_option("--charts", options.charts,
                     "Of new coordinates. planar: each triangle in one chart; blended: a page for "
@@ -62,19 +60,25 @@ void add_texel_options(CLI::App& command, TexelOptions& options)
         ->check(CLI::IsMember({"planar", "blended"}))
         ->type_name("planar|blended")
         ->default_str("planar")
-        ->group(kGroup);
+        ->group(group);
     command
         .add_flag("--udim", options.udim,
                   "The file's coordinates go over several tiles: a picture each, NAME.1001.png "
                   "and so on")
-        ->group(kGroup);
+        ->group(group);
     command
         .add_option("--padding", options.padding,
                     "Texels around what is covered that go on with it; the others hold the mean")
         ->check(CLI::Range(0u, kMostPadding))
         ->type_name("N")
         ->default_str("4")
-        ->group(kGroup);
+        ->group(group);
+}
+
+void add_texel_options(CLI::App& command, TexelOptions& options)
+{
+    constexpr const char* kGroup = "Maps (-o NAME.png, .tif, .exr, or --at texels)";
+    add_layout_options(command, options, kGroup);
     command
         .add_option("--depth", options.depth,
                     "Bits of each number: .png 8, 16; .tif 8, 16, 32; .exr 16, 32 (floats)")
@@ -112,6 +116,14 @@ void add_texel_options(CLI::App& command, TexelOptions& options)
         ->group(kGroup);
 }
 
+void add_atlas_option(CLI::App& command, bool& atlas)
+{
+    command
+        .add_flag("--atlas", atlas,
+                  "The map itself, flat, with the borders of its charts, in place of the model")
+        ->group(kShownMaps);
+}
+
 namespace {
 
 /// Whether an option was given that is of no use without a map.
@@ -137,9 +149,26 @@ void check_together(const TexelOptions& options, bool picture)
            "--texels-per-unit is for texture coordinates that are made: -o a mesh, --uv new.");
     refuse(options.charts == "blended" && (!own || picture),
            "--charts is for texture coordinates that are made: -o a mesh, --uv new.");
-    refuse(options.udim && !picture, "--udim is for pictures: -o NAME.png, .tif or .exr.");
     refuse(options.green && options.bent != "tangent", "--green is for --bent tangent.");
     refuse(options.cage && options.high.empty(), "--cage is for --high.");
+}
+
+/// Where the map lies.
+TexelSettings layout_settings_of(const TexelOptions& options)
+{
+    TexelSettings settings;
+    settings.size = options.size.value_or(settings.size);
+    settings.texels_per_unit = options.texels_per_unit;
+    if (options.uv == "new" || options.texels_per_unit || options.charts == "blended")
+        settings.uvs = UvChoice::made;
+    else if (options.uv && *options.uv != "auto") {
+        settings.uvs = UvChoice::file;
+        settings.uv_set = static_cast<std::uint32_t>(std::stoul(*options.uv));
+    }
+    settings.udim = options.udim;
+    settings.blended = options.charts == "blended";
+    settings.padding = options.padding.value_or(settings.padding);
+    return settings;
 }
 
 }  // namespace
@@ -158,18 +187,9 @@ std::optional<TexelSettings> texel_settings_of(const TexelOptions& options,
         return {};
     }
     check_together(options, picture);
-    TexelSettings settings;
-    settings.size = options.size.value_or(settings.size);
-    settings.texels_per_unit = options.texels_per_unit;
-    if (options.uv == "new" || options.texels_per_unit || options.charts == "blended")
-        settings.uvs = UvChoice::made;
-    else if (options.uv && *options.uv != "auto") {
-        settings.uvs = UvChoice::file;
-        settings.uv_set = static_cast<std::uint32_t>(std::stoul(*options.uv));
-    }
-    settings.udim = options.udim;
-    settings.blended = options.charts == "blended";
-    settings.padding = options.padding.value_or(settings.padding);
+    if (options.udim && !picture)
+        throw UsageError("--udim is for pictures: -o NAME.png, .tif or .exr.");
+    TexelSettings settings = layout_settings_of(options);
     const int depth = options.depth.value_or(lower_extension(output) == ".exr" ? 32 : 8);
     settings.depth = depth == 8 ? MapDepth::byte : depth == 16 ? MapDepth::half : MapDepth::whole;
     constexpr const char* kSpaces[] = {"none", "object", "world", "tangent"};
@@ -181,6 +201,17 @@ std::optional<TexelSettings> texel_settings_of(const TexelOptions& options,
     if (options.cage)
         settings.cage = length_of(*options.cage, "--cage");
     return settings;
+}
+
+std::optional<TexelSettings> shown_texels_of(const TexelOptions& options)
+{
+    if (options.at == "texels") {
+        check_together(options, false);
+        return layout_settings_of(options);
+    }
+    if (has_texel_option(options))
+        throw UsageError("--size, --uv, --charts, --udim and --padding are for --at texels.");
+    return {};
 }
 
 }  // namespace surfelao

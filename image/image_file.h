@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace surfelao {
 
@@ -19,6 +20,9 @@ namespace surfelao {
 /// with one sentence for a file that is missing, not a picture, cut short, larger than 2^28 pixels
 /// or holds values that are not finite.
 [[nodiscard]] Image read_image(const std::filesystem::path& path);
+
+/// The same from the contents of a .png or .jpg; `name` is for messages.
+[[nodiscard]] Image read_image(const std::string& name, std::string_view bytes);
 
 /// Throws InputError when `path` could not be written at all: an extension other than .png, .jpg,
 /// .jpeg or .exr, a folder that is missing, a path that is a folder. For use before any work.

@@ -15,11 +15,12 @@ namespace {
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;  // 4 GiB as floats: 23,000 x 11,500
 constexpr int kJpegQuality = 95;
 
-std::string read(const std::string& path, Image& image)
+/// From the file, or from `memory` in the format that `path` has.
+std::string read(const std::string& path, Image& image, OIIO::Filesystem::IOProxy* memory = nullptr)
 {
     OIIO::ImageSpec wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1);
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes);
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes, memory);
     if (!input)
         return OIIO::geterror();
     const OIIO::ImageSpec spec = input->spec();
@@ -53,6 +54,12 @@ std::string read(const std::string& path, Image& image)
     }
     image = std::move(result);
     return {};
+}
+
+std::string read_bytes(std::string_view bytes, Image& image)
+{
+    OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+    return read(bytes.starts_with("\xff\xd8") ? "memory.jpg" : "memory.png", image, &memory);
 }
 
 std::string write(const std::string& path, const Image& image, bool alpha)
@@ -145,6 +152,9 @@ surfelao_image_module()
     static const surfelao::ImageModule module = {
         [](const std::string& path, surfelao::Image& image) {
             return surfelao::guarded([&] { return surfelao::read(path, image); });
+        },
+        [](std::string_view bytes, surfelao::Image& image) {
+            return surfelao::guarded([&] { return surfelao::read_bytes(bytes, image); });
         },
         [](const std::string& path, const surfelao::Image& image, bool alpha) {
             return surfelao::guarded([&] { return surfelao::write(path, image, alpha); });

@@ -6,12 +6,15 @@
 #include "image/map.h"
 
 #include <string>
+#include <string_view>
 
 namespace surfelao {
 
 struct ImageModule {
     /// Reads `path` into `image`; returns what went wrong, without the path, or an empty string.
     std::string (*read)(const std::string& path, Image& image);
+    /// The same from the contents of a file.
+    std::string (*read_bytes)(std::string_view bytes, Image& image);
     /// Writes `image` to `path` in the format of its extension, with or without alpha; returns the
     /// same.
     std::string (*write)(const std::string& path, const Image& image, bool alpha);
