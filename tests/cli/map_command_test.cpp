@@ -78,7 +78,7 @@ TEST_F(MapCommand, RefusesWhatItCannotDo)
           {{"plain.obj", "-o", "x.png"}, 1, "no texture coordinates for a map"},
           {{"twice.obj", "-o", "x.png"}, 1, "are for other maps"},
           {{"bricks.obj", "-o", "x.png"}, 1, "times over"},
-          {{"in.obj", "-o", "x.obj", "--at", "texels"}, 1, "x.obj"},
+          {{"in.obj", "-o", "x.off", "--at", "texels"}, 1, "x.off"},
           {{"in.obj", "-o", "x.png", "--size", "0"}, 2, "--size"},
           {{"in.obj", "-o", "x.png", "--size", "65536"}, 2, "--size"},
           {{"in.obj", "-o", "none/x.png"}, 1, "there is no folder"},
