@@ -8,6 +8,7 @@
 #include "files/maker_mark.h"
 #include "files/scene_io.h"
 #include "files/sidecars.h"
+#include "image/image_file.h"
 #include "surfels/errors.h"
 #include "surfels/number_text.h"
 #include "surfels/stopwatch.h"
@@ -18,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace surfelao {
 namespace {
@@ -158,10 +160,7 @@ std::string mark_of(const BakeSettings& settings)
     text += limit.falloff == Falloff::smooth ? " falloff=smooth" : " falloff=none";
     text += " " + text_of(settings.target);
     if (const auto& texels = settings.texels) {
-        text += " at=texels size=" + std::to_string(texels->size) +
-                " uv=" + (texels->uv_set ? std::to_string(*texels->uv_set) : "auto") +
-                " padding=" + std::to_string(texels->padding) +
-                (texels->depth == MapDepth::byte ? " depth=8" : " depth=16");
+        text += " " + text_of(*texels);
         return make_mark("bake", text);
     }
     text += " colors=" + name_of(settings.colors);
@@ -173,11 +172,15 @@ bool is_finished(const BakeSettings& settings)
 {
     std::error_code error;
     const fs::file_time_type made = fs::last_write_time(settings.output, error);
-    if (error || read_mark(settings.output) != mark_of(settings))
+    const bool is_picture = type_of(settings.output) == FileType::unknown;
+    if (error || (is_picture ? read_description(settings.output) : read_mark(settings.output)) !=
+                     mark_of(settings))
         return false;
     std::vector<fs::path> sources;
+    if (settings.texels)
+        sources = settings.texels->high;
     if (type_of(settings.input) == FileType::gltf)
-        sources = sidecars_of(settings.input);
+        std::ranges::copy(sidecars_of(settings.input), std::back_inserter(sources));
     sources.push_back(settings.input);
     return std::ranges::all_of(sources, [&](const fs::path& source) {
         std::error_code missing;

@@ -1,7 +1,9 @@
 /// bake.h: the job: a mesh file in, the same mesh with occlusion at every vertex out.
 #pragma once
 
+#include "atlas/seams.h"
 #include "bake/map_bake.h"
+#include "bake/texel_layout.h"
 #include "bake/vertex_bake.h"
 #include "bake/vertex_target.h"
 #include "engines/engine.h"
@@ -18,16 +20,6 @@
 
 namespace surfelao {
 
-/// A map over the file's own texture coordinates.
-struct TexelSettings {
-    std::uint32_t size = 1024;  ///< of both sides, 1 to kMostTexels
-    /// Scene::uvs; empty: the first that has a triangle with an area in the map
-    std::optional<std::uint32_t> uv_set;
-    std::uint32_t padding = 4;
-    MapDepth depth = MapDepth::byte;
-    bool bent = false;  ///< bent normals too, in world space, as STEM.bent.png beside STEM.png
-};
-
 struct BakeSettings {
     std::filesystem::path input;
     std::filesystem::path output;
@@ -39,7 +31,7 @@ struct BakeSettings {
     /// The engine is then the cheapest whose stated error lies below it (bake_to_error): > 0, and
     /// check >= 1. Of `engine` only the instructions count.
     std::optional<double> error = {};
-    std::optional<TexelSettings> texels = {};  ///< a map instead of values at vertices; no `error`
+    std::optional<TexelSettings> texels = {};  ///< a map instead of values at vertices
     VertexColors colors = VertexColors::automatic;
     Encoding encoding = Encoding::automatic;
 };
@@ -47,20 +39,30 @@ struct BakeSettings {
 /// Wall-clock seconds of each stage.
 struct BakeSeconds : VertexBakeSeconds {
     double read = 0.0;    ///< the file, and the clean geometry
+    double charts = 0.0;  ///< texels: charts of our own
     double raster = 0.0;  ///< texels: which of them, and where each is asked
-    double fill = 0.0;    ///< texels: those that nothing covers
+    double fill = 0.0;    ///< texels: those that nothing covers or nobody sees, and seams
     double write = 0.0;   ///< the file, and the notes meanwhile
     double total = 0.0;
 };
 
 struct TexelReport {
-    std::uint32_t uv_set = 0;
-    std::uint64_t covered = 0;      ///< texels
-    std::uint64_t overlapping = 0;  ///< texels of several sheets: they hold the mean
-    double spread = 0.0;            ///< of these: RMS difference of a sheet to it
+    MapSize size;
+    std::optional<std::uint32_t> uv_set;        ///< of the file; empty: charts of our own
+    std::vector<std::uint32_t> tiles;           ///< UDIM
+    std::optional<ChartReport> charts;          ///< of our own
+    std::uint64_t covered = 0;                  ///< texels
+    std::uint64_t overlapping = 0;              ///< texels of several sheets: they hold the mean
+    double spread = 0.0;                        ///< of these: RMS difference of a sheet to it
+    std::uint64_t hidden = 0;                   ///< texels that nobody sees (hidden_texels.h)
+    std::uint64_t seams = 0, smooth_seams = 0;  ///< edges of the surface (atlas/seams.h)
+    SeamJump jump;                              ///< at the smooth ones
     std::uint64_t flat_triangles = 0;
     std::uint64_t outside_triangles = 0;
-    std::vector<std::filesystem::path> written;  ///< beside the output
+    std::uint64_t misses = 0;                    ///< points that met nothing of the high mesh
+    std::uint64_t high_triangles = 0;            ///< 0: there is none
+    std::size_t matched_parts = 0;               ///< that found high parts of their name
+    std::vector<std::filesystem::path> written;  ///< but the output where it is a mesh
 };
 
 struct BakeReport {
@@ -108,6 +110,10 @@ struct BatchEntry {
 
 /// Where bent normals stand beside a map: "ao.bent.png" for "ao.png".
 [[nodiscard]] std::filesystem::path bent_path(const std::filesystem::path& output);
+
+/// The picture of a UDIM tile: "ao.1001.png" for "ao.png".
+[[nodiscard]] std::filesystem::path tile_path(const std::filesystem::path& picture,
+                                              std::uint32_t tile);
 
 /// Where a batch puts the result for `input`: the folder and the input's name; formats that cannot
 /// hold occlusion (STL) become .ply.

@@ -84,17 +84,38 @@ Json search_json_of(const BakeReport& report)
     return {{"error", *report.settings.error}, {"met", report.is_met}, {"trials", trials}};
 }
 
+Json json_of(const ChartReport& charts)
+{
+    return {{"count", charts.count},
+            {"use", charts.use},
+            {"seam_length", charts.seam_length},
+            {"mean_stretch", charts.mean_stretch},
+            {"largest_stretch", charts.largest_stretch},
+            {"texels_per_unit", charts.texels_per_unit}};
+}
+
 Json json_of(const BakeReport& report, const TexelReport& texels)
 {
     Json written = Json::array();
     for (const std::filesystem::path& path : texels.written)
         written.push_back(path.string());
-    return {{"size", report.settings.texels->size},
+    return {{"size", texels.size.width},
             {"padding", report.settings.texels->padding},
-            {"uv_set", texels.uv_set},
+            {"uv_set", texels.uv_set ? Json(*texels.uv_set) : Json()},
+            {"tiles", texels.tiles},
+            {"charts", texels.charts ? json_of(*texels.charts) : Json()},
+            {"misses", texels.misses},
+            {"high_triangles", texels.high_triangles},
+            {"matched_parts", texels.matched_parts},
             {"covered", texels.covered},
             {"overlapping", texels.overlapping},
             {"spread", texels.spread},
+            {"hidden", texels.hidden},
+            {"seams",
+             {{"count", texels.seams},
+              {"smooth", texels.smooth_seams},
+              {"jump_rms", texels.jump.rms},
+              {"jump_max", texels.jump.most}}},
             {"flat_triangles", texels.flat_triangles},
             {"outside_triangles", texels.outside_triangles},
             {"written", written}};
@@ -125,11 +146,11 @@ Json json_of(const BatchEntry& entry)
     add(json["settings"], report.settings.target);
     json["settings"]["colors"] = name_of(report.settings.colors);
     json["settings"]["encoding"] = name_of(report.settings.encoding);
-    json["seconds"] = {{"read", seconds.read},       {"raster", seconds.raster},
-                       {"surfels", seconds.surfels}, {"tree", seconds.tree},
-                       {"solve", seconds.solve},     {"fit", seconds.fit},
-                       {"fill", seconds.fill},       {"check", seconds.check},
-                       {"write", seconds.write},     {"total", seconds.total}};
+    json["seconds"] = {
+        {"read", seconds.read},       {"charts", seconds.charts}, {"raster", seconds.raster},
+        {"surfels", seconds.surfels}, {"tree", seconds.tree},     {"solve", seconds.solve},
+        {"fit", seconds.fit},         {"fill", seconds.fill},     {"check", seconds.check},
+        {"write", seconds.write},     {"total", seconds.total}};
     json["receivers"] = report.receivers;
     json["corners_from_file"] = report.corners_from_file;
     json["replaced_corners"] = report.replaced_corners;
@@ -159,6 +180,12 @@ Json json_of(const ErrorStatistics& error)
             {"bent_p95_deg", error.bent_p95_deg}};
 }
 
+/// A map holds no bent normals: null.
+void without_bent(Json& error)
+{
+    error["bent_mean_deg"] = error["bent_p95_deg"] = nullptr;
+}
+
 Json json_of(const Comparison& comparison, const CompareRow& row)
 {
     Json worst = Json::array();
@@ -168,15 +195,20 @@ Json json_of(const Comparison& comparison, const CompareRow& row)
                          {"displayed", point.displayed},
                          {"reference", point.reference}});
     }
+    Json seen = json_of(row.seen);
+    if (comparison.texels)
+        without_bent(seen);
     return {{"engine", name_of(row.settings.engine)},
             {"setting", setting_of(row.settings)},
             {"settings", json_of(row.settings)},
             {"rounds", row.rounds},
+            {"raster_s", row.raster_s},
             {"build_s", row.build_s},
             {"solve_s", row.solve_s},
             {"fit_s", row.fit_s},
+            {"fill_s", row.fill_s},
             {"us_per_receiver", row.us_per_receiver},
-            {"seen", json_of(row.seen)},
+            {"seen", seen},
             {"solve", json_of(row.solve)},
             {"beyond", row.beyond},
             {"beyond_by_squares", beyond_by_squares(comparison, row)},
@@ -199,12 +231,25 @@ Json json_object_of(const Comparison& comparison)
     json["read_s"] = comparison.read_s;
     json["target"] = Json::object();
     add(json["target"], comparison.target);
+    if (comparison.texels) {
+        json["target"]["values"] = nullptr;
+        json["target"]["texels"] = {
+            {"width", comparison.page.width},
+            {"height", comparison.page.height},
+            {"pages", comparison.pages},
+            {"uv_set", comparison.uv_set ? Json(*comparison.uv_set) : Json()},
+            {"padding", comparison.texels->padding}};
+    } else {
+        json["target"]["texels"] = nullptr;
+    }
     json["reference"] = {{"rays", comparison.reference_rays},
                          {"noise", comparison.reference_noise},
                          {"from_cache", comparison.reference_from_cache},
                          {"points", comparison.points},
                          {"ill_defined", comparison.ill_defined}};
     json["floor"] = json_of(comparison.floor);
+    if (comparison.texels)
+        without_bent(json["floor"]);
     json["floor"]["rays"] = comparison.floor_rays;
     json["floor"]["noise"] = comparison.floor_noise;
     json["rows"] = Json::array();

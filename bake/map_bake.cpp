@@ -1,5 +1,7 @@
 #include "bake/map_bake.h"
 
+#include "bake/hidden_texels.h"
+#include "bake/high_to_low.h"
 #include "bake/vertex_fit.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
@@ -8,23 +10,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 namespace surfelao {
 namespace {
 
-/// Takes the answers of one band into the map.
+/// Whether texels of each page hold an answer.
+using Known = std::vector<std::vector<std::uint8_t>>;
+
+/// Takes the answers of one band into a page.
 class MapWriter {
 public:
-    MapWriter(MapBake& bake, std::vector<std::uint8_t>& known) : bake_(bake), known_(known) {}
+    MapWriter(MapBake& bake, Known& known, const BentEncoder& bent)
+        : bake_(bake), known_(known), encode_(bent)
+    {
+    }
 
-    void add(const std::vector<Texel>& texels, std::span<const Occlusion> answers)
+    void add(std::size_t page, std::span<const Texel> texels, std::span<const Occlusion> answers)
     {
         for (std::size_t first = 0, end = 0; first < texels.size(); first = end) {
             for (end = first + 1; end < texels.size() && texels[end].x == texels[first].x &&
                                   texels[end].y == texels[first].y;)
                 ++end;
-            write(texels[first], answers.subspan(first, end - first));
+            write(page, texels.subspan(first, end - first), answers.subspan(first, end - first));
         }
         bake_.receivers += texels.size();
     }
@@ -40,25 +49,18 @@ public:
 
 private:
     /// The sheets of one texel are whole ones, or it has one part: all weigh alike.
-    void write(const Texel& texel, std::span<const Occlusion> sheets)
+    void write(std::size_t page, std::span<const Texel> texels, std::span<const Occlusion> sheets)
     {
         double sum = 0.0;
-        glm::dvec3 bent(0.0);
-        for (const Occlusion& sheet : sheets) {
+        for (const Occlusion& sheet : sheets)
             sum += sheet.occlusion;
-            bent += (1.0 - sheet.occlusion) * glm::dvec3(sheet.bent_normal);
-        }
         const double mean = sum / static_cast<double>(sheets.size());
-        const std::size_t index = bake_.visibility.index(texel.x, texel.y);
-        bake_.visibility.values[index] = static_cast<float>(1.0 - mean);
-        if (!bake_.bent.values.empty()) {
-            const double length = glm::length(bent);
-            const glm::vec3 normal =
-                length > kLeastBent ? glm::vec3(bent / length) : sheets.front().bent_normal;
-            for (int k = 0; k < 3; ++k)
-                bake_.bent.values[3 * index + static_cast<std::size_t>(k)] = normal[k];
-        }
-        known_[index] = 1;
+        Map& visibility = bake_.visibility[page];
+        const std::size_t index = visibility.index(texels.front().x, texels.front().y);
+        visibility.values[index] = static_cast<float>(1.0 - mean);
+        if (encode_)
+            write_bent(page, index, texels, sheets);
+        known_[page][index] = 1;
         occlusion_ += mean;
         ++bake_.covered;
         if (sheets.size() < 2)
@@ -69,8 +71,26 @@ private:
             squares_ += (sheet.occlusion - mean) * (sheet.occlusion - mean);
     }
 
+    /// Their mean by visibility.
+    void write_bent(std::size_t page, std::size_t index, std::span<const Texel> texels,
+                    std::span<const Occlusion> sheets)
+    {
+        glm::dvec3 bent(0.0);
+        glm::vec3 first(0.0f);
+        for (std::size_t i = 0; i < sheets.size(); ++i) {
+            const glm::vec3 direction = encode_(page, texels[i].point, sheets[i].bent_normal);
+            first = i == 0 ? direction : first;
+            bent += (1.0 - sheets[i].occlusion) * glm::dvec3(direction);
+        }
+        const double length = glm::length(bent);
+        const glm::vec3 normal = length > kLeastBent ? glm::vec3(bent / length) : first;
+        for (int k = 0; k < 3; ++k)
+            bake_.bent[page].values[3 * index + static_cast<std::size_t>(k)] = normal[k];
+    }
+
     MapBake& bake_;
-    std::vector<std::uint8_t>& known_;
+    Known& known_;
+    const BentEncoder& encode_;
     double squares_ = 0.0, occlusion_ = 0.0;
     std::uint64_t sheets_ = 0;
 };
@@ -87,89 +107,278 @@ void encode_directions(Map& directions)
     }
 }
 
-StatedError error_of(const Mesh& mesh, const UvSet& uvs, const MapBake& bake,
-                     const MapSettings& settings, const Definition& definition,
-                     const Offset& offset, const Progress& progress)
+/// What is displayed at any point of the surface.
+Shown shown_by(const Mesh& mesh, const MapLayout& layout, const std::vector<Map>& visibility)
 {
-    std::vector<double> density;
-    density.reserve(mesh.geometry.triangles.size());
-    for (std::uint32_t t = 0; t < mesh.geometry.triangles.size(); ++t)
-        density.push_back(uv_at(mesh.geometry, uvs, {t, {0.25f, 0.25f}}) ? 1.0 : 0.0);
-    const Shown shown = [&](const SurfacePoint& point) {
-        return 1.0f - fetch(bake.visibility, 0, *uv_at(mesh.geometry, uvs, point));
+    return [&](const SurfacePoint& point) {
+        return 1.0f - fetch_at(visibility, places_of(mesh, layout, point));
     };
-    ErrorCheck check(mesh, density, offset, settings.check);
-    check.trace(definition, shown, progress);
-    return check.error_of(shown);
 }
+
+/// One mesh and its layout, prepared engines, and the points by which all maps are judged.
+class MapBaker {
+public:
+    MapBaker(const Mesh& mesh, const MapLayout& layout, const MapSettings& settings,
+             const Offset& offset, const HighDetail* high, const StageProgress& progress,
+             std::optional<double> error = {})
+        : mesh_(mesh),
+          layout_(layout),
+          settings_(settings),
+          offset_(offset),
+          high_(high),
+          progress_(progress),
+          asked_(error),
+          count_(settings.check)
+    {
+    }
+
+    /// The seconds are those of all calls so far.
+    MapBake bake(const EngineSettings& engine)
+    {
+        const MapSize size = layout_.size;
+        MapBake bake;
+        bake.engine = engine;
+        bake.visibility.assign(layout_.pages.size(), Map(size.width, size.height, 1));
+        if (settings_.bent)
+            bake.bent.assign(layout_.pages.size(), Map(size.width, size.height, 3));
+        const Prepared& prepared = prepared_for(engine);
+        bake.surfels = prepared.surfel_count();
+        Known known(layout_.pages.size(), std::vector<std::uint8_t>(size.count(), 0));
+        solve_texels(prepared, engine, bake, known);
+
+        enter("fill");
+        Stopwatch watch;
+        leave_out_hidden(engine.definition, bake, known);
+        fill_pages(bake, known);
+        for (Map& map : bake.bent)
+            encode_directions(map);
+        for (std::vector<Map>* maps : {&bake.visibility, &bake.bent})
+            for (Map& map : *maps)
+                round_to_depth(map, settings_.depth, settings_.half_is_whole);
+        seconds_.fill += watch.lap();
+        if (count_ > 0)
+            bake.error = error_of(bake);
+        seconds_.check += watch.lap();
+        bake.seconds = seconds_;
+        return bake;
+    }
+
+    /// Measures what has been baked last at four times as many points; false where they are enough.
+    bool refine(MapBake& bake)
+    {
+        if (count_ >= kMostSearchPoints)
+            return false;
+        count_ = std::min(4 * count_, kMostSearchPoints);
+        check_.reset();
+        Stopwatch watch;
+        bake.error = error_of(bake);
+        bake.seconds.check = seconds_.check += watch.lap();
+        return true;
+    }
+
+    [[nodiscard]] const ErrorCheck& check() const { return *check_; }
+
+private:
+    void enter(std::string_view stage) const
+    {
+        if (progress_ && !progress_(stage, 0.0))
+            throw Cancelled();
+    }
+
+    const Prepared& prepared_for(const EngineSettings& engine)
+    {
+        const auto found = prepared_.find(engine.engine);
+        if (found != prepared_.end())
+            return found->second;
+        enter("build");
+        const Prepared& prepared =
+            prepared_.emplace(engine.engine, prepare(occluders(), engine)).first->second;
+        seconds_.surfels += prepared.seconds().surfels;
+        seconds_.tree += prepared.seconds().tree;
+        return prepared;
+    }
+
+    [[nodiscard]] std::uint32_t band_rows() const
+    {
+        return static_cast<std::uint32_t>(
+            std::clamp<std::uint64_t>(kBandTexels / layout_.size.width, 1, layout_.size.height));
+    }
+
+    const Geometry& occluders() const { return high_ ? high_->mesh().geometry : mesh_.geometry; }
+
+    std::vector<Receiver> receivers_of(std::span<const SurfacePoint> points,
+                                       std::uint64_t* misses = nullptr) const
+    {
+        return high_ ? high_->receivers(points, offset_, misses)
+                     : receivers_at(mesh_.geometry, mesh_.surface, points, offset_);
+    }
+
+    /// Asks at the texels of all pages, band by band.
+    void solve_texels(const Prepared& prepared, const EngineSettings& engine, MapBake& bake,
+                      Known& known)
+    {
+        MapWriter writer(bake, known, settings_.bent);
+        const std::uint32_t height = layout_.size.height;
+        const std::uint32_t rows = band_rows();
+        const auto pages = static_cast<double>(layout_.pages.size());
+        std::vector<std::uint8_t> shown(mesh_.geometry.triangles.size(), 0);
+        for (std::size_t page = 0; page < layout_.pages.size(); ++page) {
+            enter("raster");
+            Stopwatch watch;
+            const MapRaster raster(mesh_.geometry, layout_.pages[page], layout_.size);
+            raster.mark_shown(shown);
+            bake.outside_triangles += raster.outside_triangles();
+            for (std::uint32_t first = 0; first < height; first += rows) {
+                const std::vector<Texel> texels = raster.texels(first, rows);
+                std::vector<SurfacePoint> points;
+                points.reserve(texels.size());
+                for (const Texel& texel : texels)
+                    points.push_back(texel.point);
+                const std::vector<Receiver> receivers = receivers_of(points, &bake.misses);
+                seconds_.raster += watch.lap();
+                const double begin = first, share = std::min(rows, height - first);
+                const Solution solution = solve(prepared, receivers, engine, [&](double done) {
+                    const double of_page = (begin + share * done) / height;
+                    return !progress_ ||
+                           progress_("solve", (static_cast<double>(page) + of_page) / pages);
+                });
+                seconds_.solve += watch.lap();
+                bake.residual = solution.residual;
+                writer.add(page, texels, solution.occlusion);
+            }
+        }
+        writer.finish();
+        bake.flat_triangles = static_cast<std::uint64_t>(std::ranges::count(shown, 0));
+    }
+
+    /// Texels that nobody sees are no longer known.
+    void leave_out_hidden(const Definition& definition, MapBake& bake, Known& known) const
+    {
+        std::optional<RayScene> scene;
+        for (std::size_t page = 0; page < known.size(); ++page) {
+            std::vector<std::uint8_t> hidden =
+                texels_maybe_hidden(bake.visibility[page], known[page]);
+            if (hidden.empty())
+                continue;
+            const std::vector<Texel> texels = marked_texels(page, hidden);
+            std::vector<SurfacePoint> points;
+            points.reserve(texels.size());
+            for (const Texel& texel : texels)
+                points.push_back(texel.point);
+            if (!scene)
+                scene.emplace(occluders(), RayScene::Build::quick);
+            const std::vector<std::uint8_t> inside =
+                inside_bodies(occluders(), *scene, receivers_of(points), definition.max_distance);
+            for (std::size_t i = 0; i < texels.size(); ++i)
+                if (inside[i] == 0)  // one sheet of a texel that is seen is enough
+                    hidden[index_of(texels[i])] = 0;
+            for (std::size_t i = 0; i < hidden.size(); ++i) {
+                bake.hidden += hidden[i];
+                known[page][i] &= hidden[i] == 0;
+            }
+        }
+    }
+
+    [[nodiscard]] std::size_t index_of(const Texel& texel) const
+    {
+        return std::size_t{texel.y} * layout_.size.width + texel.x;
+    }
+
+    std::vector<Texel> marked_texels(std::size_t page,
+                                     const std::vector<std::uint8_t>& marked) const
+    {
+        const MapRaster raster(mesh_.geometry, layout_.pages[page], layout_.size);
+        const std::uint32_t width = layout_.size.width;
+        std::vector<Texel> texels;
+        for (std::uint32_t first = 0; first < layout_.size.height; first += band_rows()) {
+            const std::uint32_t rows = std::min(band_rows(), layout_.size.height - first);
+            const auto begin = marked.begin() + std::ptrdiff_t{first} * width;
+            if (std::find(begin, begin + std::ptrdiff_t{rows} * width, 1) ==
+                begin + std::ptrdiff_t{rows} * width)
+                continue;
+            for (const Texel& texel : raster.texels(first, rows))
+                if (marked[index_of(texel)] != 0)
+                    texels.push_back(texel);
+        }
+        return texels;
+    }
+
+    /// What has no value gets one, and smooth seams show the same on both sides.
+    void fill_pages(MapBake& bake, const Known& known) const
+    {
+        const Seams seams = seams_of(mesh_, layout_);
+        const std::uint32_t rings =
+            bake.hidden == 0 ? settings_.padding : std::max(settings_.padding, kHiddenRings / 2);
+        const auto fill = [&](std::vector<Map>& maps, bool joins) {
+            Known filled = known;
+            if (joins)
+                fill_across(mesh_, layout_, seams, settings_.padding, maps, filled);
+            for (std::size_t page = 0; page < maps.size(); ++page)
+                fill_around(maps[page], filled[page], rings);
+            if (joins)
+                stitch(seams, maps);
+        };
+        fill(bake.visibility, true);
+        if (!bake.bent.empty())
+            fill(bake.bent, settings_.joins_bent);
+        bake.seams = seams.list.size();
+        bake.smooth_seams = seams.smooth_count();
+        bake.jump = seam_jump(seams, bake.visibility);
+    }
+
+    StatedError error_of(const MapBake& bake)
+    {
+        enter("check");
+        const Shown shown = shown_by(mesh_, layout_, bake.visibility);
+        if (!check_) {
+            std::vector<double> density;
+            density.reserve(mesh_.geometry.triangles.size());
+            for (std::uint32_t t = 0; t < mesh_.geometry.triangles.size(); ++t)
+                density.push_back(places_of(mesh_, layout_, {t, {0.25f, 0.25f}}).count > 0 ? 1.0
+                                                                                           : 0.0);
+            check_.emplace(
+                mesh_.geometry, density,
+                [&](std::span<const SurfacePoint> points) { return receivers_of(points); },
+                occluders(), count_);
+            check_->leave_out_hidden();
+            check_->trace(
+                bake.engine.definition, shown,
+                [&](double done) { return !progress_ || progress_("check", done); }, asked_);
+        }
+        return check_->error_of(shown);
+    }
+
+    const Mesh& mesh_;
+    const MapLayout& layout_;
+    const MapSettings& settings_;
+    const Offset& offset_;
+    const HighDetail* high_;
+    const StageProgress& progress_;
+    std::optional<double> asked_;
+    std::uint32_t count_;
+    std::map<Engine, Prepared> prepared_;
+    std::optional<ErrorCheck> check_;
+    MapSeconds seconds_;
+};
 
 }  // namespace
 
-MapBake bake_map(const Mesh& mesh, const UvSet& uvs, const MapSettings& settings,
-                 const EngineSettings& engine, const Offset& offset, const StageProgress& progress)
+MapBake bake_map(const Mesh& mesh, const MapLayout& layout, const MapSettings& settings,
+                 const EngineSettings& engine, const Offset& offset, const StageProgress& progress,
+                 const HighDetail* high)
 {
-    const auto enter = [&](std::string_view stage, double done) {
-        if (progress && !progress(stage, done))
-            throw Cancelled();
-    };
-    MapBake bake;
-    Stopwatch watch;
-    enter("raster", 0.0);
-    const MapRaster raster(mesh.geometry, uvs, settings.size);
-    bake.flat_triangles = raster.flat_triangles();
-    bake.outside_triangles = raster.outside_triangles();
-    bake.visibility = Map(settings.size.width, settings.size.height, 1);
-    if (settings.bent)
-        bake.bent = Map(settings.size.width, settings.size.height, 3);
-    bake.seconds.raster = watch.lap();
+    return MapBaker(mesh, layout, settings, offset, high, progress).bake(engine);
+}
 
-    enter("build", 0.0);
-    const Prepared prepared = prepare(mesh.geometry, engine);
-    bake.seconds.surfels = prepared.seconds().surfels;
-    bake.seconds.tree = prepared.seconds().tree;
-
-    std::vector<std::uint8_t> known(settings.size.count(), 0);
-    MapWriter writer(bake, known);
-    const std::uint32_t height = settings.size.height;
-    const auto rows = static_cast<std::uint32_t>(
-        std::clamp<std::uint64_t>(kBandTexels / settings.size.width, 1, height));
-    for (std::uint32_t first = 0; first < height; first += rows) {
-        watch.lap();
-        const std::vector<Texel> texels = raster.texels(first, rows);
-        std::vector<SurfacePoint> points;
-        points.reserve(texels.size());
-        for (const Texel& texel : texels)
-            points.push_back(texel.point);
-        const std::vector<Receiver> receivers =
-            receivers_at(mesh.geometry, mesh.surface, points, offset);
-        bake.seconds.raster += watch.lap();
-        const double begin = first, share = std::min(rows, height - first);
-        const Solution solution = solve(prepared, receivers, engine, [&](double done) {
-            return !progress || progress("solve", (begin + share * done) / height);
-        });
-        bake.seconds.solve += solution.seconds;
-        writer.add(texels, solution.occlusion);
-    }
-    writer.finish();
-
-    enter("fill", 0.0);
-    watch.lap();
-    if (settings.bent) {
-        std::vector<std::uint8_t> bent_known = known;
-        fill_around(bake.bent, bent_known, settings.padding);
-        encode_directions(bake.bent);
-        round_to_depth(bake.bent, settings.depth, settings.half_is_whole);
-    }
-    fill_around(bake.visibility, known, settings.padding);
-    round_to_depth(bake.visibility, settings.depth, settings.half_is_whole);
-    bake.seconds.fill = watch.lap();
-    if (settings.check > 0) {
-        enter("check", 0.0);
-        bake.error = error_of(mesh, uvs, bake, settings, engine.definition, offset,
-                              [&](double done) { return !progress || progress("check", done); });
-        bake.seconds.check = watch.lap();
-    }
-    return bake;
+MapBake bake_map_to_error(const Mesh& mesh, const MapLayout& layout, const MapSettings& settings,
+                          const EngineSettings& engine, const Offset& offset, double error,
+                          const StageProgress& progress, const HighDetail* high)
+{
+    MapBaker baker(mesh, layout, settings, offset, high, progress, error / 2.0);
+    // fetching between four texels leaves two thirds of independent noise (2/3 in each direction
+    // of its variance)
+    constexpr double kKept = 2.0 / 3.0;
+    return search_error(baker, engine, error, kKept);
 }
 
 }  // namespace surfelao

@@ -1,5 +1,6 @@
 #include "bake/stated_error.h"
 
+#include "bake/hidden_texels.h"
 #include "bake/surface_error.h"
 #include "reference/rays.h"
 #include "reference/well_defined.h"
@@ -100,9 +101,21 @@ std::vector<double> density_for(const Geometry& geometry, const VertexTarget& ta
 
 ErrorCheck::ErrorCheck(const Mesh& mesh, std::span<const double> density, const Offset& offset,
                        std::uint32_t count)
-    : geometry_(mesh.geometry)
+    : ErrorCheck(
+          mesh.geometry, density,
+          [&](std::span<const SurfacePoint> points) {
+              return receivers_at(mesh.geometry, mesh.surface, points, offset);
+          },
+          mesh.geometry, count)
 {
-    std::vector<double> measure = triangle_areas(geometry_);
+}
+
+ErrorCheck::ErrorCheck(const Geometry& geometry, std::span<const double> density,
+                       const ReceiversOf& receivers_of, const Geometry& occluders,
+                       std::uint32_t count)
+    : occluders_(occluders)
+{
+    std::vector<double> measure = triangle_areas(geometry);
     double whole = 0.0;
     for (std::size_t t = 0; t < measure.size(); ++t) {
         whole += density[t] > 0.0 ? measure[t] : 0.0;
@@ -110,7 +123,7 @@ ErrorCheck::ErrorCheck(const Mesh& mesh, std::span<const double> density, const 
     }
     const double sum = sum_of(measure);
     const std::vector<SurfacePoint> places = surface_points(measure, count);
-    receivers_ = receivers_at(geometry_, mesh.surface, places, offset);
+    receivers_ = receivers_of(places);
     for (const SurfacePoint& place : places)
         points_.push_back({place, sum / (whole * density[place.triangle] * count)});
 }
@@ -137,7 +150,7 @@ void ErrorCheck::add_floor(const VertexTarget& target, std::span<const double> d
 void ErrorCheck::trace(const Definition& definition, const Shown& shown, const Progress& progress,
                        std::optional<double> least)
 {
-    const RayScene scene(geometry_, RayScene::Build::quick);
+    const RayScene scene(occluders_, RayScene::Build::quick);
     const auto trace_with = [&](std::uint32_t rays) {
         trace_points(scene, {.definition = definition, .rays = rays / 2}, progress);
     };
@@ -159,9 +172,12 @@ void ErrorCheck::trace(const Definition& definition, const Shown& shown, const P
     }
     const std::vector<float> changes =
         placement_change(scene, suspicious, definition, {}, kPlacementRays);
+    const std::vector<std::uint8_t> inside =
+        leaves_out_hidden_ ? inside_bodies(occluders_, scene, suspicious, definition.max_distance)
+                           : std::vector<std::uint8_t>(suspects.size(), 0);
     std::size_t kept = 0;
     for (std::size_t s = 0; s < suspects.size(); ++s)
-        if (changes[s] > kIllDefined)
+        if (changes[s] > kIllDefined || inside[s] != 0)
             suspects[kept++] = suspects[s];
     leave_out(std::span(suspects).first(kept));
 }

@@ -75,6 +75,9 @@ using Shown = std::function<float(const SurfacePoint&)>;
                                               std::span<const Occlusion> answers,
                                               std::span<const Occlusion> values);
 
+/// Where occlusion is asked for points of a surface.
+using ReceiversOf = std::function<std::vector<Receiver>(std::span<const SurfacePoint>)>;
+
 /// Points of a mesh and what is true there; measures whatever is displayed on it.
 class ErrorCheck {
 public:
@@ -84,9 +87,18 @@ public:
     ErrorCheck(const Mesh& mesh, std::span<const double> density, const Offset& offset,
                std::uint32_t count);
 
+    /// The same where something else than the mesh itself is asked: receivers in the unit frame of
+    /// `occluders`, which must outlive this.
+    ErrorCheck(const Geometry& geometry, std::span<const double> density,
+               const ReceiversOf& receivers_of, const Geometry& occluders, std::uint32_t count);
+
     /// For values that are fitted: asks at samples of the target too, for the floor. target must
     /// outlive this; before trace().
     void add_floor(const VertexTarget& target, std::span<const double> density);
+
+    /// Before trace(): points inside of bodies (hidden_texels.h) that err by more than kSuspicious
+    /// count no more either. Nobody sees them, and maps show there what is beside them.
+    void leave_out_hidden() { leaves_out_hidden_ = true; }
 
     /// Traces rays at the points: before error_of(). Points that are ill-defined
     /// (reference/well_defined.h) and err by more than kSuspicious count no more. O(n) for the ray
@@ -121,11 +133,12 @@ private:
     double mean_square(const Shown& shown) const;
     void leave_out(std::span<const std::size_t> points);
 
-    const Geometry& geometry_;
+    const Geometry& occluders_;
     std::vector<Point> points_, samples_;
     std::vector<Receiver> receivers_;  ///< at points_, then at samples_
     std::uint32_t rays_ = 0;           ///< per point
     std::uint32_t ill_defined_ = 0;
+    bool leaves_out_hidden_ = false;
 };
 
 }  // namespace surfelao

@@ -1,5 +1,7 @@
 #include "bake/texel_job.h"
 
+#include "bake/bent_space.h"
+#include "bake/high_to_low.h"
 #include "files/file_type.h"
 #include "files/scene_io.h"
 #include "image/image_file.h"
@@ -19,39 +21,15 @@ namespace {
 /// that is off by more is no picture of it.
 constexpr double kMostSpread = 0.05;
 
-/// The set to be used; throws where there is none of use.
-std::uint32_t chosen_set(const BakeSettings& settings, const Mesh& mesh)
-{
-    const std::vector<UvSet>& sets = mesh.scene.uvs;
-    const auto fail = [&](const std::string& fault) {
-        throw InputError(settings.input.string() + ": " + fault);
-    };
-    std::uint32_t set = settings.texels->uv_set.value_or(0);
-    if (!settings.texels->uv_set)
-        while (set < sets.size() && sets[set].empty())
-            ++set;
-    if (set >= sets.size() || sets[set].empty())
-        fail(settings.texels->uv_set ? "has no texture coordinates of number " + std::to_string(set)
-                                     : "has no texture coordinates for a map; bake at the vertices "
-                                       "instead");
-    const std::string coordinates = "the texture coordinates of number " + std::to_string(set);
-    const MapRaster raster(mesh.geometry, sets[set], {1, 1});
-    if (raster.sheets() > kMostSheets)
-        fail(coordinates + " cover the map " + fixed(raster.sheets(), 0) +
-             " times over: no map can hold that");
-    if (raster.flat_triangles() == mesh.geometry.triangles.size())
-        fail("no triangle has an area in " + coordinates);
-    return set;
-}
-
 /// Throws where a map that nobody insists on would show a mean of what does not belong together.
 void check_overlap(const BakeSettings& settings, const TexelReport& texels)
 {
     const double share = static_cast<double>(texels.overlapping) /
                          static_cast<double>(std::max<std::uint64_t>(1, texels.covered));
-    if (settings.texels->uv_set || texels.spread * std::sqrt(share) <= kMostSpread)
+    if (settings.texels->uvs != UvChoice::automatic || !texels.uv_set ||
+        texels.spread * std::sqrt(share) <= kMostSpread)
         return;
-    const std::string set = std::to_string(texels.uv_set);
+    const std::string set = std::to_string(*texels.uv_set);
     throw InputError(settings.input.string() + ": " + fixed(100.0 * share, 1) +
                      " % of the texels show several places of the surface, which differ by " +
                      fixed(texels.spread, 2) + ": the texture coordinates of number " + set +
@@ -82,6 +60,78 @@ void add_notes(const BakeReport& report, std::uint64_t triangles, std::vector<st
     if (texels.outside_triangles > 0)
         notes.push_back(count_text(texels.outside_triangles, "triangle") +
                         " reach out of the map: it repeats there");
+    if (texels.misses > 0)
+        notes.push_back(per_cent(texels.misses, report.receivers) +
+                        " of the points meet nothing of the high mesh within the cage");
+}
+
+/// The fine mesh, where one was asked for, and how the coarse one looks at it.
+struct High {
+    High(const BakeSettings& settings, const Mesh& low)
+        : mesh(read(settings)),
+          detail(low, mesh, cage_of(*settings.texels, low.geometry.frame.diagonal))
+    {
+    }
+
+    static Mesh read(const BakeSettings& settings)
+    {
+        std::vector<Scene> scenes;
+        for (const std::filesystem::path& path : settings.texels->high)
+            scenes.push_back(read_scene(path));
+        return make_mesh(join(scenes), settings.target.normals);
+    }
+
+    static double cage_of(const TexelSettings& texels, double diagonal)
+    {
+        if (!texels.cage)
+            return kCageShare * diagonal;
+        return texels.cage->percent ? texels.cage->value / 100.0 * diagonal : texels.cage->value;
+    }
+
+    Mesh mesh;
+    HighDetail detail;
+};
+
+/// Fills in what is of the map.
+void report_map(const MapBake& map, BakeReport& report)
+{
+    TexelReport& told = *report.texels;
+    report.settings.engine = map.engine;
+    report.trials = map.trials;
+    report.is_met = map.is_met;
+    report.surfels = map.surfels;
+    report.residual = map.residual;
+    report.receivers = map.receivers;
+    report.error = map.error;
+    report.mean_occlusion = map.mean_occlusion;
+    report.seconds.raster = map.seconds.raster;
+    report.seconds.surfels = map.seconds.surfels;
+    report.seconds.tree = map.seconds.tree;
+    report.seconds.solve = map.seconds.solve;
+    report.seconds.fill = map.seconds.fill;
+    report.seconds.check = map.seconds.check;
+    told.covered = map.covered;
+    told.overlapping = map.overlapping;
+    told.spread = map.spread;
+    told.hidden = map.hidden;
+    told.seams = map.seams;
+    told.smooth_seams = map.smooth_seams;
+    told.jump = map.jump;
+    told.flat_triangles = map.flat_triangles;
+    told.outside_triangles = map.outside_triangles;
+    told.misses = map.misses;
+}
+
+/// One picture, or one for each tile.
+void write_pictures(const std::filesystem::path& path, const std::vector<Map>& pages,
+                    const BakeReport& report, std::vector<std::filesystem::path>& written)
+{
+    const TexelSettings& texels = *report.settings.texels;
+    const std::vector<std::uint32_t>& tiles = report.texels->tiles;
+    for (std::size_t page = 0; page < pages.size(); ++page) {
+        written.push_back(tiles.empty() ? path : tile_path(path, tiles[page]));
+        write_map(written.back(), pages[page], texels.depth, mark_of(report.settings));
+    }
 }
 
 }  // namespace
@@ -93,13 +143,19 @@ std::filesystem::path bent_path(const std::filesystem::path& output)
                                                  : ".bent.png");
 }
 
+std::filesystem::path tile_path(const std::filesystem::path& picture, std::uint32_t tile)
+{
+    std::filesystem::path path = picture;
+    return path.replace_extension("." + std::to_string(tile) + picture.extension().string());
+}
+
 void check_texel_output(const BakeSettings& settings)
 {
     if (is_map(settings.output))
         return check_map_output(settings.output, settings.texels->depth);
     check_output_with_map(settings.input, settings.output);
     if (settings.texels->depth == MapDepth::whole)
-        throw InputError(settings.output.string() + ": a map in glTF has 8 or 16 bits");
+        throw InputError(settings.output.string() + ": a map of a mesh has 8 or 16 bits");
 }
 
 void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& progress)
@@ -107,45 +163,61 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
     const BakeSettings& settings = report.settings;
     const TexelSettings& texels = *settings.texels;
     TexelReport& told = report.texels.emplace();
-    told.uv_set = chosen_set(settings, mesh);
-    const MapSettings map_settings{.size = {texels.size, texels.size},
-                                   .padding = texels.padding,
-                                   .bent = texels.bent,
-                                   .depth = texels.depth,
-                                   .half_is_whole = lower_extension(settings.output) != ".exr",
-                                   .check = settings.check};
-    const MapBake map = bake_map(mesh, mesh.scene.uvs[told.uv_set], map_settings, settings.engine,
-                                 offset_of(settings.target, mesh.geometry.frame), progress);
-    told.covered = map.covered;
-    told.overlapping = map.overlapping;
-    told.spread = map.spread;
-    told.flat_triangles = map.flat_triangles;
-    told.outside_triangles = map.outside_triangles;
+    Stopwatch watch;
+    const TexelLayout place = layout_for(mesh, texels, !is_map(settings.output), [&](double done) {
+        return !progress || progress("charts", done);
+    });
+    const MapLayout& layout = place.layout;
+    told.size = layout.size;
+    told.uv_set = place.uv_set;
+    told.tiles = layout.tiles;
+    told.charts = place.charts;
+    report.seconds.charts = watch.lap();
+    if (!place.why_new.empty())
+        report.notes.push_back("new texture coordinates: " + place.why_new);
+    std::optional<High> high;
+    if (!texels.high.empty()) {
+        if (progress && !progress("read", 0.0))
+            throw Cancelled();
+        high.emplace(settings, mesh);
+        told.high_triangles = high->mesh.scene.triangles.size();
+        told.matched_parts = high->detail.matched_parts();
+    }
+    const MapSettings map_settings{
+        .padding = texels.padding,
+        .bent = bent_encoder(mesh, layout, texels.bent, texels.green_down),
+        .joins_bent = texels.bent != BentSpace::tangent,
+        .depth = texels.depth,
+        .half_is_whole = lower_extension(settings.output) != ".exr",
+        .check = settings.check};
+    const Frame& frame = high ? high->mesh.geometry.frame : mesh.geometry.frame;
+    EngineSettings engine = settings.engine;
+    engine.definition = definition_of(settings.max_distance, settings.kernel, frame);
+    const Offset offset = offset_of(settings.target, frame);
+    const HighDetail* detail = high ? &high->detail : nullptr;
+    const MapBake map =
+        settings.error ? bake_map_to_error(mesh, layout, map_settings, engine, offset,
+                                           *settings.error, progress, detail)
+                       : bake_map(mesh, layout, map_settings, engine, offset, progress, detail);
+    report_map(map, report);
     check_overlap(settings, told);
-    report.receivers = map.receivers;
-    report.error = map.error;
-    report.mean_occlusion = map.mean_occlusion;
-    report.seconds.raster = map.seconds.raster;
-    report.seconds.surfels = map.seconds.surfels;
-    report.seconds.tree = map.seconds.tree;
-    report.seconds.solve = map.seconds.solve;
-    report.seconds.fill = map.seconds.fill;
-    report.seconds.check = map.seconds.check;
     add_notes(report, mesh.geometry.triangles.size(), report.notes);
 
     if (progress && !progress("write", 0.0))
         throw Cancelled();
-    Stopwatch watch;
-    if (texels.bent) {
-        told.written.push_back(bent_path(settings.output));
-        write_map(told.written.back(), map.bent, texels.depth);
-    }
+    watch.lap();
+    if (!map.bent.empty())
+        write_pictures(bent_path(settings.output), map.bent, report, told.written);
     if (is_map(settings.output)) {
-        write_map(settings.output, map.visibility, texels.depth);
+        write_pictures(settings.output, map.visibility, report, told.written);
     } else {
-        const std::vector<std::string> notes = write_scene_with_map(
-            settings.output, mesh.scene, {map_bytes(map.visibility, texels.depth), told.uv_set},
-            {.mark = mark_of(settings)});
+        OcclusionMap picture{map_bytes(map.visibility[0], texels.depth), 0, {}};
+        if (place.uv_set)
+            picture.uv_set = *place.uv_set;
+        else
+            picture.uvs = layout.pages[0];
+        const std::vector<std::string> notes =
+            write_scene_with_map(settings.output, mesh.scene, picture, {.mark = mark_of(settings)});
         report.notes.insert(report.notes.end(), notes.begin(), notes.end());
         if (const auto beside = map_file_of(settings.output))
             told.written.push_back(*beside);

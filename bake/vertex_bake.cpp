@@ -121,21 +121,6 @@ private:
     VertexBakeSeconds seconds_;
 };
 
-/// Whether nothing can bring the interval below `error`: the best values would have one that is as
-/// wide in proportion. That is told by the floor alone, or by what more exactness brought last.
-bool is_hopeless(std::span<const Trial> trials, double error)
-{
-    const StatedError& last = trials.back().error;
-    if (!(last.rmse > 0.0) || !last.floor)
-        return false;
-    const double width = last.high / last.rmse;
-    constexpr double kNoBetter = 0.01;
-    const bool is_at_floor =
-        trials.size() > 1 &&
-        std::abs(last.rmse / trials[trials.size() - 2].error.rmse - 1.0) < kNoBetter;
-    return last.least_floor * width > error || (is_at_floor && *last.floor * width > error);
-}
-
 }  // namespace
 
 VertexBake bake_vertices(const Mesh& mesh, const VertexTarget& target, const EngineSettings& engine,
@@ -152,37 +137,7 @@ VertexBake bake_to_error(const Mesh& mesh, const VertexTarget& target, const Eng
     // what the fit leaves of independent noise
     const double kept = std::min(1.0, std::sqrt(static_cast<double>(mesh.scene.positions.size()) /
                                                 static_cast<double>(target.receivers().size())));
-    std::vector<Trial> trials;
-    VertexBake bake;
-    for (const Step& step : kSteps) {
-        EngineSettings setting = engine;
-        setting.engine = step.engine;
-        if (step.engine == Engine::masks)
-            setting.quality = step.setting;
-        else
-            setting.rays = static_cast<std::uint32_t>(step.setting);
-        if (step.engine == Engine::rays && kept * baker.check().noise_of_rays(setting.rays) > error)
-            continue;
-        bake = baker.bake(setting);
-        // exact enough, it seems: to be sure takes more points, not more exactness
-        while (bake.error->rmse <= error && bake.error->high > error && baker.refine(bake)) {
-        }
-        trials.push_back({setting, *bake.error});
-        bake.is_met = bake.error->high <= error;
-        if (bake.is_met)
-            break;
-        if (is_hopeless(trials, error)) {
-            setting.engine = Engine::masks;
-            setting.quality = kGood;
-            if (bake.engine != setting) {
-                bake = baker.bake(setting);
-                trials.push_back({setting, *bake.error});
-            }
-            break;
-        }
-    }
-    bake.trials = std::move(trials);
-    return bake;
+    return search_error(baker, engine, error, kept);
 }
 
 }  // namespace surfelao

@@ -2,6 +2,7 @@
 /// that was asked for or by the cheapest that is exact enough.
 #pragma once
 
+#include "bake/error_search.h"
 #include "bake/stated_error.h"
 #include "bake/vertex_target.h"
 #include "engines/engine.h"
@@ -27,12 +28,6 @@ struct VertexBakeSeconds {
     double check = 0.0;  ///< from the values to their error
 };
 
-/// A setting that was tried on the way to an error.
-struct Trial {
-    EngineSettings engine;
-    StatedError error;
-};
-
 struct VertexBake {
     EngineSettings engine;           ///< who answered
     std::vector<Occlusion> answers;  ///< one per receiver of the target
@@ -51,10 +46,6 @@ struct VertexBake {
                                        const EngineSettings& engine, const Offset& offset,
                                        std::uint32_t check, const StageProgress& progress = {});
 
-/// Points that an error is judged at, at most, where it is close to what was asked: the interval is
-/// then a quarter as wide as with kCheckPoints.
-inline constexpr std::uint32_t kMostSearchPoints = 6400;
-
 /// By the cheapest of masks at any quality and rays at any number whose error is below `error` with
 /// its whole interval. Costs are those that settings have on the median model, so that equal input
 /// takes the same one everywhere. Where values at these vertices cannot be so exact, whoever
@@ -64,19 +55,5 @@ inline constexpr std::uint32_t kMostSearchPoints = 6400;
                                        const EngineSettings& engine, const Offset& offset,
                                        double error, std::uint32_t check,
                                        const StageProgress& progress = {});
-
-/// In the order in which bake_to_error() tries them: settings with what they take of the time of
-/// masks at good, median of 21 models (`docs/figures/frontier.json`). Rays that noise alone would
-/// make too wrong are passed over.
-struct Step {
-    Engine engine;
-    float setting;  ///< quality or rays
-    float cost;
-};
-inline constexpr Step kSteps[] = {
-    {Engine::masks, -1.0f, 0.5f},   {Engine::masks, 0.0f, 0.6f},   {Engine::rays, 16.0f, 0.7f},
-    {Engine::masks, 1.0f, 1.0f},    {Engine::masks, 2.0f, 1.8f},   {Engine::rays, 64.0f, 2.2f},
-    {Engine::masks, 3.0f, 3.2f},    {Engine::masks, 4.0f, 6.0f},   {Engine::rays, 256.0f, 7.3f},
-    {Engine::rays, 1024.0f, 23.0f}, {Engine::rays, 4096.0f, 81.0f}};
 
 }  // namespace surfelao

@@ -6,6 +6,7 @@
 #include "cli/progress_bar.h"
 #include "cli/texel_options.h"
 #include "engines/threads.h"
+#include "files/file_type.h"
 #include "files/scene_io.h"
 #include "surfels/progress.h"
 
@@ -59,6 +60,8 @@ std::vector<Job> jobs_of(const BakeOptions& options)
     FilePlan files;
     for (const std::string& input : options.inputs)
         files.reads(input);
+    for (const std::string& high : options.texels.high)
+        files.reads(high);
     const bool into_folder = is_folder(options);
     std::vector<Job> jobs;
     for (const std::string& input : options.inputs) {
@@ -68,7 +71,7 @@ std::vector<Job> jobs_of(const BakeOptions& options)
         if (const auto texels = texel_settings_of(options.texels, jobs.back().output);
             texels && map_file_of(jobs.back().output))
             files.writes(*map_file_of(jobs.back().output), input);
-        if (options.texels.bent == "world")
+        if (options.texels.bent.value_or("none") != "none")
             files.writes(bent_path(jobs.back().output), input);
     }
     files.writes_report(options.json, "--json");
@@ -144,7 +147,8 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
             ++failed;
             continue;
         }
-        written.push_back(job.output);
+        if (!entry.report->texels || type_of(job.output) != FileType::unknown)
+            written.push_back(job.output);
         if (entry.report->texels)
             written.insert(written.end(), entry.report->texels->written.begin(),
                            entry.report->texels->written.end());
@@ -172,8 +176,8 @@ void check_options(const BakeOptions& options)
         throw UsageError("--error needs the points of --check.");
     if (options.error && kernel_of(options.measure) != Kernel::cosine)
         throw UsageError("--error tries masks, which know --kernel cosine only.");
-    if (options.error && texel_settings_of(options.texels, options.output))
-        throw UsageError("--error is for values at vertices.");
+    if (options.resume && options.texels.udim)
+        throw UsageError("--resume knows no tiles: leave it or --udim out.");
 }
 
 }  // namespace

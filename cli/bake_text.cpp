@@ -8,6 +8,13 @@
 namespace surfelao {
 namespace {
 
+/// "38 new charts, use 0.78, seams 12.1"
+std::string charts_text(const ChartReport& charts)
+{
+    return count_text(charts.count, "new chart") + ", use " + fixed(charts.use, 2) + ", seams " +
+           fixed(charts.seam_length, 1) + ", stretch " + fixed(charts.mean_stretch, 2);
+}
+
 /// "masks, good, at 8192 places fitted to the vertices, normals of the file at 960 corners"
 std::string question_of(const BakeReport& report)
 {
@@ -15,8 +22,11 @@ std::string question_of(const BakeReport& report)
     std::string text = name_of(settings.engine.engine) + ", " + setting_of(settings.engine) +
                        ", at " + std::to_string(report.receivers) + " places";
     if (report.texels)
-        text += " of " + std::to_string(report.texels->covered) + " texels (texture coordinates " +
-                std::to_string(report.texels->uv_set) + ")";
+        text +=
+            " of " + std::to_string(report.texels->covered) + " texels (" +
+            (report.texels->uv_set ? "texture coordinates " + std::to_string(*report.texels->uv_set)
+                                   : charts_text(*report.texels->charts)) +
+            ")";
     else if (settings.target.values == VertexValues::fit)
         text += " fitted to the vertices";
     if (report.corners_from_file > 0)
@@ -80,6 +90,8 @@ void print_report(const BakeReport& report)
     if (report.error)
         std::cout << "\n  " << statement_of(*report.error);
     std::cout << "\n  read " << time(seconds.read);
+    if (report.texels && report.texels->charts)
+        std::cout << ", charts " << time(seconds.charts);
     if (report.texels)
         std::cout << ", raster " << time(seconds.raster);
     std::cout << ", surfels " << time(seconds.surfels) << ", tree " << time(seconds.tree)

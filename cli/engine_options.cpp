@@ -25,6 +25,14 @@ std::optional<double> number_of(std::string_view text)
     return value;
 }
 
+void refuse_unless(bool allowed, const char* option, const char* engines)
+{
+    if (!allowed)
+        throw UsageError(std::string(option) + " is only for --engine " + engines + ".");
+}
+
+}  // namespace
+
 Length length_of(std::string_view text, const std::string& option)
 {
     Length length;
@@ -41,14 +49,6 @@ Length length_of(std::string_view text, const std::string& option)
     length.value = *value;
     return length;
 }
-
-void refuse_unless(bool allowed, const char* option, const char* engines)
-{
-    if (!allowed)
-        throw UsageError(std::string(option) + " is only for --engine " + engines + ".");
-}
-
-}  // namespace
 
 void add_engine_options(CLI::App& command, EngineOptions& options)
 {

@@ -7,12 +7,16 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace CLI {
 class App;
 }
 
 namespace surfelao {
+
+/// "0.5" or "2%", above 0. Throws UsageError naming the option.
+[[nodiscard]] Length length_of(std::string_view text, const std::string& option);
 
 /// What was asked for: empty where an option was not given.
 struct EngineOptions {

@@ -1,15 +1,18 @@
-#include "bake/bake.h"
+#include "bake/texel_layout.h"
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/output.h"
 #include "cli/progress_bar.h"
+#include "cli/texel_options.h"
 #include "cli/view_options.h"
 #include "engines/threads.h"
 #include "files/scene_io.h"
 #include "image/image_file.h"
 #include "surfels/number_text.h"
 #include "surfels/stopwatch.h"
+#include "viewer/atlas_picture.h"
 #include "viewer/render.h"
+#include "viewer/solve_map.h"
 #include "viewer/solve_model.h"
 
 #include <CLI/CLI.hpp>
@@ -35,6 +38,8 @@ struct RenderCommandOptions {
     EngineOptions engine;
     MeasureOptions measure;
     SurfaceOptions surface;
+    TexelOptions texels;
+    bool atlas = false;
     std::optional<int> threads;
 };
 
@@ -55,6 +60,73 @@ void check_files(const RenderCommandOptions& options)
     plan.writes(options.output, "the picture");
 }
 
+/// What a picture shows on the model.
+struct Shown {
+    std::vector<Occlusion> occlusion, reference;  ///< render()'s
+    std::optional<ModelLayout> layout;            ///< with a map
+    ModelMap map;
+    std::optional<ModelMap> map_reference;
+    std::optional<BasePaint> paint;
+    double solve_s = 0.0, reference_s = 0.0;
+    bool reference_from_cache = false;
+
+    [[nodiscard]] SurfaceData data() const
+    {
+        return {layout ? &*layout : nullptr, layout ? &map : nullptr,
+                map_reference ? &*map_reference : nullptr, paint ? &*paint : nullptr};
+    }
+};
+
+bool needs_answer(Colors colors)
+{
+    return colors != Colors::rays && colors != Colors::normals && colors != Colors::levels &&
+           colors != Colors::density;
+}
+
+using MakeProgress = std::function<Progress(const char*)>;
+
+void solve_for(const Model& model, const EngineSettings& engine, const ViewOptions& view,
+               std::uint32_t rays, const MakeProgress& stage, Shown& shown)
+{
+    Stopwatch watch;
+    shown.occlusion.resize(model.answer_count());
+    if (needs_answer(view.colors))
+        shown.occlusion = solve_model(prepare(model.geometry(), engine), model, engine,
+                                      {.ground = shows_ground(view)}, stage("solve"))
+                              .values;
+    shown.solve_s = watch.lap();
+    if (!needs_reference(view))
+        return;
+    ModelReference reference = reference_of(model, engine.definition, rays, stage("reference"));
+    shown.reference = std::move(reference.values);
+    shown.reference_from_cache = reference.from_cache;
+    shown.reference_s = watch.lap();
+}
+
+/// The same at the texels of a map.
+void solve_map_for(const Model& model, const TexelSettings& texels, const EngineSettings& engine,
+                   const ViewOptions& view, std::uint32_t rays, const MakeProgress& stage,
+                   Shown& shown)
+{
+    Stopwatch watch;
+    shown.layout = layout_of(model, texels, stage("charts"));
+    const MapLayout& places = shown.layout->layout;
+    shown.map = needs_answer(view.colors)
+                    ? solve_map(model, places, engine, texels.padding, 0, stage("solve")).map
+                    : open_map(places);
+    shown.occlusion.resize(model.answer_count());
+    if (shows_ground(view))
+        shown.occlusion = solve_model(prepare(model.geometry(), engine), model, engine,
+                                      {.vertices = false}, stage("ground"))
+                              .values;
+    shown.solve_s = watch.lap();
+    if (!needs_reference(view))
+        return;
+    shown.map_reference =
+        reference_map(model, places, engine.definition, rays, texels.padding, stage("reference"));
+    shown.reference_s = watch.lap();
+}
+
 int run(const RenderCommandOptions& options)
 {
     check_image_output(options.output);
@@ -62,7 +134,7 @@ int run(const RenderCommandOptions& options)
     if (options.threads)
         limit.emplace(*options.threads);
     ProgressBar bar;
-    const auto stage = [&](const char* name) {
+    const auto stage = [&](const char* name) -> Progress {
         return [&bar, name](double done) { return bar.update(name, done); };
     };
 
@@ -73,6 +145,7 @@ int run(const RenderCommandOptions& options)
     picture.samples = options.samples;
     picture.backend = backend_of(options.backend);
     picture.view = view_options_of(options.show);
+    picture.view.ground &= !options.atlas;
     if (options.show.environment)
         picture.environment = read_image(*options.show.environment);
 
@@ -92,22 +165,22 @@ int run(const RenderCommandOptions& options)
          .frame_diagonal = frame.diagonal,
          .up = up,
          .aspect = static_cast<float>(options.width) / static_cast<float>(options.height)});
+    Shown shown;
+    if (picture.view.colors == Colors::textured)
+        shown.paint = base_paint_of(*model.mesh);
     const double read_s = watch.lap();
 
-    // only what the picture shows is solved
-    const Colors colors = picture.view.colors;
-    std::vector<Occlusion> occlusion(model.answer_count());
-    if (colors != Colors::rays && colors != Colors::normals && colors != Colors::levels)
-        occlusion = solve_model(prepare(model.geometry(), engine), model, engine,
-                                {.ground = shows_ground(picture.view)}, stage("solve"))
-                        .values;
-    const double solve_s = watch.lap();
-    ModelReference reference;
-    if (needs_reference(picture.view))
-        reference =
-            reference_of(model, engine.definition, options.show.reference_rays, stage("reference"));
-    const double reference_s = watch.lap();
-    const Image image = render(model, occlusion, reference.values, camera, picture, stage("draw"));
+    const std::uint32_t rays = options.show.reference_rays;
+    if (const auto texels = shown_texels_of(options.texels))
+        solve_map_for(model, *texels, engine, picture.view, rays, stage, shown);
+    else
+        solve_for(model, engine, picture.view, rays, stage, shown);
+    watch.lap();
+    picture.data = shown.data();
+    const Image image =
+        options.atlas
+            ? atlas_picture(*model.mesh, picture.data, picture.view, picture.width, picture.height)
+            : render(model, shown.occlusion, shown.reference, camera, picture, stage("draw"));
     const double draw_s = watch.lap();
     write_image(options.output, image);
 
@@ -115,10 +188,15 @@ int run(const RenderCommandOptions& options)
     std::cout << options.input << " -> " << options.output << ", " << image.width << " x "
               << image.height << "\n  " << model.geometry().positions.size() << " vertices, "
               << model.geometry().triangles.size() << " triangles, " << name_of(engine.engine)
-              << ", " << setting_of(engine) << "\n  read " << time(read_s) << ", solve "
-              << time(solve_s) << ", reference "
-              << (reference.from_cache ? "from the cache" : time(reference_s)) << ", draw "
-              << time(draw_s) << ", write " << time(watch.lap()) << '\n';
+              << ", " << setting_of(engine) << '\n';
+    if (shown.layout)
+        std::cout << "  " << text_of(*shown.layout) << '\n';
+    std::cout << "  read " << time(read_s) << ", solve " << time(shown.solve_s) << ", reference "
+              << (shown.reference_from_cache ? "from the cache" : time(shown.reference_s))
+              << ", draw " << time(draw_s) << ", write " << time(watch.lap()) << '\n';
+    if (shown.paint)
+        for (const std::string& note : shown.paint->notes)
+            std::cout << "  note: " << note << '\n';
     const std::filesystem::path written[] = {options.output};
     print_written(written, false);
     return kDone;
@@ -162,6 +240,8 @@ void add_render_command(CLI::App& app, Work& work)
         ->type_name("auto|egl|osmesa")
         ->capture_default_str();
     add_show_options(*command, options->show);
+    add_layout_options(*command, options->texels, kShownMaps);
+    add_atlas_option(*command, options->atlas);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
@@ -170,7 +250,8 @@ void add_render_command(CLI::App& app, Work& work)
         check_kernel(settings_of(options->engine).engine, kernel_of(options->measure));
         static_cast<void>(distance_limit_of(options->measure));
         static_cast<void>(target_settings_of(options->surface));
-        static_cast<void>(view_options_of(options->show));
+        const bool has_map = shown_texels_of(options->texels).has_value();
+        check_shown_map(view_options_of(options->show), has_map, options->atlas);
         check_files(*options);
         work = [options] { return run(*options); };
     });

@@ -1,6 +1,7 @@
 #include "cli/texel_options.h"
 
 #include "cli/commands.h"
+#include "cli/engine_options.h"
 #include "surfels/extension.h"
 
 #include <CLI/CLI.hpp>
@@ -22,36 +23,62 @@ bool is_picture(const std::filesystem::path& output)
 
 }  // namespace
 
-void add_texel_options(CLI::App& command, TexelOptions& options)
+void add_layout_options(CLI::App& command, TexelOptions& options, const std::string& group)
 {
-    constexpr const char* kGroup = "Maps (-o NAME.png, .tif, .exr, or --at texels)";
     command
-        .add_option(
-            "--at", options.at,
-            "Where: vertices, or texels of a map over the file's texture coordinates, which "
-            "a glTF gets as its occlusionTexture (default: texels for pictures)")
+        .add_option("--at", options.at,
+                    "Where occlusion is asked: vertices, or texels of a map on the triangles "
+                    "(default: vertices; of bake, texels for pictures)")
         ->check(CLI::IsMember({"vertices", "texels"}))
         ->type_name("vertices|texels")
-        ->group(kGroup);
+        ->group(group);
     command.add_option("--size", options.size, "Texels of each side of the map")
         ->check(CLI::Range(1u, kMostTexels))
         ->type_name("N")
         ->default_str("1024")
-        ->group(kGroup);
+        ->group(group);
+    command
+        .add_option("--texels-per-unit", options.texels_per_unit,
+                    "Charts of our own at this density: the size follows")
+        ->check(CLI::PositiveNumber)
+        ->type_name("D")
+        ->excludes(command.get_option("--size"))
+        ->group(group);
     command
         .add_option("--uv", options.uv,
-                    "The file's texture coordinates: by number, or the first of use")
-        ->check(CLI::IsMember({"auto", "0", "1", "2", "3"}))
-        ->type_name("auto|0|1|2|3")
+                    "The file's texture coordinates by number; new ones, charts of our own; or "
+                    "auto: the file's where each point of the surface has texels of its own, else "
+                    "new ones (a picture alone: the first of use)")
+        ->check(CLI::IsMember({"auto", "0", "1", "2", "3", "new"}))
+        ->type_name("auto|0|1|2|3|new")
         ->default_str("auto")
-        ->group(kGroup);
+        ->group(group);
+    command
+        .add_option("--charts", options.charts,
+                    "Of new coordinates. planar: each triangle in one chart; blended: a page for "
+                    "each axis, which fade into each other (drawn by render and view)")
+        ->check(CLI::IsMember({"planar", "blended"}))
+        ->type_name("planar|blended")
+        ->default_str("planar")
+        ->group(group);
+    command
+        .add_flag("--udim", options.udim,
+                  "The file's coordinates go over several tiles: a picture each, NAME.1001.png "
+                  "and so on")
+        ->group(group);
     command
         .add_option("--padding", options.padding,
                     "Texels around what is covered that go on with it; the others hold the mean")
         ->check(CLI::Range(0u, kMostPadding))
         ->type_name("N")
         ->default_str("4")
-        ->group(kGroup);
+        ->group(group);
+}
+
+void add_texel_options(CLI::App& command, TexelOptions& options)
+{
+    constexpr const char* kGroup = "Maps (-o NAME.png, .tif, .exr, or --at texels)";
+    add_layout_options(command, options, kGroup);
     command
         .add_option("--depth", options.depth,
                     "Bits of each number: .png 8, 16; .tif 8, 16, 32; .exr 16, 32 (floats)")
@@ -61,12 +88,90 @@ void add_texel_options(CLI::App& command, TexelOptions& options)
         ->group(kGroup);
     command
         .add_option("--bent", options.bent,
-                    "world: bent normals too, as NAME.bent.png, (n + 1) / 2")
-        ->check(CLI::IsMember({"none", "world"}))
-        ->type_name("none|world")
+                    "Bent normals too, as NAME.bent.png, (n + 1) / 2, in this space")
+        ->check(CLI::IsMember({"none", "object", "world", "tangent"}))
+        ->type_name("none|object|world|tangent")
         ->default_str("none")
         ->group(kGroup);
+    command
+        .add_option("--green", options.green,
+                    "Of --bent tangent: which way green grows: +y as in OpenGL and glTF, -y as in "
+                    "DirectX")
+        ->check(CLI::IsMember({"+y", "-y"}))
+        ->type_name("+y|-y")
+        ->default_str("+y")
+        ->group(kGroup);
+    command
+        .add_option("--high", options.high,
+                    "Files of a finer mesh: what it shows is asked at the texels, and it alone "
+                    "occludes; parts NAME_low look for NAME_high")
+        ->type_name("FILE...")
+        ->group(kGroup);
+    command
+        .add_option("--cage", options.cage,
+                    "How far out from the mesh one looks for the finer one, and as far in: in the "
+                    "file's units, or with % of its bounding box's diagonal")
+        ->type_name("D|P%")
+        ->default_str("2%")
+        ->group(kGroup);
 }
+
+void add_atlas_option(CLI::App& command, bool& atlas)
+{
+    command
+        .add_flag("--atlas", atlas,
+                  "The map itself, flat, with the borders of its charts, in place of the model")
+        ->group(kShownMaps);
+}
+
+namespace {
+
+/// Whether an option was given that is of no use without a map.
+bool has_texel_option(const TexelOptions& options)
+{
+    return options.size || options.texels_per_unit || options.uv || options.charts ||
+           options.udim || options.padding || options.depth || options.bent || options.green ||
+           !options.high.empty() || options.cage;
+}
+
+/// Throws UsageError for options that contradict each other.
+void check_together(const TexelOptions& options, bool picture)
+{
+    const auto refuse = [](bool wrong, const char* sentence) {
+        if (wrong)
+            throw UsageError(sentence);
+    };
+    const bool own = options.uv == "new" || options.uv.value_or("auto") == "auto";
+    refuse(picture && options.uv == "new",
+           "--uv new makes texture coordinates, which a picture cannot hold: -o NAME.glb, .gltf, "
+           ".obj or .ply.");
+    refuse(options.texels_per_unit && (!own || picture),
+           "--texels-per-unit is for texture coordinates that are made: -o a mesh, --uv new.");
+    refuse(options.charts == "blended" && (!own || picture),
+           "--charts is for texture coordinates that are made: -o a mesh, --uv new.");
+    refuse(options.green && options.bent != "tangent", "--green is for --bent tangent.");
+    refuse(options.cage && options.high.empty(), "--cage is for --high.");
+}
+
+/// Where the map lies.
+TexelSettings layout_settings_of(const TexelOptions& options)
+{
+    TexelSettings settings;
+    settings.size = options.size.value_or(settings.size);
+    settings.texels_per_unit = options.texels_per_unit;
+    if (options.uv == "new" || options.texels_per_unit || options.charts == "blended")
+        settings.uvs = UvChoice::made;
+    else if (options.uv && *options.uv != "auto") {
+        settings.uvs = UvChoice::file;
+        settings.uv_set = static_cast<std::uint32_t>(std::stoul(*options.uv));
+    }
+    settings.udim = options.udim;
+    settings.blended = options.charts == "blended";
+    settings.padding = options.padding.value_or(settings.padding);
+    return settings;
+}
+
+}  // namespace
 
 std::optional<TexelSettings> texel_settings_of(const TexelOptions& options,
                                                const std::filesystem::path& output)
@@ -75,21 +180,38 @@ std::optional<TexelSettings> texel_settings_of(const TexelOptions& options,
     if (picture && options.at == "vertices")
         throw UsageError("--at vertices needs a mesh file to write to, no picture.");
     if (!picture && options.at != "texels") {
-        if (options.size || options.uv || options.padding || options.depth || options.bent)
+        if (has_texel_option(options))
             throw UsageError(
-                "--size, --uv, --padding, --depth and --bent are for maps: -o NAME.png or --at "
-                "texels.");
+                "Options of maps (--size, --uv, --padding, --bent, --high and so on) need -o "
+                "NAME.png or --at texels.");
         return {};
     }
-    TexelSettings settings;
-    settings.size = options.size.value_or(settings.size);
-    if (options.uv && *options.uv != "auto")
-        settings.uv_set = static_cast<std::uint32_t>(std::stoul(*options.uv));
-    settings.padding = options.padding.value_or(settings.padding);
+    check_together(options, picture);
+    if (options.udim && !picture)
+        throw UsageError("--udim is for pictures: -o NAME.png, .tif or .exr.");
+    TexelSettings settings = layout_settings_of(options);
     const int depth = options.depth.value_or(lower_extension(output) == ".exr" ? 32 : 8);
     settings.depth = depth == 8 ? MapDepth::byte : depth == 16 ? MapDepth::half : MapDepth::whole;
-    settings.bent = options.bent == "world";
+    constexpr const char* kSpaces[] = {"none", "object", "world", "tangent"};
+    for (int space = 0; space < 4; ++space)
+        if (options.bent == kSpaces[space])
+            settings.bent = static_cast<BentSpace>(space);
+    settings.green_down = options.green == "-y";
+    settings.high.assign(options.high.begin(), options.high.end());
+    if (options.cage)
+        settings.cage = length_of(*options.cage, "--cage");
     return settings;
+}
+
+std::optional<TexelSettings> shown_texels_of(const TexelOptions& options)
+{
+    if (options.at == "texels") {
+        check_together(options, false);
+        return layout_settings_of(options);
+    }
+    if (has_texel_option(options))
+        throw UsageError("--size, --uv, --charts, --udim and --padding are for --at texels.");
+    return {};
 }
 
 }  // namespace surfelao

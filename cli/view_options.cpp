@@ -12,7 +12,7 @@
 namespace surfelao {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Colors>, 7> kModes = {{
+constexpr std::array<std::pair<std::string_view, Colors>, 10> kModes = {{
     {"visibility", Colors::visibility},
     {"rays", Colors::rays},
     {"difference", Colors::difference},
@@ -20,6 +20,9 @@ constexpr std::array<std::pair<std::string_view, Colors>, 7> kModes = {{
     {"normals", Colors::normals},
     {"levels", Colors::levels},
     {"environment", Colors::environment},
+    {"charts", Colors::charts},
+    {"density", Colors::density},
+    {"textured", Colors::textured},
 }};
 
 constexpr std::array<std::pair<std::string_view, Shape>, 4> kSurfaces = {{
@@ -57,7 +60,9 @@ void add_show_options(CLI::App& command, ShowOptions& options)
                     "What the colours tell: visibility = 1 - occlusion; rays = the same by ray "
                     "casting; difference = to rays, as a heat map; bent-normals; normals at "
                     "corners, or of the disks; levels = depth in the octree; environment = light "
-                    "of a panorama")
+                    "of a panorama; charts, density = of a map (--at texels): a colour for each "
+                    "chart, texels "
+                    "per unit of length; textured = the file's base colours times visibility")
         ->check(CLI::IsMember(names_of(kModes)))
         ->type_name("MODE")
         ->default_str("visibility")
@@ -125,11 +130,25 @@ ViewOptions view_options_of(const ShowOptions& options)
     if (options.reference_rays % 2 != 0)
         throw UsageError("--reference-rays must be an even number.");
     view.surface = value_of(kSurfaces, options.surface);
+    if (view.colors == Colors::textured && view.surface != Shape::triangles)
+        throw UsageError("--mode textured is for --surface triangles.");
     view.exposure = options.exposure;
     view.radius_scale = options.radius_scale;
     view.difference_scale = options.difference_scale;
     view.ground = !options.no_ground;
     return view;
+}
+
+void check_shown_map(const ViewOptions& view, bool has_map, bool atlas)
+{
+    if (!has_map && atlas)
+        throw UsageError("--atlas is for --at texels.");
+    if (!has_map && needs_map(view.colors))
+        throw UsageError("--mode charts and density are for --at texels.");
+    if (has_map && view.surface != Shape::triangles)
+        throw UsageError("--at texels is for --surface triangles.");
+    if (has_map && view.colors == Colors::levels)
+        throw UsageError("--mode levels is for --at vertices.");
 }
 
 UpAxis up_axis_of(const ShowOptions& options)

@@ -158,6 +158,20 @@ std::vector<double> read_numbers(const GltfAccessor& accessor)
     return numbers;
 }
 
+std::string read_elements(const GltfAccessor& accessor)
+{
+    const std::size_t size = accessor.element_bytes;
+    std::string bytes(accessor.count * size, '\0');
+    for (std::size_t i = 0; i < accessor.count && !accessor.zero; ++i)
+        accessor.bytes.copy(bytes.data() + i * size, size, i * accessor.stride);
+    if (accessor.sparse_count > 0) {
+        const std::vector<std::uint32_t> targets = sparse_targets(accessor);
+        for (std::size_t i = 0; i < targets.size(); ++i)
+            accessor.sparse_values.copy(bytes.data() + targets[i] * size, size, i * size);
+    }
+    return bytes;
+}
+
 std::vector<glm::dvec3> read_vectors(const GltfAccessor& accessor)
 {
     return load_vectors<glm::dvec3>(accessor);
@@ -166,6 +180,11 @@ std::vector<glm::dvec3> read_vectors(const GltfAccessor& accessor)
 std::vector<glm::dvec2> read_pairs(const GltfAccessor& accessor)
 {
     return load_vectors<glm::dvec2>(accessor);
+}
+
+std::vector<glm::dvec4> read_quadruples(const GltfAccessor& accessor)
+{
+    return load_vectors<glm::dvec4>(accessor);
 }
 
 std::vector<glm::dvec4> read_colors(const GltfAccessor& accessor)

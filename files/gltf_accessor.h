@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -38,9 +39,10 @@ struct GltfAccessor {
     std::size_t stride = 0;  ///< bytes from one element to the next
     std::size_t count = 0;
     GltfComponent component = GltfComponent::float32;
-    int dimension = 1;        ///< components per element
-    bool normalized = false;  ///< integers stand for [-1, 1] or [0, 1]
-    bool zero = false;        ///< without a bufferView: all zero, but for the sparse elements
+    int dimension = 1;              ///< components per element
+    std::size_t element_bytes = 0;  ///< with the padding between a matrix' columns
+    bool normalized = false;        ///< integers stand for [-1, 1] or [0, 1]
+    bool zero = false;              ///< without a bufferView: all zero, but for the sparse elements
 
     std::size_t sparse_count = 0;
     std::string_view sparse_indices;  ///< sparse_count whole numbers, close together
@@ -58,12 +60,18 @@ struct AccessorError : std::runtime_error {
 /// Throws AccessorError on a value that is not finite and on bad sparse indices.
 [[nodiscard]] std::vector<double> read_numbers(const GltfAccessor& accessor);
 
+/// The bytes of all elements, close together. Throws AccessorError on bad sparse indices.
+[[nodiscard]] std::string read_elements(const GltfAccessor& accessor);
+
 /// Asks for three components of any type; the values may be not finite. Throws AccessorError on bad
 /// sparse indices.
 [[nodiscard]] std::vector<glm::dvec3> read_vectors(const GltfAccessor& accessor);
 
 /// The same for two components.
 [[nodiscard]] std::vector<glm::dvec2> read_pairs(const GltfAccessor& accessor);
+
+/// The same for four.
+[[nodiscard]] std::vector<glm::dvec4> read_quadruples(const GltfAccessor& accessor);
 
 /// Asks for three components of any type (alpha is then 1) or four. Throws like read_numbers.
 [[nodiscard]] std::vector<glm::dvec4> read_colors(const GltfAccessor& accessor);

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,15 @@ inline constexpr const char* kAddedMaterial = "surfelao plain";
 /// Whether an entry of the document has a name that begins like those.
 [[nodiscard]] bool is_added(const nlohmann::json& entry);
 
+/// An accessor that has taken the place of one of the file's, with more elements or other indices,
+/// says so in its extras: its name is the file's (gltf_cuts.h).
+void mark_replacement(nlohmann::json& accessor);
+[[nodiscard]] bool is_replacement(const nlohmann::json& accessor);
+
+/// The first set of texture coordinates that a primitive with these attributes does not have: n of
+/// TEXCOORD_n.
+[[nodiscard]] std::size_t free_set(const nlohmann::json& attributes);
+
 /// Accessors whose elements have one size share a buffer view. The document must outlive it, and
 /// gets no other buffer views meanwhile.
 class AddedData {
@@ -32,6 +42,12 @@ public:
     std::size_t add_floats(std::size_t dimension, std::span<const float> values,
                            const char* name = nullptr);
 
+    /// Adds an accessor like this one, but of these elements: `size` bytes each.
+    std::size_t add_elements(nlohmann::json accessor, std::string_view bytes, std::size_t size);
+
+    /// Adds an accessor of indices, of 16 bits where that is enough for so many vertices.
+    std::size_t add_indices(std::span<const std::uint32_t> indices, std::size_t vertices);
+
     /// Adds a buffer view of bytes that are no elements and returns its index.
     std::size_t add_bytes(std::string_view bytes);
 
@@ -40,12 +56,15 @@ public:
 
 private:
     struct View {
-        std::size_t stride;  ///< 0: no elements
+        int target;          ///< what its elements are; 0: it has none
+        std::size_t stride;  ///< bytes from one to the next
         std::string bytes;
     };
 
-    std::size_t add_accessor(std::size_t dimension, std::string_view bytes, std::size_t stride,
-                             nlohmann::json accessor);
+    /// Adds an accessor of elements that are in no view yet; append(bytes) puts them into one.
+    template <class Append>
+    std::size_t add_accessor(nlohmann::json accessor, int target, std::size_t stride,
+                             const Append& append);
 
     nlohmann::json& document_;
     std::size_t first_view_;

@@ -47,15 +47,26 @@ struct GltfUse {
     std::optional<GltfPlacement> instance;  ///< seen from the node (EXT_mesh_gpu_instancing)
 };
 
+/// The triangles of a primitive that a scene has.
+struct GltfTriangles {
+    std::size_t primitive = 0;  ///< of the part's mesh
+    std::uint32_t first = 0;    ///< of the scene
+    std::uint32_t count = 0;
+};
+
 /// What the writer knows of a Part.
 struct GltfPart {
     std::size_t use = 0;       ///< into GltfAsset::uses
     glm::dmat3 to_world{1.0};  ///< the linear part of mesh space -> world; not for skinned parts
     /// Skinned parts: the same per vertex, at any scale; empty for others.
     std::vector<glm::mat3> vertices_to_world;
+    std::vector<GltfTriangles> primitives;  ///< in the order of the triangles
+    /// For each triangle of the part: the last two corners have changed places, under a mirror.
+    std::vector<bool> turned;
 };
 
-/// Everything a writer needs to hand the file back with attributes added.
+/// Everything a writer needs to hand the file back with attributes added: without what an earlier
+/// bake has added (gltf_old_results.h).
 struct GltfAsset : SourceAsset {
     GltfAsset();
     ~GltfAsset() override;
@@ -70,12 +81,14 @@ struct GltfAsset : SourceAsset {
     std::vector<std::string_view> other_chunks;  ///< of a GLB: neither JSON nor BIN, with headers
     std::vector<std::string> notes;  ///< what was let pass in all that, for Scene::notes
     std::vector<GltfBuffer> buffers;
-    std::map<std::size_t, GltfAccessor> colors;  ///< COLOR_0, _OWN_COLOR by accessor, of all parts
+    std::map<std::size_t, GltfAccessor> colors;  ///< COLOR_0 by accessor, of all parts
     /// Per mesh that the scene uses and primitive: the first primitive that shares all its vertices
     /// (Part::primitive), or -1 where it draws no triangles. Empty for other meshes.
     std::vector<std::vector<std::int32_t>> group_of_primitive;
-    std::vector<GltfUse> uses;    ///< in the order of the parts; each has one at least
-    std::vector<GltfPart> parts;  ///< as Scene::parts
+    std::vector<GltfUse> uses;       ///< in the order of the parts; each has one at least
+    std::vector<GltfPart> parts;     ///< as Scene::parts
+
+    [[nodiscard]] BaseColors base_colors() const override;  // gltf_base_colors.cpp
 };
 
 /// Takes the container apart, parses the document and loads all buffers into `asset`. A buffer

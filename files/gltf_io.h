@@ -16,17 +16,22 @@
 /// Scene::notes says what is not honoured: animations, see-through materials, points and lines.
 ///
 /// Normals are those of NORMAL at unit length, moved along with morph targets, joints and nodes (by
-/// the inverse transpose); zero where a part has none or what it has is no number.
+/// the inverse transpose); zero where a part has none or what it has is no number. Tangents are
+/// those of TANGENT in the same way, but along the matrix itself, and their sign turns under a
+/// mirror.
 ///
 /// Texture coordinates are those of TEXCOORD_0 to TEXCOORD_7 as sets 0 to 7, of any type, each use
 /// of a mesh at the same places of the map. KHR_texture_transform is a material's matter and not
 /// applied. A primitive without a set has none at its corners; of sets that nobody has those below
-/// the last one are empty. What an earlier bake has added (below) is no set.
+/// the last one are empty.
+///
+/// Of a file that an earlier bake has made the original is read (gltf_old_results.h): its own
+/// vertices, materials and texture coordinates.
 ///
 /// A primitive becomes one Part per use of its mesh, with all vertices of its POSITION accessor;
 /// primitives of one mesh that share all accessors their vertices come from (POSITION, NORMAL,
-/// joints, weights, targets, but not texture coordinates) are one Part (Part::primitive is the
-/// first of them).
+/// TANGENT, joints, weights, targets, but not texture coordinates) are one Part (Part::primitive is
+/// the first of them).
 ///
 /// Refused are compressed geometry (KHR_draco_mesh_compression, EXT_meshopt_compression without
 /// plain data), and any extension that the file requires unless it is known to leave triangles
@@ -107,8 +112,8 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
 /// well formed (no backslashes, no blanks); those of files that are not there stay as they are, and
 /// a note names them.
 ///
-/// What an earlier bake has added is taken out first (gltf_old_results.h): a bake of a result gives
-/// the bytes that a bake of the original gives, whatever the colours of the first.
+/// A bake of a result gives the bytes that a bake of the original gives, whatever the first one was
+/// asked for.
 ///
 /// options.mark stands as the string `surfelao` in asset.extras (maker_mark.h).
 ///
@@ -128,10 +133,21 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
 /// .glb: the picture stands in the binary chunk. .gltf: its URI is that of map_file_of(path), which
 /// is left to the caller to write.
 ///
-/// Baking a result again gives what baking the original gives, in either way: what the map has
-/// replaced comes back first (but meshes and instances that a bake of vertices has taken apart stay
-/// apart). options.colors and options.encoding are not asked for. Throws InputError
-/// like gltf_contents(), and where no primitive has TEXCOORD_n.
+/// New coordinates (map.uvs) go to the first set that a primitive does not have, TEXCOORD_n, and
+/// each use of a mesh has its own: meshes and instances are taken apart as for values at vertices.
+/// A vertex whose corners lie at several places is cut (gltf_cuts.h): the first vertices of a
+/// primitive are those that it had, in their order, and copies with all attributes and morph
+/// targets, bit by bit, stand behind them. Strips, fans and primitives without indices become lists
+/// of indexed triangles then; indices get 32 bits where they must. Primitives of a part go on
+/// sharing their vertices. What was there before the cut stays in the file, unused, for a later
+/// bake: so much the file grows. Primitives of which no corner has a place are left alone. The
+/// sampler does not repeat.
+///
+/// Baking a result again gives what baking the original gives, in every way (but instances that a
+/// bake has made nodes of stay so). options.colors and options.encoding are not asked for. Throws
+/// InputError like gltf_contents(), where no primitive has TEXCOORD_n or a place in the map, and
+/// where an attribute of what is to be cut has not one element for each vertex. map.uvs must have
+/// the sizes that write_scene_with_map() asks for.
 [[nodiscard]] WrittenFile gltf_contents_with_map(const std::filesystem::path& path,
                                                  const Scene& scene, const OcclusionMap& map,
                                                  const WriteOptions& options = {});

@@ -47,15 +47,6 @@ bool is_textured(const json& material)
     return false;
 }
 
-/// The first set of texture coordinates that a primitive does not have.
-std::size_t free_set(const json& attributes)
-{
-    std::size_t set = 0;
-    while (attributes.contains("TEXCOORD_" + std::to_string(set)))
-        ++set;
-    return set;
-}
-
 }  // namespace
 
 GltfLooks::GltfLooks(json& document, const GltfAsset& asset, const WriteOptions& options,

@@ -1,7 +1,5 @@
 #include "files/gltf_mesh.h"
 
-#include "files/gltf_added.h"
-
 #include <tiny_gltf.h>
 #include <nlohmann/json.hpp>
 
@@ -31,11 +29,11 @@ std::size_t influence_set_count(const tinygltf::Primitive& primitive)
 /// All accessors that a group's vertices come from: equal lists, equal vertices.
 std::vector<int> vertex_accessors(const tinygltf::Primitive& primitive)
 {
-    std::vector<int> accessors{attribute(primitive.attributes, "POSITION"),
-                               attribute(primitive.attributes, "NORMAL")};
-    for (const auto& target : primitive.targets) {
-        accessors.push_back(attribute(target, "POSITION"));
-        accessors.push_back(attribute(target, "NORMAL"));
+    std::vector<int> accessors;
+    for (const char* name : {"POSITION", "NORMAL", "TANGENT"}) {
+        accessors.push_back(attribute(primitive.attributes, name));
+        for (const auto& target : primitive.targets)
+            accessors.push_back(attribute(target, name));
     }
     for (std::size_t set = 0; set < influence_set_count(primitive); ++set) {
         for (const char* name : {"JOINTS_", "WEIGHTS_"})
@@ -50,8 +48,7 @@ public:
     MeshResolver(const tinygltf::Model& model, std::size_t mesh, GltfAsset& asset)
         : model_(model),
           mesh_(mesh),
-          asset_(asset),
-          resolver_(model, asset),
+          resolver_(asset),
           colors_(asset.colors),
           group_of_primitive_(asset.group_of_primitive[mesh])
     {
@@ -88,9 +85,10 @@ private:
     Group resolve_vertices(const tinygltf::Primitive& source, const std::string& element) const
     {
         Group group{
-            positions(attribute(source.attributes, "POSITION"), element), {}, {}, {}, {}, {}};
+            positions(attribute(source.attributes, "POSITION"), element), {}, {}, {}, {}, {}, {}};
         const std::size_t count = group.positions.accessor.count;
-        group.normals = normals(source.attributes, count, element);
+        group.normals = directions("NORMAL", 3, source.attributes, count, element);
+        group.tangents = directions("TANGENT", 4, source.attributes, count, element);
         for (std::size_t t = 0; t < source.targets.size(); ++t) {
             const std::string place = element + numbered(" target", t);
             MorphTarget target;
@@ -98,7 +96,8 @@ private:
                 target.positions = positions(index, place);
                 resolver_.check_count(*target.positions, count);
             }
-            target.normals = normals(source.targets[t], count, place);
+            target.normals = directions("NORMAL", 3, source.targets[t], count, place);
+            target.tangents = directions("TANGENT", 3, source.targets[t], count, place);
             group.targets.push_back(std::move(target));
         }
         for (std::size_t set = 0; set < influence_set_count(source); ++set)
@@ -117,17 +116,19 @@ private:
         return named;
     }
 
-    std::optional<NamedAccessor> normals(const std::map<std::string, int>& attributes,
-                                         std::size_t count, const std::string& element) const
+    /// Normals or tangents.
+    std::optional<NamedAccessor> directions(const std::string& name, int dimension,
+                                            const std::map<std::string, int>& attributes,
+                                            std::size_t count, const std::string& element) const
     {
-        const int index = attribute(attributes, "NORMAL");
+        const int index = attribute(attributes, name);
         if (index == kNone)
             return std::nullopt;
-        NamedAccessor named = resolver_.resolve(index, element + " NORMAL");
-        if (named.accessor.dimension != 3)
-            resolver_.fail(named.element, "is not of type VEC3");
+        NamedAccessor named = resolver_.resolve(index, element + ' ' + name);
+        if (named.accessor.dimension != dimension)
+            resolver_.fail(named.element, "is not of type VEC" + std::to_string(dimension));
         if (is_index_type(named.accessor.component))
-            resolver_.fail(named.element, "is of an unsigned type, which no normal may be");
+            resolver_.fail(named.element, "is of an unsigned type, which no direction may be");
         resolver_.check_count(named, count);
         return named;
     }
@@ -158,15 +159,13 @@ private:
         return influences;
     }
 
-    /// Those of an earlier bake (gltf_added.h) are places in a ramp: the mesh has none of them.
     void add_uvs(const tinygltf::Primitive& source, const std::string& element, Group& group,
                  Primitive& primitive) const
     {
         for (std::size_t set = 0; set < kMostUvSets; ++set) {
             const std::string name = "TEXCOORD_" + std::to_string(set);
             const int index = attribute(source.attributes, name);
-            if (index == kNone ||
-                is_added((*asset_.document)["accessors"][static_cast<std::size_t>(index)]))
+            if (index == kNone)
                 continue;
             NamedAccessor named = resolver_.resolve(index, element + ' ' + name);
             if (named.accessor.dimension != 2)
@@ -203,21 +202,18 @@ private:
     void find_colors(const tinygltf::Primitive& primitive, std::size_t vertex_count,
                      const std::string& element)
     {
-        for (const char* name : {"COLOR_0", "_OWN_COLOR"}) {
-            const int index = attribute(primitive.attributes, name);
-            if (index == kNone)
-                continue;
-            const NamedAccessor named = resolver_.resolve(index, element + ' ' + name);
-            if (named.accessor.dimension != 3 && named.accessor.dimension != 4)
-                resolver_.fail(named.element, "is neither of type VEC3 nor VEC4");
-            resolver_.check_count(named, vertex_count);
-            colors_.insert_or_assign(static_cast<std::size_t>(index), named.accessor);
-        }
+        const int index = attribute(primitive.attributes, "COLOR_0");
+        if (index == kNone)
+            return;
+        const NamedAccessor named = resolver_.resolve(index, element + " COLOR_0");
+        if (named.accessor.dimension != 3 && named.accessor.dimension != 4)
+            resolver_.fail(named.element, "is neither of type VEC3 nor VEC4");
+        resolver_.check_count(named, vertex_count);
+        colors_.insert_or_assign(static_cast<std::size_t>(index), named.accessor);
     }
 
     const tinygltf::Model& model_;
     std::size_t mesh_;
-    const GltfAsset& asset_;
     AccessorResolver resolver_;
     std::map<std::size_t, GltfAccessor>& colors_;
     std::vector<std::int32_t>& group_of_primitive_;

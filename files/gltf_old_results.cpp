@@ -1,7 +1,9 @@
 #include "files/gltf_old_results.h"
 
 #include "files/gltf_added.h"
+#include "files/gltf_cuts.h"
 #include "files/gltf_json.h"
+#include "files/gltf_uses.h"
 #include "files/maker_mark.h"
 
 #include <nlohmann/json.hpp>
@@ -28,8 +30,19 @@ bool was_baked(const json& document)
     return mark.is_string() && command_of_mark(mark.get_ref<const std::string&>()) == "bake";
 }
 
+bool has_results(const json& document)
+{
+    const auto any = [&](const char* list, const auto& is_one) {
+        const json& entries = member(document, list);
+        return entries.is_array() && std::ranges::any_of(entries, is_one);
+    };
+    return was_baked(document) || any("materials", is_added) || any("textures", is_added) ||
+           any("accessors",
+               [](const json& accessor) { return is_added(accessor) || is_replacement(accessor); });
+}
+
 /// Takes the attributes of results off; returns their accessors.
-Indices take_attributes(json& document)
+Indices take_attributes(json& document, GltfElements& elements)
 {
     const bool baked = was_baked(document);
     Indices accessors;
@@ -55,7 +68,13 @@ Indices take_attributes(json& document)
                 attributes["COLOR_0"] = attributes["_OWN_COLOR"];
                 attributes.erase("_OWN_COLOR");
             }
+            undo_cut(document, primitive, elements);
         }
+    }
+    const json& entries = member(document, "accessors");
+    for (std::size_t accessor = 0; accessor < entries.size(); ++accessor) {
+        if (is_replacement(entries[accessor]))
+            accessors.insert(accessor);
     }
     return accessors;
 }
@@ -114,6 +133,31 @@ void take_materials(json& document)
         document.erase("materials");
 }
 
+/// Takes nodes back to the meshes that theirs are copies of; drops the copies.
+void take_meshes(json& document)
+{
+    json& meshes = document["meshes"];
+    std::map<std::size_t, std::size_t> original_of;
+    while (!meshes.empty()) {
+        const json& original = member(member(meshes.back(), "extras"), kMarkKey);
+        if (!original.is_number_unsigned() || original.get<std::size_t>() >= meshes.size() - 1)
+            break;
+        json copy = meshes[original.get<std::size_t>()];
+        mark_copy(copy, original.get<std::size_t>());
+        if (copy != meshes.back())
+            break;
+        original_of[meshes.size() - 1] = original.get<std::size_t>();
+        keep_first(meshes, meshes.size() - 1);
+    }
+    for (json& node : document["nodes"]) {
+        if (!node.contains("mesh"))
+            continue;
+        for (auto copy = original_of.find(node["mesh"].get<std::size_t>());
+             copy != original_of.end(); copy = original_of.find(copy->second))
+            node["mesh"] = copy->second;
+    }
+}
+
 /// Drops the picture of results with its texture and sampler; returns its buffer view.
 Indices take_picture(json& document)
 {
@@ -147,6 +191,15 @@ bool are_last(const Indices& indices, std::size_t size)
            *indices.begin() == size - indices.size();
 }
 
+/// Those of the indices that are the last ones of a list of this size.
+Indices last_of(const Indices& indices, std::size_t size)
+{
+    Indices last;
+    while (size > 0 && indices.contains(size - 1))
+        last.insert(--size);
+    return last;
+}
+
 /// Whether anything has an accessor in [first, ...).
 bool have_accessor(const json& value, std::size_t first)
 {
@@ -167,10 +220,11 @@ bool have_accessor(const json& value, std::size_t first)
     return false;
 }
 
-/// Drops the views and their bytes, when they are the last ones, and the accessors with them.
-void take_data(json& document, std::vector<GltfBuffer>& buffers, const Indices& old_accessors,
+/// Drops the accessors that are the last ones, their views and these, and the bytes of the views.
+void take_data(json& document, std::vector<GltfBuffer>& buffers, const Indices& added,
                Indices old_views)
 {
+    const Indices old_accessors = last_of(added, member(document, "accessors").size());
     if (old_accessors.empty() && old_views.empty())
         return;
     json& accessors = document["accessors"];
@@ -178,8 +232,7 @@ void take_data(json& document, std::vector<GltfBuffer>& buffers, const Indices& 
     // a map alone comes without accessors
     const std::size_t first_accessor =
         old_accessors.empty() ? accessors.size() : *old_accessors.begin();
-    if (!old_accessors.empty() &&
-        (!are_last(old_accessors, accessors.size()) || have_accessor(document, first_accessor)))
+    if (!old_accessors.empty() && have_accessor(document, first_accessor))
         return;
     for (const std::size_t accessor : old_accessors) {
         const json& view = member(accessors[accessor], "bufferView");
@@ -226,11 +279,17 @@ void take_data(json& document, std::vector<GltfBuffer>& buffers, const Indices& 
 
 }  // namespace
 
-void drop_old_results(json& document, std::vector<GltfBuffer>& buffers)
+bool drop_old_results(GltfAsset& asset)
 {
-    const Indices accessors = take_attributes(document);
+    json& document = *asset.document;
+    if (!has_results(document))
+        return false;
+    GltfElements elements(asset);
+    const Indices accessors = take_attributes(document, elements);
     take_materials(document);
-    take_data(document, buffers, accessors, take_picture(document));
+    take_meshes(document);
+    take_data(document, asset.buffers, accessors, take_picture(document));
+    return true;
 }
 
 }  // namespace surfelao

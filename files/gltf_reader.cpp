@@ -5,6 +5,7 @@
 #include "files/gltf_mesh.h"
 #include "files/gltf_nodes.h"
 #include "files/gltf_notes.h"
+#include "files/gltf_old_results.h"
 #include "files/gltf_pose.h"
 #include "files/gltf_schema.h"
 #include "surfels/errors.h"
@@ -32,9 +33,8 @@ namespace fs = std::filesystem;
 
 /// The checked document as tinygltf's structs. tinygltf trusts what it reads and opens files, so it
 /// is handed neither more than geometry_text() lets through nor any uri.
-tinygltf::Model parse_model(const GltfAsset& asset)
+tinygltf::Model parse_model(const GltfAsset& asset, const std::string& text)
 {
-    const std::string text = geometry_text(*asset.document, asset.path);
     if (text.size() > std::numeric_limits<unsigned int>::max())
         fail_gltf(asset.path, "JSON", "is larger than 4 GiB");
     tinygltf::TinyGLTF parser;
@@ -135,7 +135,7 @@ public:
         : model_(model),
           asset_(asset),
           scene_(scene),
-          resolver_(model, asset),
+          resolver_(asset),
           nodes_(place_nodes(model, asset.path)),
           meshes_(model.meshes.size()),
           joints_(model.skins.size())
@@ -181,20 +181,21 @@ private:
     void reserve()
     {
         Amounts amounts(asset_, meshes_.size());
-        bool has_normals = false;
         for (const MeshNode& use : nodes_.mesh_nodes) {
             const std::vector<Group>& groups = *meshes_[use.mesh];
             const std::optional<std::size_t> instances = instance_count(model_, use, resolver_);
             amounts.add(use, instances, groups, weights_of(use));
-            has_normals = has_normals || std::ranges::any_of(groups, [](const Group& group) {
-                              return group.normals.has_value();
-                          });
+            for (const Group& group : groups) {
+                has_normals_ = has_normals_ || group.normals;
+                has_tangents_ = has_tangents_ || group.tangents;
+            }
         }
         scene_.positions.reserve(amounts.vertices());
         scene_.triangles.reserve(amounts.triangles());
-        if (has_normals)
+        if (has_normals_)
             scene_.normals.values.reserve(amounts.vertices());
-        has_normals_ = has_normals;
+        if (has_tangents_)
+            scene_.tangents.reserve(amounts.vertices());
         for (std::size_t set = 0; set < kMostUvSets; ++set) {
             if (amounts.uvs(set) == 0)
                 continue;
@@ -252,7 +253,7 @@ private:
         part.first_triangle = static_cast<std::uint32_t>(scene_.triangles.size());
         part.vertex_count = static_cast<std::uint32_t>(vertices.positions.size());
         lost_count_ += vertices.lost_count;
-        asset_.parts.push_back({asset_.uses.size() - 1, glm::dmat3(1.0), {}});
+        asset_.parts.push_back({asset_.uses.size() - 1, glm::dmat3(1.0), {}, {}, {}});
         part_uvs_ = {};
         // without joints the node moves the mesh, skin or not
         if (use.skin && !group.influences.empty()) {
@@ -265,9 +266,10 @@ private:
                 });
         } else {
             const glm::dmat4 world = world_of(use);
+            part.to_world = scaled_to_one(glm::dmat3(world));
             add_rigid(use, vertices, world);
             vertices = {};
-            const bool mirrored = glm::determinant(scaled_to_one(glm::dmat3(world))) < 0.0;
+            const bool mirrored = glm::determinant(part.to_world) < 0.0;
             for (const Primitive& primitive : group.primitives)
                 add_triangles(group, primitive, part, [&](glm::uvec3) { return mirrored; });
         }
@@ -290,10 +292,7 @@ private:
         const NormalMatrix normal_matrix{glm::dmat3(world)};
         for (std::size_t v = 0; v < vertices.positions.size(); ++v) {
             add_position(use, v, world, vertices.positions[v]);
-            if (has_normals_)
-                scene_.normals.values.push_back(vertices.normals.empty()
-                                                    ? glm::vec3(0.0f)
-                                                    : normal_matrix(vertices.normals[v]));
+            add_directions(vertices, v, normal_matrix, glm::dmat3(world));
         }
     }
 
@@ -311,12 +310,23 @@ private:
             const glm::dmat3 linear = scaled_to_one(glm::dmat3(matrices[v]));
             mirrored.push_back(glm::determinant(linear) < 0.0);
             asset_.parts.back().vertices_to_world.emplace_back(linear);
-            if (has_normals_)
-                scene_.normals.values.push_back(vertices.normals.empty()
-                                                    ? glm::vec3(0.0f)
-                                                    : NormalMatrix(linear)(vertices.normals[v]));
+            add_directions(vertices, v, NormalMatrix(linear), linear);
         }
         return mirrored;
+    }
+
+    /// The vertex' normal and tangent, if the scene has any.
+    void add_directions(const MeshVertices& vertices, std::size_t vertex,
+                        const NormalMatrix& normal_matrix, const glm::dmat3& to_world)
+    {
+        if (has_normals_)
+            scene_.normals.values.push_back(vertices.normals.empty()
+                                                ? glm::vec3(0.0f)
+                                                : normal_matrix(vertices.normals[vertex]));
+        if (has_tangents_)
+            scene_.tangents.push_back(vertices.tangents.empty()
+                                          ? glm::vec4(0.0f)
+                                          : tangent_in_world(to_world, vertices.tangents[vertex]));
     }
 
     void add_position(const MeshNode& use, std::size_t vertex, const glm::dmat4& world,
@@ -360,6 +370,8 @@ private:
                        IsMirrored&& is_mirrored)
     {
         const std::vector<std::uint32_t> uvs = uv_begins(group, primitive);
+        GltfPart& in_file = asset_.parts.back();
+        const auto first = static_cast<std::uint32_t>(scene_.triangles.size());
         std::vector<std::uint32_t> indices;
         if (primitive.indices)
             indices = load_indices(primitive, part.vertex_count);
@@ -381,7 +393,8 @@ private:
             if (strip &&
                 (triangle.x == triangle.y || triangle.y == triangle.z || triangle.z == triangle.x))
                 continue;
-            if (is_mirrored(triangle))
+            in_file.turned.push_back(is_mirrored(triangle));
+            if (in_file.turned.back())
                 std::swap(triangle.y, triangle.z);
             scene_.triangles.push_back(triangle);
             for (std::size_t set = 0; set < uvs.size(); ++set)
@@ -389,6 +402,8 @@ private:
                                                       ? glm::uvec3(UvSet::kNone)
                                                       : triangle - part.first_vertex + uvs[set]);
         }
+        const auto end = static_cast<std::uint32_t>(scene_.triangles.size());
+        in_file.primitives.push_back({primitive.index, first, end - first});
     }
 
     std::vector<std::uint32_t> load_indices(const Primitive& primitive,
@@ -420,6 +435,7 @@ private:
     AccessorResolver resolver_;
     PlacedNodes nodes_;
     bool has_normals_ = false;
+    bool has_tangents_ = false;
     /// Of the part that is being added: where the values of each set's accessors begin.
     std::array<std::map<int, std::uint32_t>, kMostUvSets> part_uvs_;
     std::uint64_t lost_count_ = 0;
@@ -433,7 +449,10 @@ Scene read_gltf(const fs::path& path, std::string contents)
 {
     const auto asset = std::make_shared<GltfAsset>();
     load_gltf_asset(path, std::move(contents), *asset);
-    const tinygltf::Model model = parse_model(*asset);
+    std::string text = geometry_text(*asset->document, path);
+    if (drop_old_results(*asset))
+        text = geometry_text(*asset->document, path);
+    const tinygltf::Model model = parse_model(*asset, text);
     Scene scene;
     scene.name = path.filename().string();
     SceneBuilder(model, *asset, scene).build();

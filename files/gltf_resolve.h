@@ -1,4 +1,4 @@
-/// gltf_resolve.h: from an accessor's index to its bytes. Internal to the glTF reader.
+/// gltf_resolve.h: from an accessor's index to its bytes. Internal to the glTF reader and writer.
 #pragma once
 
 #include "files/gltf_accessor.h"
@@ -6,10 +6,6 @@
 
 #include <cstdint>
 #include <string>
-
-namespace tinygltf {
-class Model;
-}
 
 namespace surfelao {
 
@@ -25,14 +21,11 @@ struct NamedAccessor {
 /// Finds where elements lie; reads none of them.
 class AccessorResolver {
 public:
-    /// Both must outlive the resolver.
-    AccessorResolver(const tinygltf::Model& model, const GltfAsset& asset)
-        : model_(model), asset_(asset)
-    {
-    }
+    /// The asset must outlive the resolver, its document have passed geometry_text().
+    explicit AccessorResolver(const GltfAsset& asset) : asset_(asset) {}
 
     /// All that can be wrong with the place of the elements is found here; the name is
-    /// `user` + " accessor " + index. Throws InputError.
+    /// `user` + " accessor " + index. Throws InputError. The index must be in range.
     [[nodiscard]] NamedAccessor resolve(int index, const std::string& user) const;
 
     [[noreturn]] void fail(const std::string& element, const std::string& fault) const
@@ -45,14 +38,13 @@ public:
                      const char* what = "vertices") const;
 
 private:
-    void resolve_sparse(int index, NamedAccessor& named) const;
+    void resolve_sparse(const nlohmann::json& sparse, NamedAccessor& named) const;
     [[nodiscard]] std::size_t stride_of(std::size_t view, const GltfAccessor& accessor,
                                         const std::string& element) const;
     [[nodiscard]] std::string_view slice(std::size_t view, std::size_t offset,
                                          const GltfAccessor& layout,
                                          const std::string& element) const;
 
-    const tinygltf::Model& model_;
     const GltfAsset& asset_;
 };
 

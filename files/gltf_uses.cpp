@@ -1,5 +1,7 @@
 #include "files/gltf_uses.h"
 
+#include "files/maker_mark.h"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -132,6 +134,12 @@ std::vector<std::size_t> nodes_of_uses(json& document, std::span<const GltfUse> 
 
 }  // namespace
 
+void mark_copy(json& mesh, std::size_t original)
+{
+    if (!mesh.contains("extras") || mesh["extras"].is_object())
+        mesh["extras"][kMarkKey] = original;
+}
+
 std::vector<std::size_t> separate_uses(json& document, std::span<const GltfUse> uses)
 {
     const std::vector<std::size_t> nodes_of = nodes_of_uses(document, uses);
@@ -149,9 +157,10 @@ std::vector<std::size_t> separate_uses(json& document, std::span<const GltfUse> 
     for (std::size_t u = 0; u < uses.size(); ++u) {
         std::size_t mesh = uses[u].mesh;
         if (taken[mesh]) {
-            const json copy = meshes[mesh];
+            json copy = meshes[mesh];
+            mark_copy(copy, mesh);
             mesh = meshes.size();
-            meshes.push_back(copy);
+            meshes.push_back(std::move(copy));
         } else {
             taken[mesh] = true;
         }

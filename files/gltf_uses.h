@@ -11,9 +11,12 @@
 
 namespace surfelao {
 
+/// Says in the extras of a mesh that it is a copy of this one, if they are an object or none.
+void mark_copy(nlohmann::json& mesh, std::size_t original);
+
 /// Gives each use a mesh of its own and returns which. The first use of a mesh keeps the entry,
 /// unless a node outside the uses has it too; the others get copies of the entry, which share all
-/// accessors.
+/// accessors and say so in their extras.
 ///
 /// A node with instances becomes a node without a mesh, whose first children show the instances
 /// where they stood. EXT_mesh_gpu_instancing and EXT_instance_features are taken off it, and out of

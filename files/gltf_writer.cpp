@@ -6,15 +6,13 @@
 #include "files/gltf_json.h"
 #include "files/gltf_links.h"
 #include "files/gltf_looks.h"
-#include "files/gltf_old_results.h"
+#include "files/gltf_maps.h"
 #include "files/gltf_pose.h"
-#include "files/gltf_textures.h"
 #include "files/gltf_uri.h"
 #include "files/gltf_uses.h"
 #include "files/maker_mark.h"
 #include "files/sidecars.h"
 #include "surfels/errors.h"
-#include "surfels/number_text.h"
 
 #include <nlohmann/json.hpp>
 
@@ -100,51 +98,6 @@ std::vector<std::string> add_attributes(json& document, const GltfAsset& asset, 
     return looks.notes();
 }
 
-constexpr int kLinearFilter = 9729;
-constexpr int kLinearMipmapLinear = 9987;
-
-/// Adds the map to the materials of the meshes in the scene; returns notes. Its sampler repeats, as
-/// a file's own coordinates may lie beyond [0, 1].
-std::vector<std::string> add_map(json& document, const GltfAsset& asset, const OcclusionMap& map,
-                                 const fs::path& path, AddedData& added)
-{
-    const std::string set = "TEXCOORD_" + std::to_string(map.uv_set);
-    std::vector<Occluded> occluded;
-    std::size_t without = 0;
-    for (std::size_t mesh = 0; mesh < asset.group_of_primitive.size(); ++mesh) {
-        const std::vector<std::int32_t>& groups = asset.group_of_primitive[mesh];
-        for (std::size_t p = 0; p < groups.size(); ++p) {
-            json& primitive = document["meshes"][mesh]["primitives"][p];
-            const json& material = member(primitive, "material");
-            if (groups[p] < 0)
-                continue;
-            if (!primitive["attributes"].contains(set))
-                ++without;
-            else if (material.is_null() || entry(document, "materials", material).is_object())
-                occluded.push_back({&primitive, map.uv_set});
-        }
-    }
-    if (occluded.empty())
-        fail_gltf(asset.path, "", "has no primitive with " + set + ", which a map is to lie over");
-    json image = {{"mimeType", "image/png"}};
-    if (const std::optional<fs::path> file = map_file_of(path))
-        image["uri"] = encode_uri(file->filename().string());
-    else
-        image["bufferView"] = added.add_bytes(map.png);
-    const std::size_t texture = add_occlusion_texture(
-        document, image, {{"magFilter", kLinearFilter}, {"minFilter", kLinearMipmapLinear}});
-    const std::size_t replaced = show_occlusion_texture(document, texture, occluded);
-
-    std::vector<std::string> notes;
-    if (replaced > 0)
-        notes.push_back("the map takes the place of the occlusionTexture of " +
-                        count_text(replaced, "material"));
-    if (without > 0)
-        notes.push_back(count_text(without, "primitive") + " without " + set +
-                        " left as they are: no map lies over them");
-    return notes;
-}
-
 std::string make_glb(const json& document, const std::string& bin, const GltfAsset& asset,
                      const fs::path& path)
 {
@@ -201,16 +154,14 @@ WrittenFile contents_with(const fs::path& path, const Scene& scene, const WriteO
         throw InputError(path.string() +
                          ": only a scene that was read from glTF can be written as glTF");
     json document = *asset->document;
-    std::vector<GltfBuffer> buffers_as_read = asset->buffers;
-    drop_old_results(document, buffers_as_read);
     const bool binary = type_of(path) == FileType::glb;
     std::string bytes;
     if (binary)
-        bytes = gather(document, buffers_as_read, asset->path);
+        bytes = gather(document, asset->buffers, asset->path);
     WrittenFile written;
     note_missing(turn_uris(document, asset->path, path), written.notes);
     if (!binary)
-        embed_buffers(document, buffers_as_read, path);
+        embed_buffers(document, asset->buffers, path);
 
     const std::size_t buffer = binary ? 0 : member(document, "buffers").size();
     set_mark(document, options.mark);
@@ -243,7 +194,7 @@ WrittenFile gltf_contents_with_map(const fs::path& path, const Scene& scene,
 {
     return contents_with(path, scene, options,
                          [&](json& document, const GltfAsset& asset, AddedData& added) {
-                             return add_map(document, asset, map, path, added);
+                             return add_map(document, asset, scene, map, path, added);
                          });
 }
 

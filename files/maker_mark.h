@@ -10,6 +10,7 @@
 ///   .obj          a comment, the first line
 ///   .off          a comment, the last line: not every reader takes one in front of the counts
 ///   .gltf .glb    the string `surfelao` in `asset.extras` (none where extras are no object)
+///   pictures      the description (image/image_file.h: read_description)
 ///   .html         the content of <meta name="generator">, in the first line
 ///
 /// No reader of these formats minds it. A writer that is given a mark drops an older one.

@@ -26,6 +26,7 @@ public:
     {
         return own().colors.linear();
     }
+    [[nodiscard]] BaseColors base_colors() const override;  // obj_base_colors.cpp
 };
 
 }  // namespace surfelao

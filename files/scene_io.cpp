@@ -6,12 +6,15 @@
 #include "files/gltf_links.h"
 #include "files/gltf_uri.h"
 #include "files/obj_io.h"
+#include "files/obj_materials.h"
 #include "files/off_io.h"
 #include "files/ply_io.h"
 #include "files/stl_io.h"
 #include "surfels/atomic_file.h"
 #include "surfels/errors.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -62,6 +65,41 @@ WrittenFile contents_for(const fs::path& path, const Scene& scene,
     }
 }
 
+/// Whether the result with a map that would be written to `output` is there already, with its map.
+bool is_of_result(const fs::path& output)
+{
+    const std::string picture = map_file_of(output)->filename().string();
+    switch (type_of(output)) {
+        case FileType::obj:
+            return is_our_materials(*map_materials_of(output), picture);
+        case FileType::ply:
+            return names_our_texture(output, picture);
+        default:
+            return names_our_picture(output, encode_uri(picture));
+    }
+}
+
+/// Throws SettingsError where a triangle of the scene would have no place to look up.
+void check_places(const Scene& scene, const UvSet& uvs)
+{
+    const bool of_vertices = uvs.corners.empty();
+    require(of_vertices ? uvs.values.size() == scene.positions.size()
+                        : uvs.corners.size() == scene.triangles.size(),
+            "new texture coordinates are one for each vertex, or for each corner of a triangle");
+    require(std::ranges::all_of(uvs.values,
+                                [](const glm::dvec2& uv) { return std::isfinite(uv.x + uv.y); }),
+            "new texture coordinates are finite");
+    require(std::ranges::all_of(uvs.corners,
+                                [&](const glm::uvec3& corner) {
+                                    const auto is_there = [&](std::uint32_t uv) {
+                                        return uv < uvs.values.size() || uv == UvSet::kNone;
+                                    };
+                                    return is_there(corner.x) && is_there(corner.y) &&
+                                           is_there(corner.z);
+                                }),
+            "a corner of a triangle has texture coordinates that there are not");
+}
+
 }  // namespace
 
 Scene read_scene(const fs::path& path)
@@ -107,45 +145,77 @@ std::vector<std::string> write_scene(const fs::path& path, const Scene& scene,
 
 std::optional<fs::path> map_file_of(const fs::path& output)
 {
-    if (type_of(output) != FileType::gltf)
+    const FileType type = type_of(output);
+    if (type != FileType::gltf && type != FileType::obj && type != FileType::ply)
         return std::nullopt;
     return output.parent_path() / (output.stem().string() + ".ao.png");
 }
 
+std::optional<fs::path> map_materials_of(const fs::path& output)
+{
+    if (type_of(output) != FileType::obj)
+        return std::nullopt;
+    return output.parent_path() / (output.stem().string() + ".ao.mtl");
+}
+
 void check_output_with_map(const fs::path& input, const fs::path& output)
 {
-    if (!is_gltf(type_of(output)) || !is_gltf(type_of(input)))
+    const FileType type = type_of(output);
+    const bool is_known = is_gltf(type) || type == FileType::obj || type == FileType::ply;
+    if (!is_known || (is_gltf(type) && !is_gltf(type_of(input))))
         throw InputError(output.string() + ": " +
-                         (is_gltf(type_of(output))
-                              ? "only a scene that was read from glTF can be written as glTF"
-                              : "a map goes into .glb and .gltf only") +
+                         (is_known ? "only a scene that was read from glTF can be written as glTF"
+                                   : "a map goes into .glb, .gltf, .obj and .ply only") +
                          ", use .png, .tif or .exr for the map alone");
     check_output(input, output);
-    const std::optional<fs::path> file = map_file_of(output);
     std::error_code error;
-    if (!file || !fs::exists(fs::symlink_status(*file, error)))
-        return;
-    if (!names_our_picture(output, encode_uri(file->filename().string())))
-        throw InputError(file->string() + ": exists and is no map of " +
-                         output.filename().string() + ", which would replace it; use .glb");
-    check_writable(*file);
+    for (const std::optional<fs::path>& file : {map_file_of(output), map_materials_of(output)}) {
+        if (!file || !fs::exists(fs::symlink_status(*file, error)))
+            continue;
+        if (!is_of_result(output))
+            throw InputError(file->string() + ": exists and is of no result at " +
+                             output.filename().string() + ", which would replace it" +
+                             (type == FileType::gltf ? "; use .glb" : ""));
+        check_writable(*file);
+    }
 }
 
 std::vector<std::string> write_scene_with_map(const fs::path& path, const Scene& scene,
                                               const OcclusionMap& map, const WriteOptions& options)
 {
     check_output_with_map(path, path);
-    WrittenFile written = gltf_contents_with_map(path, scene, map, options);
-    const std::optional<fs::path> file = map_file_of(path);
+    if (map.uvs)
+        check_places(scene, *map.uvs);
+    else if (!is_gltf(type_of(path)) &&
+             (map.uv_set >= scene.uvs.size() || scene.uvs[map.uv_set].empty()))
+        throw InputError(path.string() + ": the mesh has no texture coordinates " +
+                         std::to_string(map.uv_set) + ", which a map is to lie over");
+    std::vector<std::pair<fs::path, std::string_view>> files;
+    if (const std::optional<fs::path> file = map_file_of(path))
+        files.emplace_back(*file, map.png);
+    WrittenFile written;
+    ObjWithMap obj;
+    if (const std::optional<fs::path> file = map_materials_of(path)) {
+        obj = obj_contents_with_map(path, scene, map, options);
+        files.emplace_back(*file, obj.materials);
+        written = {std::move(obj.contents), std::move(obj.notes)};
+    } else if (type_of(path) == FileType::ply) {
+        written = ply_contents_with_map(path, scene, map, options);
+    } else {
+        written = gltf_contents_with_map(path, scene, map, options);
+    }
+    files.emplace_back(path, written.contents);
+    std::vector<fs::path> added;
     std::error_code error;
-    const bool is_new = file && !fs::exists(*file, error);
-    if (file)
-        write_atomically(*file, map.png);
     try {
-        write_atomically(path, written.contents);
+        for (const auto& [file, contents] : files) {
+            if (!fs::exists(file, error))
+                added.push_back(file);
+            write_atomically(file, contents);
+        }
     } catch (...) {
-        if (is_new)
-            fs::remove(*file, error);
+        for (const fs::path& file : added)
+            fs::remove(file, error);
         throw;
     }
     return std::move(written.notes);

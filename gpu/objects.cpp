@@ -22,6 +22,8 @@ FormatNames names_of(TexelFormat format)
     switch (format) {
         case TexelFormat::rgba8:
             return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
+        case TexelFormat::srgb8_alpha8:
+            return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
         case TexelFormat::r32f:
             return {GL_R32F, GL_RED, GL_FLOAT, 4};
         case TexelFormat::rg32f:
@@ -177,9 +179,10 @@ Texture2D::Texture2D(const GlContext& context, int width, int height, TexelForma
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER,
                      mipmaps ? GL_LINEAR_MIPMAP_LINEAR : (linear ? GL_LINEAR : GL_NEAREST));
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, linear ? GL_LINEAR : GL_NEAREST);
-    const bool repeat = options.wrap == TextureWrap::repeat_x;
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, repeat ? GL_REPEAT : GL_CLAMP_TO_EDGE);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S,
+                     options.wrap == TextureWrap::clamp ? GL_CLAMP_TO_EDGE : GL_REPEAT);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T,
+                     options.wrap == TextureWrap::repeat ? GL_REPEAT : GL_CLAMP_TO_EDGE);
     check_gl(gl, "making a texture");
 }
 

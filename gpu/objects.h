@@ -90,8 +90,9 @@ private:
 };
 
 /// How a texel is stored. Float formats come back from the device with all their bits; *ui formats
-/// are fetched as integers by usampler*, so that no bit of a mixed record is touched.
-enum class TexelFormat { rgba8, r32f, rg32f, rgba32f, r32ui, rgba32ui, depth32f };
+/// are fetched as integers by usampler*, so that no bit of a mixed record is touched. srgb8_alpha8
+/// is fetched and filtered as linear light.
+enum class TexelFormat { rgba8, srgb8_alpha8, r32f, rg32f, rgba32f, r32ui, rgba32ui, depth32f };
 
 /// Can be bound to a sampler of a program.
 struct TextureBinding {
@@ -132,7 +133,11 @@ enum class TextureFilter {
     mipmaps,  ///< linear between mipmap levels made from the first
 };
 
-enum class TextureWrap { clamp, repeat_x };  ///< repeat_x: a panorama that closes on itself
+enum class TextureWrap {
+    clamp,
+    repeat_x,  ///< a panorama that closes on itself
+    repeat,    ///< both ways
+};
 
 struct TextureOptions {
     TextureFilter filter = TextureFilter::nearest;

@@ -94,6 +94,14 @@ glm::vec3 heat_color(float x)
                     position - static_cast<float>(left));
 }
 
+glm::vec3 label_color(std::uint32_t index)
+{
+    // the golden angle: any few hues of the sequence are spread evenly
+    const double turns = std::fmod(0.6180339887498949 * index, 1.0);
+    constexpr float kLightness[] = {0.72f, 0.82f, 0.62f};
+    return most_vivid(kLightness[index % 3], static_cast<float>(360.0 * turns), 0.15f);
+}
+
 Rgb error_color(float error, float full)
 {
     if (std::isnan(error))

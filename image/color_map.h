@@ -1,4 +1,4 @@
-/// color_map.h: numbers as colours: the two maps that all pictures of the project use.
+/// color_map.h: numbers as colours: the maps that all pictures of the project use.
 ///
 /// The heat map says how large a number is: differences of pictures, levels, the viewer's
 /// difference to rays. Lightness rises evenly from a dark blue over purple, red and orange to a
@@ -25,6 +25,10 @@ namespace surfelao {
 
 /// heat_color at 256 even steps from 0 to 1, for shaders and tables.
 [[nodiscard]] const std::array<glm::vec3, 256>& heat_colors();
+
+/// Linear RGB for things that are only to be told apart, by number: neighbours in the sequence have
+/// hues far apart, and none is darker than the others by much.
+[[nodiscard]] glm::vec3 label_color(std::uint32_t index);
 
 /// As a screen shows it: 0 to 255 (sRGB).
 using Rgb = std::array<std::uint8_t, 3>;

@@ -48,6 +48,26 @@ std::string one_line(std::string text)
     return text.empty() ? "it is damaged" : text;
 }
 
+/// read(image) returns what went wrong.
+template <class Read>
+Image checked_image(const std::string& name, const Read& read)
+{
+    Image image;
+    const std::string error = read(image);
+    if (!error.empty())
+        throw InputError(name + ": cannot be read as a picture: " + one_line(error));
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const glm::vec4& p = image.at(x, y);
+            if (!std::isfinite(p.r) || !std::isfinite(p.g) || !std::isfinite(p.b) ||
+                !std::isfinite(p.a))
+                throw InputError(name + ": pixel " + std::to_string(x) + ", " + std::to_string(y) +
+                                 " is not finite");
+        }
+    }
+    return image;
+}
+
 }  // namespace
 
 Image read_image(const std::filesystem::path& path)
@@ -58,20 +78,13 @@ Image read_image(const std::filesystem::path& path)
     if (std::filesystem::is_directory(path, ignored))
         throw InputError(path.string() + ": is a folder, a picture was wanted");
 
-    Image image;
-    const std::string error = module().read(path.string(), image);
-    if (!error.empty())
-        throw InputError(path.string() + ": cannot be read as a picture: " + one_line(error));
-    for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < image.width; ++x) {
-            const glm::vec4& p = image.at(x, y);
-            if (!std::isfinite(p.r) || !std::isfinite(p.g) || !std::isfinite(p.b) ||
-                !std::isfinite(p.a))
-                throw InputError(path.string() + ": pixel " + std::to_string(x) + ", " +
-                                 std::to_string(y) + " is not finite");
-        }
-    }
-    return image;
+    return checked_image(path.string(),
+                         [&](Image& image) { return module().read(path.string(), image); });
+}
+
+Image read_image(const std::string& name, std::string_view bytes)
+{
+    return checked_image(name, [&](Image& image) { return module().read_bytes(bytes, image); });
 }
 
 namespace {
@@ -133,14 +146,24 @@ void write_image(const std::filesystem::path& path, const Image& image)
     });
 }
 
-void write_map(const std::filesystem::path& path, const Map& map, MapDepth depth)
+void write_map(const std::filesystem::path& path, const Map& map, MapDepth depth,
+               const std::string& mark)
 {
     check_map_output(path, depth);
     if (map.values.empty())
         throw InputError(path.string() + ": the map has no texels");
     write_picture(path, [&](const std::string& temporary) {
-        return module().write_map(temporary, map, depth);
+        return module().write_map(temporary, map, depth, mark);
     });
+}
+
+std::string read_description(const std::filesystem::path& path)
+{
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored))
+        return {};
+    std::string description;
+    return module().read_description(path.string(), description).empty() ? description : "";
 }
 
 std::string map_bytes(const Map& map, MapDepth depth)

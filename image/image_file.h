@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace surfelao {
 
@@ -19,6 +20,9 @@ namespace surfelao {
 /// with one sentence for a file that is missing, not a picture, cut short, larger than 2^28 pixels
 /// or holds values that are not finite.
 [[nodiscard]] Image read_image(const std::filesystem::path& path);
+
+/// The same from the contents of a .png or .jpg; `name` is for messages.
+[[nodiscard]] Image read_image(const std::string& name, std::string_view bytes);
 
 /// Throws InputError when `path` could not be written at all: an extension other than .png, .jpg,
 /// .jpeg or .exr, a folder that is missing, a path that is a folder. For use before any work.
@@ -35,8 +39,13 @@ void write_image(const std::filesystem::path& path, const Image& image);
 void check_map_output(const std::filesystem::path& path, MapDepth depth);
 
 /// Writes the numbers of a map as they are: tagged linear, without a gamma, those of 0 to 1 rounded
-/// to the nearest step of the depth. One channel is grey, three are RGB. As write_image() else.
-void write_map(const std::filesystem::path& path, const Map& map, MapDepth depth);
+/// to the nearest step of the depth. One channel is grey, three are RGB. mark: who made the file,
+/// and how (files/maker_mark.h), as its description. As write_image() else.
+void write_map(const std::filesystem::path& path, const Map& map, MapDepth depth,
+               const std::string& mark = {});
+
+/// The description of a picture: the mark of one of ours. Empty where there is none, or no picture.
+[[nodiscard]] std::string read_description(const std::filesystem::path& path);
 
 /// The bytes that write_map() gives a .png: for files that hold pictures. Throws SettingsError for
 /// a map without texels and for MapDepth::whole, std::runtime_error when the module refuses.

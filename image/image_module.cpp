@@ -15,11 +15,12 @@ namespace {
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;  // 4 GiB as floats: 23,000 x 11,500
 constexpr int kJpegQuality = 95;
 
-std::string read(const std::string& path, Image& image)
+/// From the file, or from `memory` in the format that `path` has.
+std::string read(const std::string& path, Image& image, OIIO::Filesystem::IOProxy* memory = nullptr)
 {
     OIIO::ImageSpec wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1);
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes);
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes, memory);
     if (!input)
         return OIIO::geterror();
     const OIIO::ImageSpec spec = input->spec();
@@ -55,6 +56,12 @@ std::string read(const std::string& path, Image& image)
     return {};
 }
 
+std::string read_bytes(std::string_view bytes, Image& image)
+{
+    OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+    return read(bytes.starts_with("\xff\xd8") ? "memory.jpg" : "memory.png", image, &memory);
+}
+
 std::string write(const std::string& path, const Image& image, bool alpha)
 {
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path);
@@ -85,7 +92,7 @@ std::string write(const std::string& path, const Image& image, bool alpha)
 
 /// To the file, or to `memory` in the format that `path` has.
 std::string write_map(const std::string& path, const Map& map, MapDepth depth,
-                      OIIO::Filesystem::IOProxy* memory = nullptr)
+                      const std::string& description, OIIO::Filesystem::IOProxy* memory = nullptr)
 {
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path);
     if (!output)
@@ -98,6 +105,8 @@ std::string write_map(const std::string& path, const Map& map, MapDepth depth,
     OIIO::ImageSpec spec(static_cast<int>(map.width), static_cast<int>(map.height),
                          static_cast<int>(map.channels), type);
     spec.attribute("oiio:ColorSpace", "Linear");
+    if (!description.empty())
+        spec.attribute("ImageDescription", description);
     if (memory)
         spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &memory);
     if (!output->open(path, spec) ||
@@ -109,9 +118,18 @@ std::string write_map(const std::string& path, const Map& map, MapDepth depth,
 std::string map_bytes(const Map& map, MapDepth depth, std::string& bytes)
 {
     OIIO::Filesystem::IOVecOutput memory;
-    std::string error = write_map("map.png", map, depth, &memory);
+    std::string error = write_map("map.png", map, depth, "", &memory);
     bytes.assign(memory.buffer().begin(), memory.buffer().end());
     return error;
+}
+
+std::string read_description(const std::string& path, std::string& description)
+{
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path);
+    if (!input)
+        return OIIO::geterror();
+    description = input->spec().get_string_attribute("ImageDescription");
+    return {};
 }
 
 /// An empty error text would read as success.
@@ -135,11 +153,19 @@ surfelao_image_module()
         [](const std::string& path, surfelao::Image& image) {
             return surfelao::guarded([&] { return surfelao::read(path, image); });
         },
+        [](std::string_view bytes, surfelao::Image& image) {
+            return surfelao::guarded([&] { return surfelao::read_bytes(bytes, image); });
+        },
         [](const std::string& path, const surfelao::Image& image, bool alpha) {
             return surfelao::guarded([&] { return surfelao::write(path, image, alpha); });
         },
-        [](const std::string& path, const surfelao::Map& map, surfelao::MapDepth depth) {
-            return surfelao::guarded([&] { return surfelao::write_map(path, map, depth); });
+        [](const std::string& path, const surfelao::Map& map, surfelao::MapDepth depth,
+           const std::string& description) {
+            return surfelao::guarded(
+                [&] { return surfelao::write_map(path, map, depth, description); });
+        },
+        [](const std::string& path, std::string& description) {
+            return surfelao::guarded([&] { return surfelao::read_description(path, description); });
         },
         [](const surfelao::Map& map, surfelao::MapDepth depth, std::string& bytes) {
             return surfelao::guarded([&] { return surfelao::map_bytes(map, depth, bytes); });

@@ -6,17 +6,23 @@
 #include "image/map.h"
 
 #include <string>
+#include <string_view>
 
 namespace surfelao {
 
 struct ImageModule {
     /// Reads `path` into `image`; returns what went wrong, without the path, or an empty string.
     std::string (*read)(const std::string& path, Image& image);
+    /// The same from the contents of a file.
+    std::string (*read_bytes)(std::string_view bytes, Image& image);
     /// Writes `image` to `path` in the format of its extension, with or without alpha; returns the
     /// same.
     std::string (*write)(const std::string& path, const Image& image, bool alpha);
-    /// The same for a map: its numbers as they are.
-    std::string (*write_map)(const std::string& path, const Map& map, MapDepth depth);
+    /// The same for a map: its numbers as they are, and a description where it is not empty.
+    std::string (*write_map)(const std::string& path, const Map& map, MapDepth depth,
+                             const std::string& description);
+    /// What stands in the file's head as its description; returns what went wrong.
+    std::string (*read_description)(const std::string& path, std::string& description);
     /// The same as the contents of a .png, into `bytes`.
     std::string (*map_bytes)(const Map& map, MapDepth depth, std::string& bytes);
 };

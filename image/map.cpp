@@ -44,17 +44,28 @@ std::vector<std::size_t> ring_around(const Map& map, const std::vector<std::uint
 
 }  // namespace
 
+Footprint footprint(std::uint32_t width, std::uint32_t height, glm::dvec2 uv)
+{
+    const double x = uv.x * width - 0.5, y = uv.y * height - 0.5;
+    const double left = std::floor(x), top = std::floor(y);
+    const std::uint32_t columns[2] = {repeated(left, width), repeated(left + 1.0, width)};
+    const std::uint32_t rows[2] = {repeated(top, height), repeated(top + 1.0, height)};
+    Footprint print;
+    for (int k = 0; k < 4; ++k) {
+        const int i = k % 2, j = k / 2;
+        print.texels[k] = std::size_t{rows[j]} * width + columns[i];
+        print.weights[k] =
+            (i == 1 ? x - left : 1.0 - x + left) * (j == 1 ? y - top : 1.0 - y + top);
+    }
+    return print;
+}
+
 float fetch(const Map& map, std::uint32_t channel, glm::dvec2 uv)
 {
-    const double x = uv.x * map.width - 0.5, y = uv.y * map.height - 0.5;
-    const double left = std::floor(x), top = std::floor(y);
-    const std::uint32_t columns[2] = {repeated(left, map.width), repeated(left + 1.0, map.width)};
-    const std::uint32_t rows[2] = {repeated(top, map.height), repeated(top + 1.0, map.height)};
+    const Footprint print = footprint(map.width, map.height, uv);
     double sum = 0.0;
-    for (int j = 0; j < 2; ++j)
-        for (int i = 0; i < 2; ++i)
-            sum += (i == 1 ? x - left : 1.0 - x + left) * (j == 1 ? y - top : 1.0 - y + top) *
-                   map.values[map.index(columns[i], rows[j]) + channel];
+    for (int k = 0; k < 4; ++k)
+        sum += print.weights[k] * map.values[print.texels[k] * map.channels + channel];
     return static_cast<float>(sum);
 }
 

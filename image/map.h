@@ -38,6 +38,15 @@ enum class MapDepth {
     whole,  ///< 32-bit float, .tif and .exr
 };
 
+/// The four texels around a place of a map, rows of two, and their weights: they sum up to 1.
+struct Footprint {
+    std::size_t texels[4];  ///< row * width + column
+    double weights[4];
+};
+
+/// What fetch() takes. uv must be finite.
+[[nodiscard]] Footprint footprint(std::uint32_t width, std::uint32_t height, glm::dvec2 uv);
+
 /// One channel as a viewer fetches it: linear between the four texels whose centres are around uv,
 /// repeating beyond [0, 1]. uv must be finite.
 [[nodiscard]] float fetch(const Map& map, std::uint32_t channel, glm::dvec2 uv);

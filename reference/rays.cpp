@@ -1,5 +1,6 @@
 #include "reference/rays.h"
 
+#include "reference/closest_hit.h"
 #include "reference/sobol.h"
 #include "surfels/errors.h"
 
@@ -367,6 +368,38 @@ std::vector<Occlusion> trace_occlusion(const RayScene& scene, std::span<const Re
     const RayScene::Impl& impl = scene.impl();
     return impl.wide ? trace_all<16>(impl.scene, receivers, options, progress)
                      : trace_all<8>(impl.scene, receivers, options, progress);
+}
+
+std::vector<ClosestHit> closest_hits(const RayScene& scene, std::span<const Ray> rays)
+{
+    std::vector<ClosestHit> hits(rays.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), 1024), [&](const auto& some) {
+        const FlushDenormals flush;
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        for (std::size_t i = some.begin(); i < some.end(); ++i) {
+            const Ray& ray = rays[i];
+            RTCRayHit query{};
+            query.ray.org_x = ray.origin.x;
+            query.ray.org_y = ray.origin.y;
+            query.ray.org_z = ray.origin.z;
+            query.ray.dir_x = ray.direction.x;
+            query.ray.dir_y = ray.direction.y;
+            query.ray.dir_z = ray.direction.z;
+            query.ray.tfar = ray.length;
+            query.ray.mask = ~0u;
+            query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            rtcIntersect1(scene.impl().scene, &context, &query);
+            if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+                continue;
+            const glm::vec3 normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+            hits[i] = {query.hit.primID,
+                       {query.hit.u, query.hit.v},
+                       query.ray.tfar,
+                       glm::dot(normal, ray.direction) > 0.0f};
+        }
+    });
+    return hits;
 }
 
 }  // namespace surfelao

@@ -46,22 +46,25 @@ vec3 safe_normalize(vec3 v)
 // A direction as a colour: the shown value is (d + 1) / 2.
 vec3 direction_color(vec3 d) { return srgb_decode(0.5 + 0.5 * d); }
 
+// What stands at this pixel: the result, or right of the wipe the reference.
+vec4 at_wipe(vec4 own, vec4 reference) { return gl_FragCoord.x < u_wipe_x ? own : reference; }
+
 // normal_level: the normal of what is drawn, and the level of its surfel (model_shape.glsl). own and
 // reference: the texels of model_values.glsl.
 vec3 shade(vec4 normal_level, vec4 own, vec4 reference)
 {
-    vec4 shown = gl_FragCoord.x < u_wipe_x ? own : reference;
+    vec4 values = at_wipe(own, reference);
     if (u_colors == kDifference)
         return heat_color(abs(own.w - reference.w) / u_difference_scale);
     if (u_colors == kBentNormals)
-        return direction_color(safe_normalize(shown.xyz));
+        return direction_color(safe_normalize(values.xyz));
     if (u_colors == kNormals)
         return direction_color(safe_normalize(normal_level.xyz));
     if (u_colors == kLevels)
         return heat_color(normal_level.w);
-    float visibility = 1.0 - (u_colors == kRays ? reference.w : shown.w);
+    float visibility = 1.0 - (u_colors == kRays ? reference.w : values.w);
     if (u_colors != kEnvironment)  // as the baked colours look in other programs
         return srgb_decode(vec3(kPaper * visibility));
-    vec2 uv = panorama_uv(u_sky_frame * safe_normalize(shown.xyz));
+    vec2 uv = panorama_uv(u_sky_frame * safe_normalize(values.xyz));
     return soften(kAlbedo * visibility * u_exposure * textureLod(u_irradiance, uv, 0.0).rgb);
 }

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -86,6 +88,46 @@ void check_scene(const Scene& scene)
     check_corners(scene, scene.normals, "normal");
     for (const UvSet& uvs : scene.uvs)
         check_corners(scene, uvs, "texture coordinate");
+}
+
+Scene join(std::span<const Scene> scenes)
+{
+    Scene all;
+    for (const Scene& scene : scenes) {
+        require(all.positions.size() + scene.positions.size() <= kMostElements &&
+                    all.triangles.size() + scene.triangles.size() <= kMostElements,
+                "the files have more than " + std::to_string(kMostElements) +
+                    " vertices or triangles together");
+        const auto vertices = static_cast<std::uint32_t>(all.positions.size());
+        const auto triangles = static_cast<std::uint32_t>(all.triangles.size());
+        const auto normals = static_cast<std::uint32_t>(all.normals.values.size());
+        all.name += (all.name.empty() ? "" : ", ") + scene.name;
+        all.positions.insert(all.positions.end(), scene.positions.begin(), scene.positions.end());
+        all.normals.values.insert(all.normals.values.end(), scene.normals.values.begin(),
+                                  scene.normals.values.end());
+        for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+            all.triangles.push_back(scene.triangles[t] + vertices);
+            glm::uvec3 corners(CornerNormals::kNone);
+            if (!scene.normals.empty())
+                corners =
+                    scene.normals.corners.empty() ? scene.triangles[t] : scene.normals.corners[t];
+            for (int k = 0; k < 3; ++k)
+                if (corners[k] != CornerNormals::kNone)
+                    corners[k] += normals;
+            all.normals.corners.push_back(corners);
+        }
+        for (Part part : scene.parts) {
+            part.first_vertex += vertices;
+            part.first_triangle += triangles;
+            if (part.name.empty())
+                part.name = std::filesystem::path(scene.name).stem().string();
+            all.parts.push_back(std::move(part));
+        }
+        all.notes.insert(all.notes.end(), scene.notes.begin(), scene.notes.end());
+    }
+    if (all.normals.values.empty())
+        all.normals.corners.clear();
+    return all;
 }
 
 }  // namespace surfelao

@@ -10,6 +10,9 @@
 /// vertex with a triangle stands: it changes no box.
 #pragma once
 
+#include "surfels/base_colors.h"
+
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -32,6 +35,9 @@ struct Part {
     std::int32_t node = -1;  ///< glTF: node, mesh and primitive that this part is; else -1
     std::int32_t mesh = -1;
     std::int32_t primitive = -1;
+    /// Directions from the part's own space (object space) to the world; the identity where they
+    /// are one, and for what joints move.
+    glm::dmat3 to_world{1.0};
 };
 
 /// The normals that a file gives, one per corner of a triangle: many corners may share one.
@@ -65,6 +71,9 @@ public:
     /// The file's own colours for a writer of another format: one per scene vertex in linear light
     /// and alpha, 0 to 1, white where a vertex has none; empty where the file has none. O(bytes).
     [[nodiscard]] virtual std::vector<glm::vec4> own_colors() const { return {}; }
+    /// What the file paints its surfaces with, vertex colours apart; no materials where it says
+    /// nothing of it. What is malformed in it is white. O(bytes).
+    [[nodiscard]] virtual BaseColors base_colors() const { return {}; }
 };
 
 struct Scene {
@@ -72,8 +81,13 @@ struct Scene {
     std::vector<glm::dvec3> positions;  ///< world space, in the file's own order and number
     std::vector<glm::uvec3> triangles;  ///< into positions; polygons are already cut up
     std::vector<Part> parts;
-    CornerNormals normals;       ///< empty where the file has none
-    std::vector<UvSet> uvs;      ///< by number: glTF's TEXCOORD_0, _1 and so on
+    CornerNormals normals;   ///< empty where the file has none
+    std::vector<UvSet> uvs;  ///< by number: glTF's TEXCOORD_0, _1 and so on
+    /// One per vertex, as the file gives them (glTF's TANGENT): the direction of the world in which
+    /// u grows, of unit length, and in w the sign of the third axis, w * cross(normal, tangent).
+    /// Zero where a part has none; empty where all parts do. They belong to the texture coordinates
+    /// of the material's normalTexture, which are mostly set 0.
+    std::vector<glm::vec4> tangents;
     bool free_vertices = false;  ///< the file has none of its own (STL): they may be split
     /// What the file holds and nobody honours, and what in it was let pass: a sentence each.
     std::vector<std::string> notes;
@@ -84,6 +98,11 @@ struct Scene {
 /// finite or beyond kFarthest, a triangle uses a vertex that there is not, or there is no triangle.
 [[nodiscard]] Scene make_scene(std::span<const glm::dvec3> positions,
                                std::span<const glm::uvec3> triangles);
+
+/// All of them as one, one behind the other, with their normals; parts without a name get their
+/// scene's. Texture coordinates, tangents and assets are left out. Throws SettingsError for more
+/// elements than kMostElements.
+[[nodiscard]] Scene join(std::span<const Scene> scenes);
 
 /// Throws InputError as make_scene does, but takes a scene without triangles.
 void check_scene(const Scene& scene);

@@ -320,6 +320,12 @@ MapRaster::MapRaster(const Geometry& geometry, const UvSet& uvs, MapSize size) :
     }
 }
 
+void MapRaster::mark_shown(std::span<std::uint8_t> triangles) const
+{
+    for (const Placed& placed : placed_)
+        triangles[placed.triangle] = 1;
+}
+
 std::vector<Texel> MapRaster::texels(std::uint32_t first, std::uint32_t rows) const
 {
     const std::uint32_t end = std::min(size_.height, first + rows);

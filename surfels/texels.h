@@ -18,6 +18,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace surfelao {
@@ -65,6 +66,8 @@ public:
     /// Triangles that show no texel: without a place in the map, without area there, or beyond
     /// kMostTiles.
     [[nodiscard]] std::uint64_t flat_triangles() const { return flat_; }
+    /// 1 for each triangle that shows a texel; the others' entries are left as they are.
+    void mark_shown(std::span<std::uint8_t> triangles) const;
     /// Triangles that reach out of [0, 1]: where one that does not covers the same texel, they do
     /// not count.
     [[nodiscard]] std::uint64_t outside_triangles() const { return outside_; }

@@ -14,7 +14,7 @@ Image render(const Model& model, std::span<const Occlusion> occlusion,
              const RenderOptions& options, const Progress& progress)
 {
     SURFELAO_CHECK(options.samples >= 1);
-    SURFELAO_CHECK(!reference.empty() || !needs_reference(options.view));
+    SURFELAO_CHECK(!reference.empty() || options.data.reference || !needs_reference(options.view));
     const GlContext context = GlContext::create(options.backend);
     const int largest = context.info().max_texture_size;
     if (options.width < 1 || options.height < 1 || options.width > largest ||
@@ -30,6 +30,14 @@ Image render(const Model& model, std::span<const Occlusion> occlusion,
     renderer.set_occlusion(occlusion);
     if (!reference.empty())
         renderer.set_reference(reference);
+    if (options.data.layout)
+        renderer.set_layout(*model.mesh, *options.data.layout);
+    if (options.data.map)
+        renderer.set_map(*options.data.map);
+    if (options.data.reference)
+        renderer.set_map_reference(*options.data.reference);
+    if (options.data.paint)
+        renderer.set_paint(*options.data.paint);
 
     const Framebuffer target = renderer.make_target(options.width, options.height);
     SampleSum sum(context, options.width, options.height);
@@ -41,18 +49,23 @@ Image render(const Model& model, std::span<const Occlusion> occlusion,
     }
     context.finish("drawing the picture");
     Image image = sum.mean();
-    draw_legend(image, model, options.view);
+    if (const auto legend = legend_of(model, options.data.layout, options.view))
+        draw_heat_legend(image, legend->title, legend->low, legend->high);
     return image;
 }
 
-void draw_legend(Image& image, const Model& model, const ViewOptions& options)
+std::optional<Legend> legend_of(const Model& model, const ModelLayout* layout,
+                                const ViewOptions& options)
 {
     if (options.colors == Colors::difference)
-        draw_heat_legend(image, "occlusion difference to rays", 0.0f, options.difference_scale);
+        return Legend{"occlusion difference to rays", 0.0f, options.difference_scale};
     if (options.colors == Colors::levels) {
         const glm::vec2 range = level_range(model);
-        draw_heat_legend(image, "octree level", range.x, range.y);
+        return Legend{"octree level", range.x, range.y};
     }
+    if (options.colors == Colors::density && layout)
+        return Legend{"texels per unit, median in the middle", 0.0f, most_density(layout->facts)};
+    return {};
 }
 
 }  // namespace surfelao

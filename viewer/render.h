@@ -7,6 +7,7 @@
 #include "surfels/progress.h"
 #include "viewer/camera.h"
 #include "viewer/model.h"
+#include "viewer/model_map.h"
 #include "viewer/view_options.h"
 
 #include <optional>
@@ -20,6 +21,7 @@ struct RenderOptions {
     ViewOptions view;
     GlBackend backend = GlBackend::automatic;
     std::optional<Image> environment;  ///< a panorama (environment.h); none = builtin_sky()
+    SurfaceData data = {};             ///< with a map, only the ground's values count
 };
 
 /// occlusion and reference: one per receiver of the model; the reference may be empty where
@@ -30,8 +32,14 @@ struct RenderOptions {
                            std::span<const Occlusion> reference, const Camera& camera,
                            const RenderOptions& options, const Progress& progress = {});
 
-/// What the heat map of these colours means, drawn into the picture's corner; nothing for colours
-/// that are no heat map.
-void draw_legend(Image& image, const Model& model, const ViewOptions& options);
+/// What the heat map of some colours means.
+struct Legend {
+    const char* title;
+    float low, high;
+};
+
+/// Nothing for colours that are no heat map. layout: of the map that is shown, or null.
+[[nodiscard]] std::optional<Legend> legend_of(const Model& model, const ModelLayout* layout,
+                                              const ViewOptions& options);
 
 }  // namespace surfelao

@@ -5,6 +5,7 @@
 #include "image/color_map.h"
 #include "surfels/errors.h"
 #include "viewer/environment.h"
+#include "viewer/split_surface.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -58,13 +59,13 @@ struct Upload {
           occlusion(texels(context, open(model))),
           splats(context, TexelFormat::rgba32ui, view(at_least_one(model.splats))),
           radii(context, TexelFormat::r32f, view(at_least_one(model.splat_radii))),
-          index_buffer(context, view(at_least_one(model.mesh->surface.corners))),
+          corners(context, TexelFormat::r32ui, view(model.mesh->surface.corners)),
           triangles(context),
           index_count(3 * model.geometry().triangles.size()),
           splat_count(model.splats.size()),
           ground(model.ground)
     {
-        triangles.indices(index_buffer);
+        triangles.indices(corners.buffer());
         vertex_count = model.geometry().positions.size();
         for (const glm::vec3& p : model.seen)
             radius = std::max(radius, glm::length(p));
@@ -119,8 +120,7 @@ struct Upload {
 
     TextureBuffer positions, surfels, wedge_normals, extra_vertices, occlusion;
     std::optional<TextureBuffer> reference;
-    TextureBuffer splats, radii;
-    Buffer index_buffer;
+    TextureBuffer splats, radii, corners;
     VertexArray triangles;
     std::size_t vertex_count = 0, index_count, splat_count;
     Ground ground;
@@ -173,6 +173,7 @@ struct Renderer::Impl {
     explicit Impl(const GlContext& gl)
         : context(gl),
           surface(gl, "surface.vert", "surface.frag"),
+          split(gl),
           disks(gl, "splat_disk.vert", "splat_disk.frag"),
           disk_depth(gl, "splat_depth.vert", "splat_depth.frag"),
           resolve(gl, "fullscreen.vert", "splat_resolve.frag"),
@@ -235,15 +236,27 @@ struct Renderer::Impl {
         draw_fullscreen(frame.target, background, nothing);
     }
 
+    void set_triangles(Program& program, const Frame& frame)
+    {
+        set_shading(program, frame);
+        set_model_texels(program);
+        program.set("u_surfels", upload->surfels);
+        program.set("u_wedge_normals", upload->wedge_normals);
+        program.set("u_extra_vertices", upload->extra_vertices);
+        program.set("u_vertex_count", static_cast<int>(upload->vertex_count));
+        program.set("u_view_projection", frame.projection * frame.view);
+    }
+
     void draw_triangles(const Frame& frame)
     {
-        set_shading(surface, frame);
-        set_model_texels(surface);
-        surface.set("u_surfels", upload->surfels);
-        surface.set("u_wedge_normals", upload->wedge_normals);
-        surface.set("u_extra_vertices", upload->extra_vertices);
-        surface.set("u_vertex_count", static_cast<int>(upload->vertex_count));
-        surface.set("u_view_projection", frame.projection * frame.view);
+        const bool is_textured = frame.options.colors == Colors::textured;
+        if (split.has_layout() || is_textured) {
+            set_triangles(split.program(), frame);
+            split.program().set("u_corners", upload->corners);
+            split.draw(frame.target, nothing, is_textured);
+            return;
+        }
+        set_triangles(surface, frame);
         draw(frame.target, surface, upload->triangles,
              {.count = upload->index_count, .indexed = true}, {.depth = DepthTest::less});
     }
@@ -327,7 +340,9 @@ struct Renderer::Impl {
     }
 
     const GlContext& context;
-    Program surface, disks, disk_depth, resolve, affine, points, background, shadow;
+    Program surface;
+    SplitSurface split;
+    Program disks, disk_depth, resolve, affine, points, background, shadow;
     VertexArray nothing;
     Texture2D heat;
     std::optional<Texture2D> sky, irradiance;
@@ -347,6 +362,7 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 void Renderer::set_model(const Model& model)
 {
     impl_->upload.emplace(impl_->context, model);
+    impl_->split.set_model(model);
     impl_->upload_ground();
 }
 
@@ -361,6 +377,31 @@ void Renderer::set_reference(std::span<const Occlusion> reference)
         impl_->upload->reference.emplace(
             Upload::texels(impl_->context, std::vector<glm::vec4>(impl_->upload->vertex_count)));
     impl_->set_values(reference, *impl_->upload->reference, 1);
+}
+
+void Renderer::set_layout(const Mesh& mesh, const ModelLayout& layout)
+{
+    impl_->split.set_layout(mesh, layout);
+}
+
+void Renderer::set_map(const ModelMap& map)
+{
+    impl_->split.set_map(map);
+}
+
+void Renderer::set_map_reference(const ModelMap& reference)
+{
+    impl_->split.set_reference(reference);
+}
+
+void Renderer::forget_layout()
+{
+    impl_->split.forget_layout();
+}
+
+void Renderer::set_paint(const BasePaint& paint)
+{
+    impl_->split.set_paint(paint);
 }
 
 void Renderer::set_environment(const Image& panorama)
@@ -401,7 +442,7 @@ void Renderer::draw_frame(const Framebuffer& target, const Camera& camera,
     if (shows_ground(options))
         impl_->draw_ground(frame);
     if (impl_->upload->splat_count > 0) {
-        switch (options.surface) {
+        switch (impl_->split.has_layout() ? Shape::triangles : options.surface) {
             case Shape::triangles:
                 impl_->draw_triangles(frame);
                 break;
@@ -427,13 +468,24 @@ glm::vec2 sample_shift(int index)
 }
 
 struct SampleSum::Impl {
-    Impl(const GlContext& context, int width, int height)
-        : program(context, "fullscreen.vert", "sum.frag"),
+    Impl(const GlContext& gl, int width, int height)
+        : context(gl),
+          program(context, "fullscreen.vert", "sum.frag"),
           nothing(context),
           sum(context, FramebufferOptions{
                            .width = width, .height = height, .colors = {TexelFormat::rgba32f}})
     {
     }
+    void add(const Texture2D& drawing)
+    {
+        program.set("u_image", drawing);
+        program.set("u_factor", 1.0f);
+        program.set("u_encode", 0);
+        program.set("u_corner", glm::ivec2(0));
+        draw_fullscreen(sum, program, nothing, {.blend = Blend::add});
+        ++count;
+    }
+    const GlContext& context;
     Program program;
     VertexArray nothing;
     Framebuffer sum;
@@ -462,12 +514,16 @@ int SampleSum::count() const
 
 void SampleSum::add(const Framebuffer& drawing)
 {
-    impl_->program.set("u_image", drawing.color());
-    impl_->program.set("u_factor", 1.0f);
-    impl_->program.set("u_encode", 0);
-    impl_->program.set("u_corner", glm::ivec2(0));
-    draw_fullscreen(impl_->sum, impl_->program, impl_->nothing, {.blend = Blend::add});
-    ++impl_->count;
+    impl_->add(drawing.color());
+}
+
+void SampleSum::add(const Image& picture)
+{
+    Image upright = picture;  // row 0 of textures is the bottom
+    for (int y = 0; y < upright.height; ++y)
+        for (int x = 0; x < upright.width; ++x)
+            upright.at(x, y) = picture.at(x, upright.height - 1 - y);
+    impl_->add(upload_image(impl_->context, upright, {}));
 }
 
 Image SampleSum::mean() const

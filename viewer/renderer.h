@@ -7,8 +7,10 @@
 #include "gpu/objects.h"
 #include "image/image.h"
 #include "surfels/occlusion.h"
+#include "viewer/base_paint.h"
 #include "viewer/camera.h"
 #include "viewer/model.h"
+#include "viewer/model_map.h"
 #include "viewer/view_options.h"
 
 #include <glm/vec2.hpp>
@@ -35,6 +37,17 @@ public:
     /// Model::answer_count() values. Without a reference, the result stands in for it.
     void set_occlusion(std::span<const Occlusion> occlusion);
     void set_reference(std::span<const Occlusion> reference);
+
+    /// From now on the model shows a map in place of the values at its vertices; only triangles do.
+    /// Open until told otherwise. mesh: the model's.
+    void set_layout(const Mesh& mesh, const ModelLayout& layout);
+    void set_map(const ModelMap& map);
+    void set_map_reference(const ModelMap& reference);
+    /// And again the values at the vertices.
+    void forget_layout();
+
+    /// What the model is painted with for Colors::textured: white until told.
+    void set_paint(const BasePaint& paint);
 
     /// Light for Colors::environment: see environment.h.
     void set_environment(const Image& panorama);
@@ -69,6 +82,8 @@ public:
 
     void clear();
     void add(const Framebuffer& drawing);
+    /// A picture of the same size, as one drawing.
+    void add(const Image& picture);
     int count() const;
 
     /// The mean as linear light; row 0 is the top. At least one drawing must have been added.

@@ -33,7 +33,9 @@ bool is_same(const SurfacePoint& a, const SurfacePoint& b)
 ModelAnswer solve_model(const Prepared& prepared, const Model& model, const SolveSettings& settings,
                         const SolveWith& with, const Progress& progress)
 {
-    std::vector<std::span<const Receiver>> lists = {model.target->receivers()};
+    std::vector<std::span<const Receiver>> lists(1);
+    if (with.vertices)
+        lists[0] = model.target->receivers();
     if (with.ground)
         lists.push_back(model.ground_receivers);
     if (with.points)
@@ -46,7 +48,10 @@ ModelAnswer solve_model(const Prepared& prepared, const Model& model, const Solv
         answer.at_points = std::move(found.back().occlusion);
         found.pop_back();
     }
-    answer.values = model.target->values(found.front().occlusion);
+    if (with.vertices)
+        answer.values = model.target->values(found.front().occlusion);
+    else
+        answer.values.resize(model.geometry().positions.size());
     if (with.ground) {
         append(answer.values, found.back().occlusion);
     } else {

@@ -16,8 +16,9 @@
 
 namespace surfelao {
 
-/// What is solved besides the vertices.
+/// What is solved.
 struct SolveWith {
+    bool vertices = true;  ///< else they are open
     bool ground = true;   ///< else it is open
     bool points = false;  ///< Model::points
 };

@@ -20,6 +20,9 @@ enum class Colors {
     normals = 4,       ///< likewise: corner normals of triangles, the disks' own of splats
     levels = 5,        ///< depth of the surfel's leaf in the octree, as a heat map
     environment = 6,   ///< light of a panorama along the bent normal, times visibility
+    charts = 7,        ///< of a map: a colour for each, times visibility
+    density = 8,       ///< of a map: texels per unit of length, as a heat map
+    textured = 9,      ///< the surface's own colour times visibility
 };
 
 struct ViewOptions {
@@ -39,12 +42,18 @@ struct ViewOptions {
            options.wipe < 1.0f;
 }
 
+/// Whether they tell of a map; elsewhere they are shown as visibility.
+[[nodiscard]] constexpr bool needs_map(Colors colors)
+{
+    return colors == Colors::charts || colors == Colors::density;
+}
+
 /// Whether the ground's shadow is drawn: under colours that tell light.
 [[nodiscard]] constexpr bool shows_ground(const ViewOptions& options)
 {
     return options.ground &&
            (options.colors == Colors::visibility || options.colors == Colors::rays ||
-            options.colors == Colors::environment);
+            options.colors == Colors::environment || options.colors == Colors::textured);
 }
 
 }  // namespace surfelao

@@ -1,10 +1,11 @@
 #include "bake/map_bake.h"
 
+#include "bake/bent_space.h"
 #include "engines/threads.h"
 #include "scenes.h"
+#include "seen_of_wall.h"
 
 #include <gtest/gtest.h>
-#include <glm/gtc/constants.hpp>
 
 #include <cmath>
 #include <functional>
@@ -25,23 +26,13 @@ struct MappedWorld {
         scene.uvs.push_back(set);
         mesh = make_mesh(std::move(scene));
     }
-    [[nodiscard]] MapBake bake(const MapSettings& settings, const EngineSettings& engine = {}) const
+    [[nodiscard]] MapBake bake(MapSize size, const MapSettings& settings = {},
+                               const EngineSettings& engine = {}) const
     {
-        return bake_map(mesh, mesh.scene.uvs[0], settings, engine, {});
+        return bake_map(mesh, {.size = size, .pages = {mesh.scene.uvs[0]}}, settings, engine, {});
     }
     Mesh mesh;
 };
-
-/// What a square foot of a wall sees of it from the distance d: the wall is `height` high and ends
-/// `left` and `right` (Howell. A Catalog of Radiation Heat Transfer Configuration Factors. B-4).
-double seen_of_wall(double d, double height, double left, double right)
-{
-    const double far = std::hypot(d, height);
-    double sum = 0.0;
-    for (const double side : {left, right})
-        sum += std::atan(side / d) - d / far * std::atan(side / far);
-    return sum / (2.0 * glm::pi<double>());
-}
 
 // One chart over the foot of a wall, symmetric.
 TEST(MapBake, HasTheProfileOfAWallAtItsFoot)
@@ -55,14 +46,14 @@ TEST(MapBake, HasTheProfileOfAWallAtItsFoot)
         EngineSettings settings;
         settings.engine = engine;
         settings.rays = 4096;
-        const MapBake bake = world.bake({.size = {64, 8}, .depth = MapDepth::whole}, settings);
+        const MapBake bake = world.bake({64, 8}, {.depth = MapDepth::whole}, settings);
         EXPECT_EQ(bake.covered, 512u);
         EXPECT_EQ(bake.overlapping, 0u);
         for (std::uint32_t y = 0; y < 8; ++y) {
             for (std::uint32_t x = 0; x < 64; ++x) {
                 const double d = std::abs((x + 0.5) / 64.0 - 0.5) * 2.0 * size;
                 const double left = size * (y + 0.5) / 8.0;
-                EXPECT_NEAR(1.0 - bake.visibility.values[bake.visibility.index(x, y)],
+                EXPECT_NEAR(1.0 - bake.visibility[0].values[bake.visibility[0].index(x, y)],
                             seen_of_wall(d, size, left, size - left), tolerance)
                     << x << " " << y;
             }
@@ -82,19 +73,38 @@ TEST(MapBake, OfWhatIsOpenAndClosedIsExactInAllEngines)
     for (const Engine engine : {Engine::masks, Engine::disks, Engine::rays}) {
         EngineSettings settings;
         settings.engine = engine;
-        const MapBake bright = open.bake({.size = {32, 16}, .bent = true}, settings);
-        for (const float value : bright.visibility.values)  // filled ones too
+        const MapBake bright =
+            open.bake({32, 16}, {.bent = bent_encoder(open.mesh, {}, BentSpace::world)}, settings);
+        for (const float value : bright.visibility[0].values)  // filled ones too
             EXPECT_EQ(value, 1.0f);
-        for (std::size_t i = 0; i < bright.bent.values.size(); i += 3) {
-            EXPECT_NEAR(bright.bent.values[i], 0.5f, 0.01f);
-            EXPECT_NEAR(bright.bent.values[i + 2], 1.0f, 0.01f);
+        for (std::size_t i = 0; i < bright.bent[0].values.size(); i += 3) {
+            EXPECT_NEAR(bright.bent[0].values[i], 0.5f, 0.01f);
+            EXPECT_NEAR(bright.bent[0].values[i + 2], 1.0f, 0.01f);
         }
         EXPECT_EQ(bright.error->rmse, 0.0);
         if (engine == Engine::disks)  // leak where large ones meet
             continue;
-        const MapBake dark = closed.bake({.size = {32, 32}}, settings);
-        for (const float value : dark.visibility.values)
+        const MapBake dark = closed.bake({32, 32}, {}, settings);
+        for (const float value : dark.visibility[0].values)
             EXPECT_LE(value, 0.01f);
+    }
+}
+
+// An open square, whose part was turned about x by a quarter: +z of the world is +y of the part, or
+// the other way round.
+TEST(MapBake, HoldsBentNormalsInThePartsOwnSpace)
+{
+    MappedWorld world(scenes::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1),
+                      [](glm::dvec3 p) { return glm::dvec2(p.x, p.y); });
+    const glm::dmat3 turn(glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1), glm::dvec3(0, -1, 0));
+    for (const double stretch : {1.0, 3.0}) {
+        world.mesh.scene.parts[0].to_world = stretch * turn;
+        const MapBake bake =
+            world.bake({4, 4}, {.bent = bent_encoder(world.mesh, {}, BentSpace::object)});
+        for (std::size_t i = 0; i < bake.bent[0].values.size(); i += 3) {
+            EXPECT_NEAR(bake.bent[0].values[i + 1], 1.0f, 0.01f);
+            EXPECT_NEAR(bake.bent[0].values[i + 2], 0.5f, 0.01f);
+        }
     }
 }
 
@@ -106,9 +116,9 @@ TEST(MapBake, HoldsTheMeanOfSheetsOnEachOther)
     const MappedWorld world(std::move(scene), [](glm::dvec3 p) {
         return glm::dvec2(std::fmod(p.x, 5.0), p.y);  // the room's other sides have no area, or lie
     });                                               // on the same texels, as closed
-    const MapBake bake = world.bake({.size = {16, 16}, .depth = MapDepth::whole});
+    const MapBake bake = world.bake({16, 16}, {.depth = MapDepth::whole});
     EXPECT_EQ(bake.overlapping, 256u);
-    for (const float value : bake.visibility.values)
+    for (const float value : bake.visibility[0].values)
         EXPECT_NEAR(value, 1.0f / 3.0f, 0.01f);  // floor and ceiling of the room, and the square
     EXPECT_NEAR(bake.spread, std::sqrt(2.0) / 3.0, 0.01);
 }
@@ -118,15 +128,14 @@ TEST(MapBake, IsTheSameForAnyNumberOfThreadsAndRoundedAsItIsWritten)
     const MappedWorld world(scenes::bumpy_sphere(8), [](glm::dvec3 p) {
         return glm::dvec2(0.5 + 0.1 * p.x, 0.5 + 0.1 * p.y + 0.01 * p.z);
     });
-    const MapSettings settings{.size = {40, 40}};
     std::vector<float> first;
     for (const int threads : {1, 3}) {
         const ThreadLimit limit(threads);
-        const MapBake bake = world.bake(settings);
+        const MapBake bake = world.bake({40, 40});
         if (first.empty())
-            first = bake.visibility.values;
-        EXPECT_EQ(bake.visibility.values, first);
-        for (const float value : bake.visibility.values)
+            first = bake.visibility[0].values;
+        EXPECT_EQ(bake.visibility[0].values, first);
+        for (const float value : bake.visibility[0].values)
             EXPECT_EQ(value * 255.0f, std::round(value * 255.0f));
     }
 }

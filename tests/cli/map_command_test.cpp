@@ -83,12 +83,17 @@ TEST_F(MapCommand, RefusesWhatItCannotDo)
           {{"in.obj", "-o", "x.png", "--size", "65536"}, 2, "--size"},
           {{"in.obj", "-o", "none/x.png"}, 1, "there is no folder"},
           {{"in.obj", "-o", "x.png", "--depth", "32"}, 1, "8 or 16 bits"},
-          {{"in.obj", "-o", "x.ply", "--size", "64"}, 2, "are for maps"},
-          {{"in.obj", "-o", "x.png", "--error", "0.01"}, 2, "values at vertices"}}) {
+          {{"in.obj", "-o", "x.ply", "--size", "64"}, 2, "Options of maps"},
+          {{"in.obj", "-o", "x.png", "--uv", "new"}, 2, "--uv new"},
+          {{"in.obj", "-o", "x.png", "--texels-per-unit", "9"}, 2, "--texels-per-unit"},
+          {{"in.obj", "-o", "x.png", "--green", "-y"}, 2, "--bent tangent"},
+          {{"in.obj", "-o", "x.png", "--cage", "1%"}, 2, "--high"},
+          {{"in.obj", "-o", "x.png", "--high", "none.obj"}, 1, "none.obj"},
+          {{"in.obj", "-o", "x.png", "--resume", "--udim"}, 2, "--udim"}}) {
         folder_.file("in.obj", kCorner);
         std::vector<std::string> arguments = {"bake"};
         for (const std::string& word : wrong.options)
-            arguments.push_back(word.find('.') != word.npos && word != "0.01"
+            arguments.push_back(word.find('.') != word.npos && word != "1%"
                                     ? (folder_.path() / word).string()
                                     : word);
         const Outcome outcome = run(folder_.path(), arguments);

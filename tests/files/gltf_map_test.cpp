@@ -1,5 +1,5 @@
 // A map of occlusion in a glTF result: over the file's own coordinates, and out again.
-#include "gltf_maker.h"
+#include "gltf_map_cases.h"
 #include "temporary_folder.h"
 #include "written_gltf.h"
 
@@ -17,98 +17,18 @@ namespace surfelao {
 namespace {
 
 using nlohmann::json;
-using test::bytes_of;
+using test::baked;
 using test::GltfMaker;
-using test::pattern;
+using test::map_cases;
+using test::map_over;
+using test::MapCase;
+using test::packed_square;
+using test::painted_square;
 using test::primitive;
-using test::square;
 using test::take_apart;
+using test::two_texels;
+using test::Way;
 using test::Written;
-
-/// Two texels of grey: 0 and 255.
-std::string two_texels()
-{
-    return *decode_data_uri(
-        "data:image/png;base64,"
-        "iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAAAAADRSSBWAAAAC0lEQVR42mNg+"
-        "A8AAQIBANEay48AAAAASUVORK5CYII=");
-}
-
-const OcclusionMap& map_over(std::uint32_t set)
-{
-    static const OcclusionMap maps[] = {{two_texels(), 0, {}}, {two_texels(), 1, {}}};
-    return maps[set];
-}
-
-/// A square with TEXCOORD_0 and no material.
-GltfMaker laid_out_square()
-{
-    GltfMaker maker = square();
-    primitive(maker)["attributes"]["TEXCOORD_0"] = maker.add_accessor(
-        maker.add_view(bytes_of<float>({0, 0, 1, 0, 1, 1, 0, 1})), 5126, "VEC2", 4);
-    return maker;
-}
-
-/// With a material whose base colour is a picture in the file.
-GltfMaker painted_square()
-{
-    GltfMaker maker = laid_out_square();
-    maker.add("images", {{"bufferView", maker.add_view(two_texels())}, {"mimeType", "image/png"}});
-    maker.add("textures", {{"source", 0}});
-    maker.add("materials",
-              {{"name", "wood"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
-    primitive(maker)["material"] = 0;
-    return maker;
-}
-
-/// Its picture is its roughness and its occlusion.
-GltfMaker packed_square()
-{
-    GltfMaker maker = painted_square();
-    maker.document["materials"][0] = {
-        {"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 0}}}}},
-        {"occlusionTexture", {{"index", 0}, {"strength", 0.5}}}};
-    return maker;
-}
-
-/// The same, its material used by a mesh outside of the scene and by a primitive without
-/// coordinates as well.
-GltfMaker shared(GltfMaker maker)
-{
-    maker.add("meshes", maker.document["meshes"][0]);
-    maker.document["meshes"][0]["primitives"].push_back(
-        {{"attributes", {{"POSITION", 0}}}, {"material", 0}});
-    maker.add("nodes", {{"mesh", 1}});
-    return maker;
-}
-
-struct MapCase {
-    const char* name;
-    GltfMaker maker;
-    std::optional<std::size_t> material;  ///< of the primitive with the map; none: a new one
-    std::vector<std::string> notes;
-};
-
-std::vector<MapCase> map_cases()
-{
-    GltfMaker plain = laid_out_square();
-    plain.add("materials", {{"name", "plain"}});
-    primitive(plain)["material"] = 0;
-    GltfMaker colored = painted_square();
-    primitive(colored)["attributes"]["COLOR_0"] =
-        colored.add_vectors<float>({1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0});
-    const std::string replaced = "the map takes the place of the occlusionTexture of 1 material";
-    const std::string without =
-        "1 primitive without TEXCOORD_0 left as they are: no map lies over "
-        "them";
-    return {{"bare", laid_out_square(), {}, {}},
-            {"plain", plain, 0, {}},
-            {"painted", painted_square(), 0, {}},
-            {"coloured", colored, 0, {}},
-            {"packed", packed_square(), {}, {replaced}},
-            {"shared", shared(painted_square()), {}, {without}},
-            {"packed and shared", shared(packed_square()), {}, {replaced, without}}};
-}
 
 /// One that another reader loads; it decodes the pictures.
 tinygltf::Model load_back(const std::filesystem::path& path)
@@ -194,53 +114,26 @@ TEST(GltfMap, LiesOverTheSetThatIsNamed)
               (json{{"index", 1}, {"texCoord", 1}}));
 }
 
-/// A result at `path` of what stands there in `contents`: with a map or with values at vertices.
-std::string baked_either_way(const char* path, const std::string& contents, bool with_map)
-{
-    const Scene scene = read_gltf(path, contents);
-    const WriteOptions options = {.mark = make_mark("bake", with_map ? "texels" : "vertices")};
-    return with_map ? gltf_contents_with_map(path, scene, map_over(0), options).contents
-                    : gltf_contents(path, scene, pattern(scene), options).contents;
-}
-
-TEST(GltfMap, BakingABakedFileIsBakingTheOriginal)
-{
-    for (const MapCase& made : map_cases()) {
-        const std::string uri = make_data_uri("application/octet-stream", made.maker.bin);
-        for (const char* path : {"out.glb", "out.gltf"}) {
-            const std::string original =
-                std::string(path) == "out.glb" ? made.maker.glb() : made.maker.gltf(uri);
-            for (const bool first : {false, true}) {
-                const std::string once = baked_either_way(path, original, first);
-                for (const bool second : {false, true})
-                    EXPECT_TRUE(baked_either_way(path, once, second) ==
-                                baked_either_way(path, original, second))
-                        << made.name << ' ' << path << ' ' << first << second;
-            }
-        }
-    }
-}
-
 TEST(GltfMap, NodesThatShareAMeshShareTheMap)
 {
     GltfMaker maker = painted_square();
     maker.add("nodes", {{"mesh", 0}, {"translation", {0, 0, 1}}});
     maker.document["scenes"][0]["nodes"] = {0, 1};
-    const std::string once = baked_either_way("out.glb", maker.glb(), true);
+    const std::string once = baked("out.glb", maker.glb(), Way::map);
     EXPECT_EQ(take_apart(once).document["meshes"], maker.document["meshes"]);
     EXPECT_EQ(take_apart(once).document["nodes"], maker.document["nodes"]);
-    EXPECT_TRUE(baked_either_way("out.glb", once, true) == once);
+    EXPECT_TRUE(baked("out.glb", once, Way::map) == once);
 }
 
 // A result whose materials and textures another program has moved about is still no original.
 TEST(GltfMap, AnEditedResultHasOneMap)
 {
-    json edited = take_apart(baked_either_way("x.glb", packed_square().glb(), true)).document;
-    const std::string bin = take_apart(baked_either_way("x.glb", packed_square().glb(), true)).bin;
+    json edited = take_apart(baked("x.glb", packed_square().glb(), Way::map)).document;
+    const std::string bin = take_apart(baked("x.glb", packed_square().glb(), Way::map)).bin;
     for (const char* list : {"images", "textures", "materials"})
         edited[list].push_back({{"name", "new"}});
     const GltfMaker maker{edited, bin};
-    const Written again = take_apart(baked_either_way("x.glb", maker.glb(), true));
+    const Written again = take_apart(baked("x.glb", maker.glb(), Way::map));
     const json& materials = again.document["materials"];
     const std::size_t material = again.document["meshes"][0]["primitives"][0]["material"];
     EXPECT_EQ(materials[material]["occlusionTexture"]["index"],
@@ -268,7 +161,7 @@ TEST(GltfMap, TheFileBesideIsReplacedOnlyWhereItIsOurs)
     // the picture of a user, whose model names it or does not
     folder.file("own.ao.png", "a picture");
     const std::string refused =
-        "own.ao.png: exists and is no map of own.gltf, which would replace it; use .glb";
+        "own.ao.png: exists and is of no result at own.gltf, which would replace it; use .glb";
     EXPECT_EQ(refusal_of("own.gltf"), refused);
     GltfMaker own = painted_square();
     own.document["images"][0] = {{"uri", "own.ao.png"}, {"name", "bark"}};
@@ -290,9 +183,6 @@ TEST(GltfMap, OtherFormatsAreRefused)
         }
         return "";
     };
-    EXPECT_EQ(refusal_of("a.glb", "b.ply"),
-              "b.ply: a map goes into .glb and .gltf only, use .png, .tif or .exr for the map "
-              "alone");
     EXPECT_EQ(refusal_of("a.ply", "b.glb"),
               "b.glb: only a scene that was read from glTF can be written as glTF, use .png, .tif "
               "or .exr for the map alone");

@@ -13,14 +13,32 @@ namespace {
 
 using namespace surfelao;
 
+/// All corners apart.
+UvSet new_places(const Scene& scene)
+{
+    UvSet uvs;
+    for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+        uvs.corners.emplace_back(3 * t, 3 * t + 1, 3 * t + 2);
+        for (std::uint32_t k = 0; k < 3; ++k)
+            uvs.values.emplace_back(0.25 * k, 1.0 / (t + 1.0));
+    }
+    return uvs;
+}
+
+void check_same(const Scene& again, const Scene& scene)
+{
+    SURFELAO_CHECK(again.positions == scene.positions);
+    SURFELAO_CHECK(again.triangles == scene.triangles);
+    SURFELAO_CHECK(again.normals.values == scene.normals.values);
+}
+
 void check_round_trip(const Scene& scene)
 {
+    const OcclusionMap map{"", 0, new_places(scene)};
     const std::vector<Occlusion> occlusion(scene.positions.size(), {0.5f, {0.0f, 0.0f, 1.0f}});
     for (const char* path : {"/no folder/a.glb", "/no folder/a.gltf"}) {
-        const Scene again = read_gltf(path, gltf_contents(path, scene, occlusion).contents);
-        SURFELAO_CHECK(again.positions == scene.positions);
-        SURFELAO_CHECK(again.triangles == scene.triangles);
-        SURFELAO_CHECK(again.normals.values == scene.normals.values);
+        check_same(read_gltf(path, gltf_contents(path, scene, occlusion).contents), scene);
+        check_same(read_gltf(path, gltf_contents_with_map(path, scene, map).contents), scene);
     }
 }
 

@@ -1,0 +1,445 @@
+#include "atlas/seams.h"
+
+#include "surfels/errors.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+namespace surfelao {
+namespace {
+
+/// Triangles that a walk through a chart crosses at most: more than there are in a few texels.
+constexpr int kMostSteps = 64;
+/// Rounding of a share of a triangle.
+constexpr double kLeastShare = -1e-9;
+constexpr int kMostIterations = 40;
+/// Of the residual's length, in parts of what it was: stops the iteration.
+constexpr double kResidual = 1e-4;
+
+double cross(glm::dvec2 a, glm::dvec2 b)
+{
+    return a.x * b.y - a.y * b.x;
+}
+
+/// Where the corners of a triangle lie.
+struct PlacedTriangle {
+    std::uint32_t page = 0;
+    glm::dvec2 corners[3];
+};
+
+/// Nothing where a corner has no place.
+std::optional<PlacedTriangle> placed(const Geometry& geometry, const MapLayout& layout,
+                                     std::uint32_t triangle)
+{
+    constexpr glm::vec2 kCorners[3] = {{0, 0}, {1, 0}, {0, 1}};
+    for (std::uint32_t page = 0; page < layout.pages.size(); ++page) {
+        PlacedTriangle place{.page = page, .corners = {}};
+        int count = 0;
+        for (; count < 3; ++count) {
+            const auto uv = uv_at(geometry, layout.pages[page], {triangle, kCorners[count]});
+            if (!uv)
+                break;
+            place.corners[count] = *uv;
+        }
+        if (count == 3)
+            return place;
+    }
+    return {};
+}
+
+SeamSide seam_side(const PlacedTriangle& place, const EdgeSide& side)
+{
+    const std::uint32_t first = side.side() % 3, second = (first + 1) % 3;
+    const std::uint32_t low = side.rises() ? first : second, high = side.rises() ? second : first;
+    return {place.page, side.triangle(), {low, high}, {place.corners[low], place.corners[high]}};
+}
+
+bool is_smooth(const Surface& surface, const SeamSide& a, const SeamSide& b)
+{
+    const auto normal = [&](const SeamSide& side, int end) {
+        return surface.normals[surface.corners[side.triangle][static_cast<int>(side.corners[end])]];
+    };
+    return glm::dot(normal(a, 0), normal(b, 0)) >= kSmoothSeam &&
+           glm::dot(normal(a, 1), normal(b, 1)) >= kSmoothSeam;
+}
+
+/// Whether one gets from a triangle, beyond its side `entry`, straight to a place within the chart.
+bool is_in_chart(const Geometry& geometry, const MapLayout& layout, const Seams& seams, Side entry,
+                 glm::dvec2 place)
+{
+    for (int step = 0; step < kMostSteps; ++step) {
+        const PlacedTriangle at = *placed(geometry, layout, entry / 3);
+        const auto& p = at.corners;
+        const double twice = cross(p[1] - p[0], p[2] - p[0]);
+        if (twice == 0.0)
+            return false;
+        std::uint32_t exit = 3;
+        double least = kLeastShare;
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const double share = cross(p[(k + 1) % 3] - p[k], place - p[k]) / twice;
+            if (share < least) {
+                least = share;
+                exit = k;
+            }
+        }
+        if (exit == 3)
+            return true;
+        const Side next = seams.beside[entry - entry % 3 + exit];
+        if (entry % 3 == exit || next == Seams::kNone)
+            return false;
+        // a chart may go on whole maps away
+        place += placed(geometry, layout, next / 3)->corners[next % 3] - p[(exit + 1) % 3];
+        entry = next;
+    }
+    return false;
+}
+
+/// How the surface lies on the page along a side of a triangle.
+struct SideFrame {
+    glm::dvec2 origin{0.0};  ///< end 0
+    glm::dvec2 along{0.0};   ///< from end 0 to end 1
+    glm::dvec2 inward{0.0};  ///< to what is one diagonal from the edge
+};
+
+SideFrame frame_of(const Geometry& geometry, const MapLayout& layout, const SeamSide& side)
+{
+    const auto position = [&](std::uint32_t corner) {
+        return glm::dvec3(
+            geometry.positions[geometry.triangles[side.triangle][static_cast<int>(corner)]]);
+    };
+    const std::uint32_t third = 3 - side.corners[0] - side.corners[1];
+    const glm::dvec3 origin = position(side.corners[0]);
+    const glm::dvec3 edge = position(side.corners[1]) - origin, up = position(third) - origin;
+    const double share = glm::dot(up, edge) / glm::dot(edge, edge);
+    const glm::dvec2 along = side.ends[1] - side.ends[0];
+    const glm::dvec2 apex = placed(geometry, layout, side.triangle)->corners[third];
+    return {side.ends[0], along,
+            (apex - side.ends[0] - share * along) / glm::length(up - share * edge)};
+}
+
+/// A texel beyond a seam and where the other side shows it.
+struct Claim {
+    std::uint32_t page = 0, other = 0;  ///< whose texel, and where it is shown
+    std::size_t texel = 0;
+    double distance = 0.0;  ///< from the seam, in texels, squared
+    std::size_t seam = 0;
+    glm::dvec2 place{0.0};
+};
+
+/// Collects the claims of seams.
+class ClaimFinder {
+public:
+    ClaimFinder(const Mesh& mesh, const MapLayout& layout, const Seams& seams, std::uint32_t rings,
+                std::span<const std::vector<std::uint8_t>> known)
+        : geometry_(mesh.geometry), layout_(layout), seams_(seams), reach_(rings), known_(known)
+    {
+    }
+
+    void find(std::size_t seam, int near)
+    {
+        const Seam& at = seams_.list[seam];
+        const SeamSide &side = at.sides[near], &other = at.sides[1 - near];
+        const glm::dvec2 scale(layout_.size.width, layout_.size.height);
+        const SideFrame from = frame_of(geometry_, layout_, side);
+        const SideFrame to = frame_of(geometry_, layout_, other);
+        const glm::dvec2 origin = scale * from.origin, along = scale * from.along;
+        const glm::dvec2 inward = scale * from.inward;
+        const double whole = cross(along, inward);
+        if (whole == 0.0)
+            return;
+        const std::uint32_t first = other.corners[0], second = other.corners[1];
+        const Side entry = 3 * other.triangle + ((first + 1) % 3 == second ? first : second);
+        for_each_texel_near(origin, along, [&](std::int64_t x, std::int64_t y) {
+            const std::size_t texel =
+                std::size_t{folded(y, layout_.size.height)} * layout_.size.width +
+                folded(x, layout_.size.width);
+            if (known_[side.page][texel] != 0)
+                return;
+            const glm::dvec2 offset =
+                glm::dvec2(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5) - origin;
+            const double beyond = cross(offset, along) / whole;  // diagonals
+            const double on_edge =
+                std::clamp(glm::dot(offset, along) / glm::dot(along, along), 0.0, 1.0);
+            const glm::dvec2 nearest = offset - on_edge * along;
+            const double distance = glm::dot(nearest, nearest);
+            if (beyond <= 0.0 || distance > reach_ * reach_)
+                return;
+            const glm::dvec2 place =
+                to.origin + cross(offset, inward) / whole * to.along + beyond * to.inward;
+            if (!at.is_smooth || (is_in_chart(geometry_, layout_, seams_, entry, place) &&
+                                  is_known(other.page, place)))
+                claims_.push_back({side.page, other.page, texel, distance, seam, place});
+        });
+    }
+
+    /// One for each texel: the nearest.
+    [[nodiscard]] std::vector<Claim> claims()
+    {
+        const auto key = [](const Claim& claim) {
+            return std::tuple(claim.page, claim.texel, claim.distance, claim.seam);
+        };
+        std::ranges::stable_sort(claims_, {}, key);
+        claims_.erase(std::unique(claims_.begin(), claims_.end(),
+                                  [](const Claim& a, const Claim& b) {
+                                      return a.page == b.page && a.texel == b.texel;
+                                  }),
+                      claims_.end());
+        return std::move(claims_);
+    }
+
+private:
+    static std::uint32_t folded(std::int64_t texel, std::uint32_t side)
+    {
+        const std::int64_t rest = texel % side;
+        return static_cast<std::uint32_t>(rest < 0 ? rest + side : rest);
+    }
+
+    /// Row by row those around the edge, and few others.
+    template <class Visit>
+    void for_each_texel_near(glm::dvec2 origin, glm::dvec2 along, const Visit& visit) const
+    {
+        const auto texel = [](double place) {
+            return static_cast<std::int64_t>(std::floor(place));
+        };
+        const double low = std::min(0.0, along.y), high = std::max(0.0, along.y);
+        for (std::int64_t y = texel(origin.y + low - reach_); y <= texel(origin.y + high + reach_);
+             ++y) {
+            const double row = static_cast<double>(y) + 0.5 - origin.y;
+            double begin = 0.0, end = 1.0;  // the part of the edge within reach of the row
+            if (along.y != 0.0) {
+                const double a = (row - reach_) / along.y, b = (row + reach_) / along.y;
+                begin = std::clamp(std::min(a, b), 0.0, 1.0);
+                end = std::clamp(std::max(a, b), 0.0, 1.0);
+            }
+            const double left = std::min(begin * along.x, end * along.x) - reach_;
+            const double right = std::max(begin * along.x, end * along.x) + reach_;
+            for (std::int64_t x = texel(origin.x + left); x <= texel(origin.x + right); ++x)
+                visit(x, y);
+        }
+    }
+
+    [[nodiscard]] bool is_known(std::uint32_t page, glm::dvec2 place) const
+    {
+        const Footprint print = footprint(layout_.size.width, layout_.size.height, place);
+        for (int k = 0; k < 4; ++k)
+            if (print.weights[k] > 0.0 && known_[page][print.texels[k]] == 0)
+                return false;
+        return true;
+    }
+
+    const Geometry& geometry_;
+    const MapLayout& layout_;
+    const Seams& seams_;
+    double reach_;  // texels
+    std::span<const std::vector<std::uint8_t>> known_;
+    std::vector<Claim> claims_;
+};
+
+/// Samples of smooth seams: what each shows on one side less what it shows on the other is a sum
+/// over few texels. Rows of a sparse matrix over the texels that occur.
+class SeamSamples {
+public:
+    SeamSamples(const Seams& seams, std::span<const Map> pages)
+    {
+        if (pages.empty())
+            return;
+        const glm::dvec2 scale(pages[0].width, pages[0].height);
+        std::vector<std::uint64_t> texels;  // of all pages; eight a sample
+        for (const Seam& seam : seams.list) {
+            if (!seam.is_smooth)
+                continue;
+            double length = 0.0;
+            for (const SeamSide& side : seam.sides)
+                length = std::max(length, glm::length(scale * (side.ends[1] - side.ends[0])));
+            const auto count = static_cast<std::uint32_t>(std::ceil(kSeamSamples * length));
+            for (std::uint32_t s = 0; s < count; ++s) {
+                const double at = (s + 0.5) / count;
+                double sign = 1.0;
+                for (const SeamSide& side : seam.sides) {
+                    const Footprint print = footprint(pages[0].width, pages[0].height,
+                                                      glm::mix(side.ends[0], side.ends[1], at));
+                    for (int k = 0; k < 4; ++k) {
+                        texels.push_back(side.page * pages[0].texels() + print.texels[k]);
+                        weights_.push_back(sign * print.weights[k]);
+                    }
+                    sign = -1.0;
+                }
+            }
+        }
+        texels_ = texels;
+        std::ranges::sort(texels_);
+        texels_.erase(std::unique(texels_.begin(), texels_.end()), texels_.end());
+        columns_.reserve(texels.size());
+        for (const std::uint64_t texel : texels)
+            columns_.push_back(static_cast<std::uint32_t>(std::ranges::lower_bound(texels_, texel) -
+                                                          texels_.begin()));
+    }
+
+    /// Texels that occur, page after page, rising.
+    [[nodiscard]] const std::vector<std::uint64_t>& texels() const { return texels_; }
+
+    /// Of the values of these texels the differences, one per sample.
+    [[nodiscard]] std::vector<double> differences(const std::vector<double>& values) const
+    {
+        std::vector<double> sums(columns_.size() / kRow, 0.0);
+        for (std::size_t i = 0; i < columns_.size(); ++i)
+            sums[i / kRow] += weights_[i] * values[columns_[i]];
+        return sums;
+    }
+
+    /// The transposed product.
+    [[nodiscard]] std::vector<double> spread(const std::vector<double>& samples) const
+    {
+        std::vector<double> values(texels_.size(), 0.0);
+        for (std::size_t i = 0; i < columns_.size(); ++i)
+            values[columns_[i]] += weights_[i] * samples[i / kRow];
+        return values;
+    }
+
+private:
+    static constexpr std::size_t kRow = 8;
+
+    std::vector<std::uint64_t> texels_;
+    std::vector<std::uint32_t> columns_;
+    std::vector<double> weights_;
+};
+
+double dot(const std::vector<double>& a, const std::vector<double>& b)
+{
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+/// The change y of values x0 that minimises |S (x0 + y)|^2 + kStitchWeight |y|^2, S: the
+/// differences (Hestenes, Stiefel. Methods of Conjugate Gradients. 1952).
+std::vector<double> change_to_join(const SeamSamples& samples, const std::vector<double>& values)
+{
+    std::vector<double> rest = samples.spread(samples.differences(values));
+    for (double& value : rest)
+        value = -value;
+    std::vector<double> change(values.size(), 0.0), way = rest;
+    const double first = dot(rest, rest);
+    double length = first;
+    for (int i = 0; i < kMostIterations && length > kResidual * kResidual * first; ++i) {
+        std::vector<double> image = samples.spread(samples.differences(way));
+        for (std::size_t k = 0; k < image.size(); ++k)
+            image[k] += kStitchWeight * way[k];
+        const double step = length / dot(way, image);
+        for (std::size_t k = 0; k < image.size(); ++k) {
+            change[k] += step * way[k];
+            rest[k] -= step * image[k];
+        }
+        const double next = dot(rest, rest);
+        for (std::size_t k = 0; k < way.size(); ++k)
+            way[k] = rest[k] + next / length * way[k];
+        length = next;
+    }
+    return change;
+}
+
+float& value_at(std::span<Map> pages, std::uint64_t texel, std::uint32_t channel)
+{
+    Map& page = pages[texel / pages[0].texels()];
+    return page.values[texel % pages[0].texels() * page.channels + channel];
+}
+
+std::vector<double> values_of(const SeamSamples& samples, std::span<const Map> pages,
+                              std::uint32_t channel)
+{
+    std::vector<double> values;
+    values.reserve(samples.texels().size());
+    for (const std::uint64_t texel : samples.texels()) {
+        const Map& page = pages[texel / pages[0].texels()];
+        values.push_back(page.values[texel % pages[0].texels() * page.channels + channel]);
+    }
+    return values;
+}
+
+}  // namespace
+
+std::uint64_t Seams::smooth_count() const
+{
+    return static_cast<std::uint64_t>(
+        std::ranges::count_if(list, [](const Seam& seam) { return seam.is_smooth; }));
+}
+
+Seams seams_of(const Mesh& mesh, const MapLayout& layout)
+{
+    Seams seams;
+    if (layout.is_blended)
+        return seams;
+    seams.beside.assign(3 * mesh.geometry.triangles.size(), Seams::kNone);
+    Edges(mesh.geometry).for_each([&](std::uint32_t, std::span<const EdgeSide> sides) {
+        if (sides.size() != 2 || sides[0].rises() == sides[1].rises())
+            return;
+        const auto first = placed(mesh.geometry, layout, sides[0].triangle());
+        const auto second = placed(mesh.geometry, layout, sides[1].triangle());
+        if (!first || !second)
+            return;
+        const SeamSide a = seam_side(*first, sides[0]), b = seam_side(*second, sides[1]);
+        const glm::dvec2 offset = b.ends[0] - a.ends[0];
+        if (a.page == b.page && offset == glm::round(offset) && b.ends[1] - a.ends[1] == offset) {
+            seams.beside[sides[0].side()] = sides[1].side();
+            seams.beside[sides[1].side()] = sides[0].side();
+        } else {
+            seams.list.push_back({{a, b}, is_smooth(mesh.surface, a, b)});
+        }
+    });
+    return seams;
+}
+
+void fill_across(const Mesh& mesh, const MapLayout& layout, const Seams& seams, std::uint32_t rings,
+                 std::span<Map> pages, std::span<std::vector<std::uint8_t>> known)
+{
+    SURFELAO_CHECK(pages.size() == layout.pages.size() && known.size() == pages.size());
+    ClaimFinder finder(mesh, layout, seams, rings, known);
+    for (std::size_t seam = 0; seam < seams.list.size(); ++seam)
+        for (const int near : {0, 1})
+            finder.find(seam, near);
+    for (const Claim& claim : finder.claims()) {
+        const Seam& seam = seams.list[claim.seam];
+        if (!seam.is_smooth)
+            continue;
+        Map& page = pages[claim.page];
+        const Map& other = pages[claim.other];  // of which known texels alone are taken
+        for (std::uint32_t c = 0; c < page.channels; ++c)
+            page.values[claim.texel * page.channels + c] = fetch(other, c, claim.place);
+        known[claim.page][claim.texel] = 1;
+    }
+}
+
+void stitch(const Seams& seams, std::span<Map> pages)
+{
+    const SeamSamples samples(seams, pages);
+    if (samples.texels().empty())
+        return;
+    for (std::uint32_t channel = 0; channel < pages[0].channels; ++channel) {
+        const std::vector<double> values = values_of(samples, pages, channel);
+        const std::vector<double> change = change_to_join(samples, values);
+        const auto [least, most] = std::ranges::minmax(values);
+        for (std::size_t k = 0; k < values.size(); ++k)
+            value_at(pages, samples.texels()[k], channel) =
+                static_cast<float>(std::clamp(values[k] + change[k], least, most));
+    }
+}
+
+SeamJump seam_jump(const Seams& seams, std::span<const Map> pages)
+{
+    const SeamSamples samples(seams, pages);
+    if (samples.texels().empty())
+        return {};
+    SeamJump jump;
+    const std::vector<double> differences = samples.differences(values_of(samples, pages, 0));
+    for (const double difference : differences)
+        jump.most = std::max(jump.most, std::abs(difference));
+    jump.rms = std::sqrt(dot(differences, differences) / static_cast<double>(differences.size()));
+    return jump;
+}
+
+}  // namespace surfelao

@@ -1,0 +1,118 @@
+#include "files/gltf_asset.h"
+#include "files/gltf_json.h"
+#include "files/gltf_uri.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <map>
+
+namespace surfelao {
+namespace {
+
+using nlohmann::json;
+
+std::size_t whole_number(const json& value, std::size_t otherwise)
+{
+    return value.is_number_unsigned() ? value.get<std::size_t>() : otherwise;
+}
+
+/// The bytes of a buffer view; empty where they are not there.
+std::string_view bytes_of_view(const GltfAsset& asset, const json& view)
+{
+    const std::size_t buffer = whole_number(member(view, "buffer"), asset.buffers.size());
+    if (buffer >= asset.buffers.size())
+        return {};
+    const std::string_view bytes = asset.buffers[buffer].bytes;
+    const std::size_t offset = whole_number(member(view, "byteOffset"), 0);
+    return offset < bytes.size() ? bytes.substr(offset, whole_number(member(view, "byteLength"), 0))
+                                 : std::string_view();
+}
+
+/// Each material and picture of the document once.
+class Painter {
+public:
+    explicit Painter(const GltfAsset& asset) : asset_(asset), document_(*asset.document) {}
+
+    /// The number of a primitive's material among the colours.
+    std::uint32_t material_of(std::size_t mesh, std::size_t primitive)
+    {
+        const json& primitives = member(entry(document_, "meshes", mesh), "primitives");
+        const json& index = member(primitives.at(primitive), "material");
+        const auto [known, is_new] =
+            materials_.try_emplace(index, static_cast<std::uint32_t>(colors_.materials.size()));
+        if (is_new)
+            colors_.materials.push_back(color_of(entry(document_, "materials", index)));
+        return known->second;
+    }
+
+    BaseColors finish(std::vector<std::uint32_t> triangles)
+    {
+        colors_.triangles = std::move(triangles);
+        return std::move(colors_);
+    }
+
+private:
+    BaseColor color_of(const json& material)
+    {
+        BaseColor color;
+        const json& looks = member(material, "pbrMetallicRoughness");
+        const json& factor = member(looks, "baseColorFactor");
+        for (int k = 0; k < 3 && factor.is_array() && factor.size() == 4; ++k) {
+            const json& number = factor[static_cast<std::size_t>(k)];
+            if (number.is_number())
+                color.factor[k] = std::clamp(number.get<float>(), 0.0f, 1.0f);
+        }
+        const json& texture = member(looks, "baseColorTexture");
+        color.uv_set = static_cast<std::uint32_t>(whole_number(member(texture, "texCoord"), 0));
+        const json& image =
+            member(entry(document_, "textures", member(texture, "index")), "source");
+        if (entry(document_, "images", image).is_object())
+            color.picture = picture_of(image.get<std::size_t>());
+        return color;
+    }
+
+    std::uint32_t picture_of(std::size_t image)
+    {
+        const auto [known, is_new] =
+            pictures_.try_emplace(image, static_cast<std::uint32_t>(colors_.pictures.size()));
+        if (!is_new)
+            return known->second;
+        PictureSource& picture = colors_.pictures.emplace_back();
+        picture.name = asset_.path.filename().string() + ": image " + std::to_string(image);
+        const json& entry_of_image = entry(document_, "images", image);
+        if (const json& uri = member(entry_of_image, "uri"); uri.is_string()) {
+            const auto& text = uri.get_ref<const std::string&>();
+            if (is_data_uri(text))
+                picture.bytes = decode_data_uri(text).value_or("");
+            else
+                picture.file = resolve_uri(asset_.path.parent_path(), text).value_or("");
+        } else {
+            picture.bytes = bytes_of_view(
+                asset_, entry(document_, "bufferViews", member(entry_of_image, "bufferView")));
+        }
+        return known->second;
+    }
+
+    const GltfAsset& asset_;
+    const json& document_;
+    BaseColors colors_;
+    std::map<json, std::uint32_t> materials_;
+    std::map<std::size_t, std::uint32_t> pictures_;
+};
+
+}  // namespace
+
+BaseColors GltfAsset::base_colors() const
+{
+    Painter painter(*this);
+    std::vector<std::uint32_t> triangles;
+    for (const GltfPart& part : parts) {
+        for (const GltfTriangles& of_primitive : part.primitives)
+            triangles.insert(triangles.end(), of_primitive.count,
+                             painter.material_of(uses[part.use].mesh, of_primitive.primitive));
+    }
+    return painter.finish(std::move(triangles));
+}
+
+}  // namespace surfelao

@@ -1,0 +1,20 @@
+/// gltf_maps.h: a map of occlusion in a glTF. Internal to the glTF writer.
+#pragma once
+
+#include "files/gltf_added.h"
+#include "files/gltf_asset.h"
+#include "files/scene_io.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace surfelao {
+
+/// Adds the map to the materials of the primitives in the scene, as gltf_contents_with_map() says,
+/// for a result at `path`. The document is the asset's, so far without results. Returns notes.
+[[nodiscard]] std::vector<std::string> add_map(nlohmann::json& document, const GltfAsset& asset,
+                                               const Scene& scene, const OcclusionMap& map,
+                                               const std::filesystem::path& path, AddedData& added);
+
+}  // namespace surfelao

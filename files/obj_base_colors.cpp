@@ -1,0 +1,104 @@
+#include "files/file_contents.h"
+#include "files/obj_file.h"
+#include "files/sidecars.h"
+#include "surfels/errors.h"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+namespace surfelao {
+namespace {
+
+/// What stands behind the cursor on its line, without blanks at the end.
+std::string_view rest_of_line(TextCursor& cursor, std::string_view text)
+{
+    if (cursor.at_line_end())
+        return {};
+    std::string_view rest = text.substr(cursor.offset());
+    rest = rest.substr(0, rest.find_first_of("\r\n"));
+    return rest.substr(0, rest.find_last_not_of(" \t") + 1);
+}
+
+/// Materials by name, each with Kd and map_Kd; the options of a map count as words before its name.
+class MaterialFiles {
+public:
+    explicit MaterialFiles(BaseColors& colors) : colors_(colors) {}
+
+    void read(const std::filesystem::path& path)
+    {
+        const std::string text = read_contents(path, path.string());
+        TextCursor cursor(path.string(), text, {.comment = '#'});
+        while (cursor.next_line()) {
+            const std::string_view statement = cursor.word();
+            if (statement == "newmtl") {
+                by_name_.insert_or_assign(std::string(rest_of_line(cursor, text)),
+                                          static_cast<std::uint32_t>(colors_.materials.size()));
+                colors_.materials.emplace_back();
+            } else if (statement == "Kd" && !by_name_.empty()) {
+                for (int k = 0; k < 3; ++k) {
+                    const auto number = number_in(cursor.word());
+                    colors_.materials.back().factor[k] = number ? linear_of(*number) : 1.0f;
+                }
+            } else if (statement == "map_Kd" && !by_name_.empty()) {
+                add_picture(path.parent_path(), rest_of_line(cursor, text));
+            }
+        }
+    }
+
+    /// White for a name that no file has.
+    [[nodiscard]] std::uint32_t number_of(std::string_view name) const
+    {
+        const auto found = by_name_.find(name);
+        return found == by_name_.end() ? 0 : found->second;
+    }
+
+private:
+    void add_picture(const std::filesystem::path& folder, std::string_view words)
+    {
+        for (const NamedFile& named : files_named(folder, words)) {
+            if (named.file.empty())
+                continue;
+            colors_.materials.back().picture = static_cast<std::uint32_t>(colors_.pictures.size());
+            colors_.pictures.push_back({named.file.filename().string(), named.file, {}});
+            return;
+        }
+    }
+
+    BaseColors& colors_;
+    std::map<std::string, std::uint32_t, std::less<>> by_name_;
+};
+
+}  // namespace
+
+BaseColors ObjSource::base_colors() const
+{
+    BaseColors colors;
+    colors.materials.emplace_back();  // of faces without one
+    MaterialFiles files(colors);
+    std::uint32_t material = 0;
+    TextCursor cursor("", text, kObjRules);
+    while (cursor.next_line()) {
+        const std::string_view statement = cursor.word();
+        if (statement == "mtllib") {
+            for (const NamedFile& named : files_named(folder, rest_of_line(cursor, text))) {
+                try {
+                    if (!named.file.empty())
+                        files.read(named.file);
+                } catch (const InputError&) {  // its materials are white
+                }
+            }
+        } else if (statement == "usemtl") {
+            material = files.number_of(rest_of_line(cursor, text));
+        } else if (statement == "f" || statement == "fo") {
+            std::size_t corners = 0;
+            for (; !cursor.at_line_end(); ++corners)
+                cursor.word();
+            colors.triangles.insert(colors.triangles.end(), corners < 3 ? 0 : corners - 2,
+                                    material);
+        }
+    }
+    return colors;
+}
+
+}  // namespace surfelao
