@@ -2,7 +2,7 @@
 """measure.py: what README.md and docs/ tell in figures, measured anew into docs/figures/*.json.
 
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
-                                    readers stated demo viewers; default: all, about 25
+                                    readers stated demo viewers atlas; default: all, about 30
                                     minutes on two quiet cores
 
 Every part is one file that says what command made it, of which version and commit, on what
@@ -319,10 +319,22 @@ def part_viewers(build):
     return {**provenance(build, "tests/bench/viewers/prove.py"), "before": old["before"], **shown}
 
 
+def part_atlas(build):
+    out = ROOT / "out/atlas"
+    try:
+        run(ROOT / "tests/bench/atlas/prove.py", build, out)
+    except subprocess.CalledProcessError as fault:
+        if fault.returncode == 77:
+            raise Absent("no npm") from fault
+        raise
+    return {**provenance(build, "tests/bench/atlas/prove.py"),
+            **json.loads((out / "atlas.json").read_text())}
+
+
 PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scaling": part_scaling,
          "stability": part_stability, "gpu": part_gpu, "drawing": part_drawing,
          "readers": part_readers, "stated": part_stated, "demo": part_demo,
-         "viewers": part_viewers}
+         "viewers": part_viewers, "atlas": part_atlas}
 
 
 def main(arguments):
