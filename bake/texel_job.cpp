@@ -218,8 +218,11 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
         const std::vector<std::string> notes =
             write_scene_with_map(settings.output, mesh.scene, picture, {.mark = mark_of(settings)});
         report.notes.insert(report.notes.end(), notes.begin(), notes.end());
-        if (const auto beside = map_file_of(settings.output))
-            told.written.push_back(*beside);
+        for (const auto& beside :
+             {map_file_of(settings.output), map_materials_of(settings.output)}) {
+            if (beside)
+                told.written.push_back(*beside);
+        }
     }
     report.seconds.write = watch.lap();
 }

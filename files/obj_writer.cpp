@@ -172,7 +172,7 @@ private:
             for (const NamedFile& named : files_named(source_.folder, rest_of(cursor))) {
                 if (named.file.empty())
                     missing.emplace_back(named.name);
-                else
+                else if (std::ranges::find(map_->libraries, named.file) == map_->libraries.end())
                     map_->libraries.push_back(named.file);
             }
             drop_line(cursor, begin);

@@ -330,7 +330,7 @@ private:
         for (std::size_t p = 0; p < old_.size(); ++p) {
             const Property& property = faces_.properties[p];
             const std::size_t begin = data_.offset();
-            if (property.name != "vertex_indices" && property.name != "vertex_index") {
+            if (p != list_) {
                 skip_property(data_, property);
             } else {
                 corners_.resize(read_length(data_, property));
@@ -350,9 +350,7 @@ private:
         ++changes.count;
         for (std::size_t p = 0; p < old_.size(); ++p) {
             const Property& property = faces_.properties[p];
-            const bool is_list =
-                property.name == "vertex_indices" || property.name == "vertex_index";
-            if (is_list && face && face->corners.size() < corners_.size()) {
+            if (p == list_ && face && face->corners.size() < corners_.size()) {
                 append_number(text_, *property.count_type,
                               static_cast<double>(face->corners.size()), notation_);
                 for (const std::uint32_t corner : face->corners)
@@ -367,6 +365,7 @@ private:
 
     const PlySource& source_;
     const Element& faces_;
+    std::size_t list_ = index_list_of(faces_);
     const UvSet& uvs_;
     Type length_type_;
     Notation notation_;
