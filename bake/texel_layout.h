@@ -38,6 +38,7 @@ struct TexelSettings {
     bool green_down = false;           ///< tangent space: green grows down, as DirectX has it
     std::vector<std::filesystem::path> high;  ///< what is asked in place of the mesh itself
     std::optional<Length> cage;               ///< high_to_low.h; empty: kCageShare
+    bool operator==(const TexelSettings&) const = default;
 };
 
 /// "at=texels size=1024 uv=auto ...": for marks.

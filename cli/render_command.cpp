@@ -109,9 +109,7 @@ void solve_map_for(const Model& model, const TexelSettings& texels, const Engine
                    Shown& shown)
 {
     Stopwatch watch;
-    MapLayout layout = layout_for(*model.mesh, texels, true, stage("charts")).layout;
-    LayoutFacts facts = facts_of(*model.mesh, layout);
-    shown.layout = ModelLayout{std::move(layout), std::move(facts)};
+    shown.layout = layout_of(model, texels, stage("charts"));
     const MapLayout& places = shown.layout->layout;
     shown.map = needs_answer(view.colors)
                     ? solve_map(model, places, engine, texels.padding, 0, stage("solve")).map
@@ -242,11 +240,8 @@ void add_render_command(CLI::App& app, Work& work)
         ->type_name("auto|egl|osmesa")
         ->capture_default_str();
     add_show_options(*command, options->show);
-    add_shown_texel_options(*command, options->texels);
-    command
-        ->add_flag("--atlas", options->atlas,
-                   "The map itself, flat, with the borders of its charts, in place of the model")
-        ->group("Map (--at texels)");
+    add_layout_options(*command, options->texels, kShownMaps);
+    add_atlas_option(*command, options->atlas);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
@@ -256,9 +251,7 @@ void add_render_command(CLI::App& app, Work& work)
         static_cast<void>(distance_limit_of(options->measure));
         static_cast<void>(target_settings_of(options->surface));
         const bool has_map = shown_texels_of(options->texels).has_value();
-        check_shown_map(view_options_of(options->show), has_map);
-        if (options->atlas && !has_map)
-            throw UsageError("--atlas is for --at texels.");
+        check_shown_map(view_options_of(options->show), has_map, options->atlas);
         check_files(*options);
         work = [options] { return run(*options); };
     });

@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/interrupt.h"
+#include "cli/texel_options.h"
 #include "cli/view_options.h"
 #include "engines/threads.h"
 #include "image/image_file.h"
@@ -24,6 +25,8 @@ struct ViewCommandOptions {
     EngineOptions engine;
     MeasureOptions measure;
     SurfaceOptions surface;
+    TexelOptions texels;
+    bool atlas = false;
     std::optional<int> threads;
 };
 
@@ -46,7 +49,8 @@ int run(const ViewCommandOptions& options)
         throw InputError(options.input + ": no such file");
 
     window.panel.settings = {settings_of(options.engine), distance_limit_of(options.measure),
-                             target_settings_of(options.surface)};
+                             target_settings_of(options.surface), shown_texels_of(options.texels)};
+    window.panel.shows_atlas = options.atlas;
     window.keep_open = [] { return caught_signal() == 0; };
     for (const std::filesystem::path& file : show_window(window))
         std::cout << "wrote " << file.string() << '\n';
@@ -72,13 +76,16 @@ void add_view_command(CLI::App& app, Work& work)
                      "Where from, as for render: azimuth=30,elevation=18,distance=1,fov=35")
         ->type_name("WHERE");
     add_show_options(*command, options->show);
+    add_layout_options(*command, options->texels, kShownMaps);
+    add_atlas_option(*command, options->atlas);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
     add_thread_option(*command, options->threads);
     command->callback([options, &work] {
         static_cast<void>(settings_of(options->engine));
-        static_cast<void>(view_options_of(options->show));
+        check_shown_map(view_options_of(options->show),
+                        shown_texels_of(options->texels).has_value(), options->atlas);
         static_cast<void>(target_settings_of(options->surface));
         const DistanceLimit distance = distance_limit_of(options->measure);
         if (std::isfinite(distance.value) && !distance.percent)

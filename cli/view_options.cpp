@@ -139,8 +139,10 @@ ViewOptions view_options_of(const ShowOptions& options)
     return view;
 }
 
-void check_shown_map(const ViewOptions& view, bool has_map)
+void check_shown_map(const ViewOptions& view, bool has_map, bool atlas)
 {
+    if (!has_map && atlas)
+        throw UsageError("--atlas is for --at texels.");
     if (!has_map && needs_map(view.colors))
         throw UsageError("--mode charts and density are for --at texels.");
     if (has_map && view.surface != Shape::triangles)

@@ -32,7 +32,7 @@ void add_show_options(CLI::App& command, ShowOptions& options);
 /// Throws UsageError for what contradicts itself.
 [[nodiscard]] ViewOptions view_options_of(const ShowOptions& options);
 /// Throws UsageError for what cannot be shown with or without a map.
-void check_shown_map(const ViewOptions& view, bool has_map);
+void check_shown_map(const ViewOptions& view, bool has_map, bool atlas);
 [[nodiscard]] UpAxis up_axis_of(const ShowOptions& options);
 
 }  // namespace surfelao

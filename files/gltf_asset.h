@@ -19,7 +19,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace surfelao {
@@ -88,7 +87,6 @@ struct GltfAsset : SourceAsset {
     std::vector<std::vector<std::int32_t>> group_of_primitive;
     std::vector<GltfUse> uses;       ///< in the order of the parts; each has one at least
     std::vector<GltfPart> parts;     ///< as Scene::parts
-    std::size_t triangle_count = 0;  ///< of the scene
 
     [[nodiscard]] BaseColors base_colors() const override;  // gltf_base_colors.cpp
 };

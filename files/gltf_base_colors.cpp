@@ -107,14 +107,11 @@ BaseColors GltfAsset::base_colors() const
 {
     Painter painter(*this);
     std::vector<std::uint32_t> triangles;
-    std::uint32_t material = 0;
     for (const GltfPart& part : parts) {
-        for (const GltfTriangles& some : part.primitives) {
-            triangles.resize(some.first, material);
-            material = painter.material_of(uses[part.use].mesh, some.primitive);
-        }
+        for (const GltfTriangles& of_primitive : part.primitives)
+            triangles.insert(triangles.end(), of_primitive.count,
+                             painter.material_of(uses[part.use].mesh, of_primitive.primitive));
     }
-    triangles.resize(triangle_count, material);
     return painter.finish(std::move(triangles));
 }
 

@@ -456,7 +456,6 @@ Scene read_gltf(const fs::path& path, std::string contents)
     Scene scene;
     scene.name = path.filename().string();
     SceneBuilder(model, *asset, scene).build();
-    asset->triangle_count = scene.triangles.size();
     scene.asset = asset;
     return scene;
 }

@@ -59,6 +59,10 @@ vec4 occlusion_of(vec4 texel)
     return vec4(2.0 * texel.xyz - 1.0, 1.0 - texel.w);
 }
 
+// Twins of atlas/layout.cpp. Pages without a weight count where there are no others.
+const float kLeastPageWeight = 0.25;
+const float kNoWeight = 1e-12;
+
 // The values at this pixel, and what is told of its places: the mean over them.
 struct MapValues {
     vec4 own, reference;
@@ -70,13 +74,15 @@ MapValues map_values()
 {
     MapValues sum = MapValues(vec4(0.0), vec4(0.0), vec3(0.0), 0.0, false);
     float weights = 0.0;
+    vec3 normal = safe_normalize(v_normal_level.xyz);
+    vec3 squares = normal * normal;
     for (int k = 0; k < u_place_count; ++k) {
         uvec4 facts = texelFetch(u_facts, v_triangle * u_place_count + k);
         if (facts.x == 0u)
             continue;
-        // the least is for a normal in the plane of all the pages that there are
-        float component = u_place_count == 1 ? 1.0 : v_normal_level[k];
-        float weight = max(component * component, 1e-12);
+        float weight = 1.0;
+        if (u_place_count > 1)
+            weight = max(squares[k] - kLeastPageWeight, kNoWeight);
         int page = int(facts.x) - 1;
         sum.own += weight * fetch_map(u_map, page, v_place[k]);
         sum.reference += weight * fetch_map(u_map_reference, page, v_place[k]);

@@ -2,6 +2,8 @@
 
 #include "surfels/number_text.h"
 
+#include <cstdio>
+
 namespace surfelao {
 
 ModelMap open_map(const MapLayout& layout)
@@ -19,8 +21,10 @@ std::string text_of(const ModelLayout& layout)
     if (places.pages.size() > 1)
         text += std::to_string(places.pages.size()) + " pages, ";
     text += count_text(layout.facts.chart_count, "chart") + ", ";
-    append_shortest(text, layout.facts.median_density);
-    return text + " texels per unit";
+    const double density = layout.facts.median_density;
+    char number[32];
+    std::snprintf(number, sizeof number, density < 100.0 ? "%.3g" : "%.0f", density);
+    return text + number + " texels per unit (median)";
 }
 
 float most_density(const LayoutFacts& facts)

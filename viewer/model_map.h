@@ -6,6 +6,8 @@
 #include "image/map.h"
 #include "viewer/base_paint.h"
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,7 @@ namespace surfelao {
 struct ModelLayout {
     MapLayout layout;
     LayoutFacts facts;
+    std::optional<std::uint32_t> uv_set = {};  ///< the file's; empty: new ones
 };
 
 /// One per page of the layout, all of its size: bytes as in files (MapDepth::byte).

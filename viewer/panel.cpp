@@ -1,6 +1,7 @@
 #include "viewer/panel.h"
 
 #include "viewer/panel_widgets.h"
+#include "viewer/render.h"
 
 #include <imgui.h>
 
@@ -39,8 +40,11 @@ void switch_place(PanelState& state, ReferencePlace place)
 /// One key that the widgets leave to the picture.
 void press(char key, PanelState& state, PanelInput& input)
 {
-    input.view_changed |= std::string_view("1234567TGWS").find(key) != std::string_view::npos;
+    input.view_changed |= std::string_view("1234567890ATGWS").find(key) != std::string_view::npos;
     switch (key) {
+        case 'A':
+            state.shows_atlas = !state.shows_atlas;
+            break;
         case 'T':
             state.view.surface = static_cast<Shape>((static_cast<int>(state.view.surface) + 1) % 4);
             break;
@@ -85,8 +89,8 @@ void press(char key, PanelState& state, PanelInput& input)
             input.zoom /= kZoomPerNotch;
             break;
         default:
-            if (key >= '1' && key <= '7')
-                state.view.colors = static_cast<Colors>(key - '1');
+            if (key >= '0' && key <= '9')
+                state.view.colors = static_cast<Colors>((key - '1' + 10) % 10);
     }
 }
 
@@ -191,11 +195,9 @@ PanelInput Panel::build(PanelState& state, const Session& session, const PanelFi
         help_window(state.shows_help);
     if (state.question)
         question_window(*state.question, input.reply);
-    if (state.view.colors == Colors::difference)
-        legend("occlusion difference to rays", 0.0f, state.view.difference_scale);
-    if (state.view.colors == Colors::levels && session.state().model) {
-        const glm::vec2 range = level_range(*session.state().model);
-        legend("octree level", range.x, range.y);
+    if (const std::shared_ptr<const Model>& model = session.state().model) {
+        if (const auto shown = legend_of(*model, session.state().layout.get(), state.view))
+            legend(shown->title, shown->low, shown->high);
     }
     const float left = input.covered * display.x;
     const float line =
@@ -203,7 +205,7 @@ PanelInput Panel::build(PanelState& state, const Session& session, const PanelFi
         (display.x - left) * (state.reference_place == ReferencePlace::wipe ? state.wipe : 0.5f);
     if (state.reference_place != ReferencePlace::nowhere)
         place_labels(line, name_of(state.settings.engine).c_str(),
-                     session.state().reference.empty() ? "no rays yet" : "rays");
+                     session.state().has_reference() ? "rays" : "no rays yet");
     mouse(state, input, line, left);
     if (input.view_changed && needs_reference(state))
         state.wants_reference = true;
@@ -234,6 +236,7 @@ void Panel::solver_widgets(PanelState& state)
     bool apply = edit_settings(edited_.engine);
     apply |= edit_distance(edited_.max_distance, falloff_);
     apply |= edit_target(edited_.target);
+    apply |= edit_texels(edited_.texels, texels_);
     if (apply)
         state.settings = edited_;
 }
@@ -312,7 +315,7 @@ void Panel::widgets(PanelState& state, const Session& session, const PanelFigure
         }
         if (session.tracing())
             progress_line("tracing", session.trace_progress());
-        else if (needs_reference(state) && shown_state.model && shown_state.reference.empty())
+        else if (needs_reference(state) && shown_state.model && !shown_state.has_reference())
             ImGui::TextUnformatted("not traced: the result is shown instead");
     }
     if (ImGui::CollapsingHeader("Save")) {

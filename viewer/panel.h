@@ -39,7 +39,8 @@ enum class SaveReply { none, replace, keep_both, cancel };
 struct PanelState {
     ViewOptions view;  ///< but its wipe, which follows from the reference's place
     ReferencePlace reference_place = ReferencePlace::nowhere;
-    float wipe = 0.5f;  ///< where the line is, as a share of the picture's width
+    float wipe = 0.5f;         ///< where the line is, as a share of the picture's width
+    bool shows_atlas = false;  ///< in place of the model, where there is a map
     bool is_hidden = false;
     SessionSettings settings;
     std::map<Engine, float> qualities;  ///< of the engines that are not chosen: see choose_engine
@@ -110,6 +111,7 @@ private:
     void mouse(PanelState& state, PanelInput& input, float wipe_x, float left);
     SessionSettings edited_;           ///< what the widgets show while they are dragged
     Falloff falloff_ = Falloff::none;  ///< kept while the distance is unlimited
+    TexelSettings texels_;             ///< kept while the values are at vertices
     bool drags_wipe_ = false;
 };
 

@@ -15,8 +15,9 @@ namespace {
 
 constexpr int kBins = 48;
 
-constexpr const char* kColorNames[] = {"visibility", "rays",   "difference", "bent normals",
-                                       "normals",    "levels", "environment"};
+constexpr const char* kColorNames[] = {"visibility", "rays",    "difference",  "bent normals",
+                                       "normals",    "levels",  "environment", "charts",
+                                       "density",    "textured"};
 constexpr const char* kSurfaceNames[] = {"triangles", "splats", "affine", "points"};
 
 constexpr const char* kHelp[][2] = {
@@ -24,7 +25,8 @@ constexpr const char* kHelp[][2] = {
     {"right or middle drag", "pan"},
     {"wheel, + and -", "zoom"},
     {"F", "frame all"},
-    {"1 .. 7", "colours, in the panel's order"},
+    {"1 .. 9, 0", "colours, in the panel's order"},
+    {"A", "the map flat or on the model, where there is one"},
     {"T", "next surface: triangles, splats, affine, points"},
     {"R", "ray reference on or off"},
     {"W", "wipe to the reference on or off; drag the line"},
@@ -112,6 +114,39 @@ bool edit_target(TargetSettings& target)
     return apply;
 }
 
+bool edit_texels(std::optional<TexelSettings>& texels, TexelSettings& chosen)
+{
+    if (texels)
+        chosen = *texels;
+    bool apply = false;
+    int where = texels ? 1 : 0;
+    if (ImGui::Combo("at", &where, "vertices\0texels\0")) {
+        texels = where == 1 ? std::optional(chosen) : std::nullopt;
+        apply = true;
+    }
+    if (!texels)
+        return apply;
+    constexpr std::uint32_t kSizes[] = {256, 512, 1024, 2048, 4096};
+    if (ImGui::BeginCombo("size", std::to_string(texels->size).c_str())) {
+        for (const std::uint32_t size : kSizes) {
+            if (ImGui::Selectable(std::to_string(size).c_str(), size == texels->size)) {
+                texels->size = size;
+                texels->texels_per_unit.reset();
+                apply = true;
+            }
+        }
+        ImGui::EndCombo();
+    }
+    int uvs = texels->uvs != UvChoice::made ? 0 : texels->blended ? 2 : 1;
+    if (ImGui::Combo("charts", &uvs, "the file's, or new\0new\0new, blended\0")) {
+        texels->uvs = uvs == 0 ? UvChoice::automatic : UvChoice::made;
+        texels->blended = uvs == 2;
+        texels->udim = false;
+        apply = true;
+    }
+    return apply;
+}
+
 bool view_widgets(PanelState& state)
 {
     ViewOptions& view = state.view;
@@ -122,11 +157,13 @@ bool view_widgets(PanelState& state)
         changed = true;
     }
     int surface = static_cast<int>(view.surface);
-    if (ImGui::Combo("surface", &surface, kSurfaceNames, IM_ARRAYSIZE(kSurfaceNames))) {
+    if (state.settings.texels)
+        changed |= ImGui::Checkbox("flat (A)", &state.shows_atlas);
+    else if (ImGui::Combo("surface", &surface, kSurfaceNames, IM_ARRAYSIZE(kSurfaceNames))) {
         view.surface = static_cast<Shape>(surface);
         changed = true;
     }
-    if (view.surface != Shape::triangles)
+    if (view.surface != Shape::triangles && !state.settings.texels)
         changed |= ImGui::SliderFloat("splat radius", &view.radius_scale, 0.1f, 4.0f, "%.2f",
                                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     if (view.colors == Colors::environment)
@@ -156,6 +193,11 @@ void stage_lines(const SessionState& s)
         ImGui::Text("reference %.3f s", *s.reference_s);
     else if (!s.reference.empty())
         ImGui::TextUnformatted("reference from the cache");
+    if (s.layout)
+        ImGui::TextWrapped("%s", text_of(*s.layout).c_str());
+    if (s.map_error)
+        ImGui::Text("seen %.4f (%.4f to %.4f)\nbias %+.4f   95 %% %.4f", s.map_error->rmse,
+                    s.map_error->low, s.map_error->high, s.map_error->bias, s.map_error->p95);
     if (!s.error)
         return;
     const ErrorStatistics& seen = s.error->seen;
@@ -170,7 +212,7 @@ void stage_lines(const SessionState& s)
 void histogram(const Session& session)
 {
     const SessionState& s = session.state();
-    if (!s.is_solved)
+    if (!s.is_solved || s.layout)
         return;
     const std::vector<Occlusion>& occlusion = session.occlusion();
     std::array<std::size_t, kBins> bins{};

@@ -4,6 +4,8 @@
 
 #include "viewer/panel.h"
 
+#include <optional>
+
 namespace surfelao {
 
 /// The settings of the chosen engine. True when they are to be solved: not while a slider is
@@ -15,6 +17,10 @@ bool edit_distance(DistanceLimit& limit, Falloff& falloff);
 
 /// The same for the surface's normals and what the values at vertices are.
 bool edit_target(TargetSettings& target);
+
+/// The same for where values are: at vertices, or at the texels of a map. chosen: what a map has,
+/// once there is one.
+bool edit_texels(std::optional<TexelSettings>& texels, TexelSettings& chosen);
 
 /// How the model is shown. True when anything changed.
 bool view_widgets(PanelState& state);

@@ -468,13 +468,24 @@ glm::vec2 sample_shift(int index)
 }
 
 struct SampleSum::Impl {
-    Impl(const GlContext& context, int width, int height)
-        : program(context, "fullscreen.vert", "sum.frag"),
+    Impl(const GlContext& gl, int width, int height)
+        : context(gl),
+          program(context, "fullscreen.vert", "sum.frag"),
           nothing(context),
           sum(context, FramebufferOptions{
                            .width = width, .height = height, .colors = {TexelFormat::rgba32f}})
     {
     }
+    void add(const Texture2D& drawing)
+    {
+        program.set("u_image", drawing);
+        program.set("u_factor", 1.0f);
+        program.set("u_encode", 0);
+        program.set("u_corner", glm::ivec2(0));
+        draw_fullscreen(sum, program, nothing, {.blend = Blend::add});
+        ++count;
+    }
+    const GlContext& context;
     Program program;
     VertexArray nothing;
     Framebuffer sum;
@@ -503,12 +514,16 @@ int SampleSum::count() const
 
 void SampleSum::add(const Framebuffer& drawing)
 {
-    impl_->program.set("u_image", drawing.color());
-    impl_->program.set("u_factor", 1.0f);
-    impl_->program.set("u_encode", 0);
-    impl_->program.set("u_corner", glm::ivec2(0));
-    draw_fullscreen(impl_->sum, impl_->program, impl_->nothing, {.blend = Blend::add});
-    ++impl_->count;
+    impl_->add(drawing.color());
+}
+
+void SampleSum::add(const Image& picture)
+{
+    Image upright = picture;  // row 0 of textures is the bottom
+    for (int y = 0; y < upright.height; ++y)
+        for (int x = 0; x < upright.width; ++x)
+            upright.at(x, y) = picture.at(x, upright.height - 1 - y);
+    impl_->add(upload_image(impl_->context, upright, {}));
 }
 
 Image SampleSum::mean() const

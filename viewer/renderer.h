@@ -82,6 +82,8 @@ public:
 
     void clear();
     void add(const Framebuffer& drawing);
+    /// A picture of the same size, as one drawing.
+    void add(const Image& picture);
     int count() const;
 
     /// The mean as linear light; row 0 is the top. At least one drawing must have been added.

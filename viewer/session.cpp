@@ -1,8 +1,10 @@
 #include "viewer/session.h"
 
 #include "bake/bake.h"
+#include "files/file_type.h"
 #include "files/scene_io.h"
 #include "gpu/context.h"
+#include "image/image_file.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
 
@@ -39,6 +41,9 @@ struct Session::Made {
 struct Session::Answer {
     std::uint64_t number = 0;
     ModelAnswer found;
+    std::shared_ptr<const ModelLayout> layout;  // with a map
+    std::shared_ptr<const ModelMap> map;
+    std::optional<StatedError> map_error;
     std::optional<double> build_s;
     SessionSettings settings;
     bool is_draft = false;
@@ -47,6 +52,7 @@ struct Session::Answer {
 struct Session::Traced {
     std::uint64_t number = 0;
     ModelTruth found;
+    std::shared_ptr<const ModelMap> map;  // in its place
     double seconds = 0.0;
 };
 
@@ -56,6 +62,19 @@ struct Session::Engines {
     std::shared_ptr<const Model> model;
     std::optional<Prepared> prepared;
     std::optional<double> untold_s;  ///< seconds of preparing, until a whole answer has come of it
+    std::optional<TexelSettings> texels;        ///< that the layout was made for
+    std::shared_ptr<const ModelLayout> layout;  ///< of the model
+
+    const std::shared_ptr<const ModelLayout>& layout_for(const TexelSettings& wanted,
+                                                         const Progress& progress)
+    {
+        if (texels != wanted || !layout) {
+            layout.reset();
+            layout = std::make_shared<const ModelLayout>(layout_of(*model, wanted, progress));
+            texels = wanted;
+        }
+        return layout;
+    }
 
     /// Where the GPU's engines compute.
     const GlContext* context()
@@ -70,6 +89,8 @@ struct Session::Engines {
         if (model == wanted && prepared && prepared->choice() == choice)
             return;
         prepared.reset();  // before the next one is built: both may be large
+        if (model != wanted)
+            layout.reset();
         model = wanted;
         prepared.emplace(prepare(wanted->geometry(), choice));
         untold_s = prepared->seconds().surfels + prepared->seconds().tree;
@@ -124,7 +145,8 @@ void Session::solve(const SessionSettings& settings)
 {
     if (settings == settings_)
         return;
-    const bool other_question = settings.max_distance != settings_.max_distance;
+    const bool other_question =
+        settings.max_distance != settings_.max_distance || settings.texels != settings_.texels;
     settings_ = settings;
     if (making_) {  // its model is solved with them
         if (making_->target != settings_.target) {
@@ -160,7 +182,7 @@ void Session::start_solve()
     std::vector<EngineSettings> steps = {draft_of(whole), whole};
     if (steps[0] == steps[1])
         steps.pop_back();
-    solver_.start([this, number, steps, limit = settings_.max_distance,
+    solver_.start([this, number, steps, limit = settings_.max_distance, texels = settings_.texels,
                    model = state_.model](const Progress& progress) {
         try {
             EngineChoice choice = steps[0];
@@ -171,9 +193,23 @@ void Session::start_solve()
                 answer->number = number;
                 answer->is_draft = i + 1 < steps.size();
                 answer->build_s = engines_->untold_s;
-                answer->settings = {steps[i], limit, model->settings};
-                answer->found = solve_model(*engines_->prepared, *model, steps[i],
-                                            {.ground = true, .points = true}, progress);
+                answer->settings = {steps[i], limit, model->settings, texels};
+                answer->found =
+                    solve_model(*engines_->prepared, *model, steps[i],
+                                {.vertices = !texels, .ground = true, .points = !texels},
+                                // the ground is little beside a map
+                                [&](double done) { return progress(texels ? 0.0 : done); });
+                if (texels) {
+                    EngineSettings engine = steps[i];
+                    engine.context = choice.context;
+                    answer->layout = engines_->layout_for(*texels, progress);
+                    MapAnswer map =
+                        solve_map(*model, answer->layout->layout, engine, texels->padding,
+                                  answer->is_draft ? 0 : kCheckPoints, progress);
+                    answer->map = std::make_shared<const ModelMap>(std::move(map.map));
+                    answer->map_error = map.error;
+                    answer->found.seconds += map.seconds;
+                }
                 const std::lock_guard lock(mailbox_);
                 answer_ = std::move(answer);
             }
@@ -200,30 +236,40 @@ void Session::start_reference()
 {
     const std::uint64_t number = ++trace_number_;
     state_.reference.clear();
+    state_.map_reference.reset();
     state_.error.reset();
-    if (reference_rays_ == 0) {
+    // where texels lie is known when there is an answer
+    const bool is_known =
+        !settings_.texels || (state_.layout && solved_with_.texels == settings_.texels);
+    if (reference_rays_ == 0 || !is_known) {
         tracer_.cancel();
         return;
     }
     const Definition definition =
         definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry().frame);
-    tracer_.start([this, number, definition, rays = reference_rays_,
-                   model = state_.model](const Progress& progress) {
-        try {
-            Stopwatch watch;
-            auto traced = std::make_unique<Traced>();
-            traced->number = number;
-            traced->found = truth_of(*model, definition, rays, progress);
-            traced->seconds = watch.lap();
-            const std::lock_guard lock(mailbox_);
-            traced_ = std::move(traced);
-        } catch (const Cancelled&) {
-            throw;
-        } catch (const std::exception& error) {
-            const std::lock_guard lock(mailbox_);
-            failure_ = error.what();
-        }
-    });
+    tracer_.start(
+        [this, number, definition, rays = reference_rays_, model = state_.model,
+         layout = settings_.texels ? state_.layout : nullptr,
+         padding = settings_.texels ? settings_.texels->padding : 0](const Progress& progress) {
+            try {
+                Stopwatch watch;
+                auto traced = std::make_unique<Traced>();
+                traced->number = number;
+                if (layout)
+                    traced->map = std::make_shared<const ModelMap>(
+                        reference_map(*model, layout->layout, definition, rays, padding, progress));
+                else
+                    traced->found = truth_of(*model, definition, rays, progress);
+                traced->seconds = watch.lap();
+                const std::lock_guard lock(mailbox_);
+                traced_ = std::move(traced);
+            } catch (const Cancelled&) {
+                throw;
+            } catch (const std::exception& error) {
+                const std::lock_guard lock(mailbox_);
+                failure_ = error.what();
+            }
+        });
 }
 
 void Session::solve_again()
@@ -243,8 +289,8 @@ void Session::cancel()
 void Session::measure()
 {
     state_.error.reset();
-    if (state_.is_solved && !state_.reference.empty() && !truth_.truth.points.empty() &&
-        solved_with_.max_distance == settings_.max_distance)
+    if (state_.is_solved && !state_.layout && !state_.reference.empty() &&
+        !truth_.truth.points.empty() && solved_with_.max_distance == settings_.max_distance)
         state_.error = error_of(*state_.model, truth_, occlusion_, at_points_);
 }
 
@@ -272,6 +318,8 @@ Session::Changes Session::update()
             state_.model = made->model;
             state_.read_s = made->seconds;
             state_.is_solved = false;
+            state_.layout.reset();
+            state_.map.reset();
             scene_ = made->scene;
             occlusion_.clear();
             start_reference();
@@ -284,6 +332,10 @@ Session::Changes Session::update()
         at_points_ = std::move(answer->found.at_points);
         state_.is_solved = true;
         solved_with_ = answer->settings;
+        state_.map = answer->map;
+        state_.map_error = answer->map_error;
+        if (std::exchange(state_.layout, answer->layout) != answer->layout && answer->layout)
+            start_reference();
         ++state_.answer_count;
         state_.is_draft = answer->is_draft;
         was_cancelled_ = was_cancelled_ && answer->is_draft;
@@ -298,6 +350,7 @@ Session::Changes Session::update()
         if (!truth_.reference.from_cache)
             state_.reference_s = traced->seconds;
         state_.reference = std::move(truth_.reference.values);
+        state_.map_reference = traced->map;
         changes.reference = true;
     }
     if (changes.occlusion || changes.reference)
@@ -310,16 +363,36 @@ Session::Changes Session::update()
 void Session::save(const std::filesystem::path& path) const
 {
     SURFELAO_CHECK(state_.is_solved);
-    check_output(state_.path, path);
     BakeSettings made;
     made.input = state_.path;
     made.output = path;
     made.engine = solved_with_.engine;
     made.max_distance = solved_with_.max_distance;
     made.target = solved_with_.target;
+    made.texels = solved_with_.texels;
+    if (state_.layout)
+        return save_map(path, mark_of(made));
+    check_output(state_.path, path);
     const Scene& scene = state_.model->mesh->scene;
     write_scene(path, scene, std::span(occlusion()).first(scene.positions.size()),
                 {.mark = mark_of(made)});
+}
+
+void Session::save_map(const std::filesystem::path& path, const std::string& mark) const
+{
+    if (state_.map->visibility.size() > 1)
+        throw InputError(path.string() + ": holds a map of one page");
+    const Map& map = state_.map->visibility[0];
+    if (type_of(path) == FileType::unknown) {
+        write_map(path, map, MapDepth::byte, mark);
+        return;
+    }
+    check_output_with_map(state_.path, path);
+    OcclusionMap picture{map_bytes(map, MapDepth::byte), state_.layout->uv_set.value_or(0), {}};
+    if (!state_.layout->uv_set)
+        picture.uvs = state_.layout->layout.pages[0];
+    static_cast<void>(
+        write_scene_with_map(path, state_.model->mesh->scene, picture, {.mark = mark}));
 }
 
 }  // namespace surfelao

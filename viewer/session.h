@@ -8,6 +8,7 @@
 #include "viewer/background_worker.h"
 #include "viewer/camera.h"
 #include "viewer/model.h"
+#include "viewer/solve_map.h"
 #include "viewer/solve_model.h"
 
 #include <cstdint>
@@ -27,6 +28,8 @@ struct SessionSettings {
     EngineSettings engine;
     DistanceLimit max_distance;
     TargetSettings target;
+    /// A map in place of values at vertices: its charts, size and padding count.
+    std::optional<TexelSettings> texels = {};
     bool operator==(const SessionSettings&) const = default;
 };
 
@@ -37,13 +40,23 @@ struct SessionState {
     bool is_solved = false;              ///< there is an answer: Session::occlusion()
     bool is_draft = false;               ///< it is the rough one
     std::vector<Occlusion> reference;    ///< empty until it was traced for the same definition
-    std::uint64_t answer_count = 0;      ///< how many have come so far, drafts too
+    /// The answer's, where it is a map; null where it is at vertices.
+    std::shared_ptr<const ModelLayout> layout;
+    std::shared_ptr<const ModelMap> map;
+    std::shared_ptr<const ModelMap> map_reference;  ///< null until it was traced
+    std::optional<StatedError> map_error;           ///< of a whole answer, as displayed
+    std::uint64_t answer_count = 0;                 ///< how many have come so far, drafts too
     double read_s = 0.0;
     std::optional<double> build_s;  ///< empty where what was built before has answered again
     double solve_s = 0.0;
     std::optional<double> reference_s;  ///< empty where it was read from the cache
     std::optional<ModelError> error;    ///< of the answer; empty where there is nothing to judge
     std::string message;  ///< the last thing that went wrong, one sentence; else empty
+
+    [[nodiscard]] bool has_reference() const
+    {
+        return layout ? map_reference != nullptr : !reference.empty();
+    }
 };
 
 /// For one thread, the window's; update() takes over what the background threads have finished.
@@ -83,12 +96,14 @@ public:
     };
     [[nodiscard]] Changes update();
 
-    /// Model::answer_count() answers; empty until something was solved.
+    /// Model::answer_count() answers, with a map those of the ground alone; empty until something
+    /// was solved.
     const std::vector<Occlusion>& occlusion() const { return occlusion_; }
 
     /// Writes the model with the answer at its vertices, the draft where there is no other: the
-    /// bytes that bake() writes for these settings. Something must be solved. Replaces what stands
-    /// there. Throws as check_output() and write_scene().
+    /// bytes that bake() writes for these settings. With a map, the model with it, or the picture
+    /// alone (.png, .tif). Something must be solved. Replaces what stands there. Throws as
+    /// check_output() and write_scene(), and InputError for a map of several pages.
     void save(const std::filesystem::path& path) const;
 
     const SessionState& state() const { return state_; }
@@ -116,6 +131,7 @@ private:
     void solve_or_make();
     void start_solve();
     void start_reference();
+    void save_map(const std::filesystem::path& path, const std::string& mark) const;
     void measure();
 
     SessionSettings settings_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bake/stated_error.h"
+#include "bake/texel_layout.h"
 #include "engines/engine.h"
 #include "viewer/model.h"
 #include "viewer/model_map.h"
@@ -16,6 +17,10 @@ struct MapAnswer {
     std::optional<StatedError> error;  ///< of what is displayed
     double seconds = 0.0;              ///< of texels, solving and filling
 };
+
+/// Where a map lies, with what is told of it. Throws as layout_for().
+[[nodiscard]] ModelLayout layout_of(const Model& model, const TexelSettings& texels,
+                                    const Progress& progress = {});
 
 /// padding, check: as MapSettings. Throws as bake_map().
 [[nodiscard]] MapAnswer solve_map(const Model& model, const MapLayout& layout,

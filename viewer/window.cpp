@@ -4,6 +4,7 @@
 #include "image/image_file.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
+#include "viewer/atlas_picture.h"
 #include "viewer/native_window.h"
 #include "viewer/output_files.h"
 #include "viewer/render.h"
@@ -99,7 +100,7 @@ public:
 private:
     void wait_for_events()
     {
-        const bool drawing = has_view() && (panes_.empty() || samples() < kMostSamples);
+        const bool drawing = has_view() && (panes_.empty() || samples() < most_samples());
         if (drawing || options_.on_frame || echo_frames_ > 0) {
             glfwPollEvents();
             echo_frames_ = std::max(0, echo_frames_ - 1);
@@ -123,8 +124,11 @@ private:
         const Session::Changes changes = session_.update();
         const SessionState& state = session_.state();
         try {
-            if (changes.model)
+            if (changes.model) {
                 renderer_.set_model(*state.model);
+                shown_layout_.reset();
+                paint_.reset();
+            }
             if (changes.file) {
                 note_.clear();
                 files_.add_input(state.path);
@@ -132,9 +136,13 @@ private:
                                    (state.path.filename().string() + " - surfelao").c_str());
                 frame_all();
             }
-            if (changes.occlusion)
+            if (changes.occlusion) {
                 renderer_.set_occlusion(session_.occlusion());
-            if (changes.reference)
+                take_map();
+            }
+            if (changes.reference && state.map_reference)
+                renderer_.set_map_reference(*state.map_reference);
+            else if (changes.reference)
                 renderer_.set_reference(state.reference);
             if (changes.model || changes.occlusion || changes.reference)
                 restart();
@@ -142,6 +150,33 @@ private:
             note_ = error.what();
         }
     }
+
+    /// The answer's map, or that it has none.
+    void take_map()
+    {
+        const SessionState& state = session_.state();
+        if (!state.layout)
+            renderer_.forget_layout();
+        else if (state.layout != shown_layout_)
+            renderer_.set_layout(*state.model->mesh, *state.layout);
+        shown_layout_ = state.layout;
+        if (state.map)
+            renderer_.set_map(*state.map);
+    }
+
+    /// Read when it is first wanted.
+    void take_paint()
+    {
+        if (paint_ || shown_view().colors != Colors::textured)
+            return;
+        paint_ = base_paint_of(*session_.state().model->mesh);
+        renderer_.set_paint(*paint_);
+        if (!paint_->notes.empty())
+            note_ = paint_->notes.front();
+    }
+
+    bool shows_atlas() const { return panel_state_.shows_atlas && session_.state().layout; }
+    int most_samples() const { return shows_atlas() ? 1 : kMostSamples; }
 
     void frame_all()
     {
@@ -176,7 +211,7 @@ private:
     void lay_out(const Rect& part)
     {
         // a reference that is not there yet is not shown instead of the result
-        const bool traced = !session_.state().reference.empty();
+        const bool traced = session_.state().has_reference();
         const ReferencePlace place = panel_state_.reference_place;
         std::vector<std::pair<Rect, float>> wanted;
         if (place == ReferencePlace::side_by_side && part.width > 1) {
@@ -234,7 +269,8 @@ private:
         const SessionState& state = session_.state();
         ViewOptions view = panel_state_.view;
         const bool has_values = state.is_solved || view.colors == Colors::levels ||
-                                (view.colors == Colors::rays && !state.reference.empty());
+                                view.colors == Colors::textured ||
+                                (view.colors == Colors::rays && state.has_reference());
         if (!has_values)
             view.colors = Colors::normals;
         return view;
@@ -242,11 +278,16 @@ private:
 
     void draw_model(const Framebuffer& shown)
     {
-        if (samples() < kMostSamples) {
+        if (samples() < most_samples()) {
+            take_paint();
             Stopwatch watch;
             for (Pane& pane : panes_) {
                 ViewOptions view = shown_view();
                 view.wipe = pane.wipe;
+                if (shows_atlas()) {
+                    pane.sum.add(flat_map(pane, view));
+                    continue;
+                }
                 renderer_.draw_frame(pane.target, camera_, view, sample_shift(pane.sum.count()));
                 pane.sum.add(pane.target);
             }
@@ -255,6 +296,18 @@ private:
         }
         for (const Pane& pane : panes_)
             pane.sum.show(shown, {pane.place.x, pane.place.y});
+    }
+
+    /// The rays' where the pane shows them alone.
+    Image flat_map(const Pane& pane, const ViewOptions& view) const
+    {
+        const SessionState& state = session_.state();
+        const ModelMap* rays = state.map_reference.get();
+        const SurfaceData data{.layout = state.layout.get(),
+                               .map = rays && pane.wipe == 0.0f ? rays : state.map.get(),
+                               .reference = rays,
+                               .paint = paint_ ? &*paint_ : nullptr};
+        return atlas_picture(*state.model->mesh, data, view, pane.place.width, pane.place.height);
     }
 
     PanelFigures figures() const
@@ -352,7 +405,8 @@ private:
         for (const Pane& pane : panes_)
             images.push_back(pane.sum.mean());
         Image image = joined(images);
-        if (const auto legend = legend_of(*session_.state().model, nullptr, shown_view()))
+        if (const auto legend =
+                legend_of(*session_.state().model, session_.state().layout.get(), shown_view()))
             draw_heat_legend(image, legend->title, legend->low, legend->high);
         write_image(path, image);
     }
@@ -386,6 +440,8 @@ private:
     Panel panel_;
     Camera camera_;
     std::vector<Pane> panes_;
+    std::shared_ptr<const ModelLayout> shown_layout_;  ///< that the renderer has
+    std::optional<BasePaint> paint_;                   ///< of the model; empty until it is wanted
     OutputFiles files_;
     std::string note_;
     double frame_ms_ = 0.0;

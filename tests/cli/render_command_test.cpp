@@ -26,12 +26,24 @@ protected:
     Outcome render(const char* output, std::vector<std::string> options = {}) const
     {
         std::vector<std::string> arguments = {
-            "render", folder_ / "a.obj", "-o", folder_ / output, "--width", "64", "--height",
-            "48",     "--samples",       "2",  "--context",      "osmesa"};
+            "render", folder_ / input_, "-o", folder_ / output, "--width", "64", "--height",
+            "48",     "--samples",      "2",  "--context",      "osmesa"};
         arguments.insert(arguments.end(), options.begin(), options.end());
         return run(folder_.path(), arguments);
     }
+    void expect_all_differ(const std::vector<std::vector<std::string>>& all_options) const
+    {
+        std::vector<std::vector<glm::vec4>> pictures;
+        for (const std::vector<std::string>& options : all_options) {
+            const Outcome outcome = render("x.png", options);
+            ASSERT_EQ(outcome.code, 0) << outcome.err;
+            pictures.push_back(read_image(folder_ / "x.png").pixels);
+            for (std::size_t i = 0; i + 1 < pictures.size(); ++i)
+                EXPECT_NE(pictures[i], pictures.back()) << i << " and " << pictures.size() - 1;
+        }
+    }
     TemporaryFolder folder_;
+    const char* input_ = "a.obj";
 };
 
 TEST_F(RenderCommand, WritesAPictureOfTheSizeAskedFor)
@@ -50,31 +62,56 @@ TEST_F(RenderCommand, WritesAPictureOfTheSizeAskedFor)
 
 TEST_F(RenderCommand, EveryModeAndSurfaceIsAnotherPicture)
 {
-    std::vector<std::vector<glm::vec4>> pictures;
-    for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
-             {},
-             {"--surface", "splats"},
-             {"--surface", "affine"},
-             {"--surface", "points"},
-             {"--mode", "rays", "--reference-rays", "16"},
-             {"--mode", "difference", "--reference-rays", "16"},
-             {"--mode", "bent-normals"},
-             {"--mode", "normals"},
-             {"--mode", "levels"},
-             {"--mode", "environment"},
-             {"--no-ground"},
-             {"--camera", "azimuth=90"},
-             {"--normals", "flat"},
-             {"--crease", "80"},
-             {"--values", "point"},
-             {"--values", "point", "--offset", "1%"},
-         }) {
-        const Outcome outcome = render("x.png", options);
-        ASSERT_EQ(outcome.code, 0) << outcome.err;
-        pictures.push_back(read_image(folder_ / "x.png").pixels);
-        for (std::size_t i = 0; i + 1 < pictures.size(); ++i)
-            EXPECT_NE(pictures[i], pictures.back()) << i << " and " << pictures.size() - 1;
-    }
+    expect_all_differ({
+        {},
+        {"--surface", "splats"},
+        {"--surface", "affine"},
+        {"--surface", "points"},
+        {"--mode", "rays", "--reference-rays", "16"},
+        {"--mode", "difference", "--reference-rays", "16"},
+        {"--mode", "bent-normals"},
+        {"--mode", "normals"},
+        {"--mode", "levels"},
+        {"--mode", "environment"},
+        {"--no-ground"},
+        {"--camera", "azimuth=90"},
+        {"--normals", "flat"},
+        {"--crease", "80"},
+        {"--values", "point"},
+        {"--values", "point", "--offset", "1%"},
+    });
+}
+
+// Two walls in an arch, in two charts.
+TEST_F(RenderCommand, MapsAreShownOnTheModelAndFlat)
+{
+    folder_.file("red.mtl", "newmtl red\nKd 1 0 0\n");
+    folder_.file("walls.obj",
+                 "mtllib red.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\n"
+                 "vt 0 0\nvt .4 0\nvt .4 1\nvt 0 1\nvt .5 0\nvt 1 0\nvt 1 1\nvt .5 1\n"
+                 "usemtl red\nf 1/1 2/2 3/3 4/4\nf 1/5 4/6 6/7 5/8\n");
+    input_ = "walls.obj";
+    expect_all_differ({
+        {},
+        {"--mode", "textured"},
+        {"--at", "texels", "--size", "16"},
+        {"--at", "texels", "--size", "64"},
+        {"--at", "texels", "--mode", "rays", "--reference-rays", "16"},
+        {"--at", "texels", "--mode", "difference", "--reference-rays", "16"},
+        {"--at", "texels", "--mode", "bent-normals"},
+        {"--at", "texels", "--mode", "environment"},
+        {"--at", "texels", "--mode", "charts"},
+        {"--at", "texels", "--mode", "density"},
+        {"--at", "texels", "--mode", "textured"},
+        {"--at", "texels", "--atlas"},
+        {"--at", "texels", "--atlas", "--mode", "normals"},
+        {"--at", "texels", "--atlas", "--mode", "charts"},
+        {"--at", "texels", "--atlas", "--mode", "density"},
+        {"--at", "texels", "--atlas", "--mode", "textured"},
+    });
+    EXPECT_NE(render("x.png", {"--at", "texels", "--size", "20"})
+                  .out.find("20 x 20 texels, 2 charts, 12.6 texels per unit"),
+              std::string::npos);
 }
 
 TEST_F(RenderCommand, RefusesWhatCannotBeDoneInOneSentence)
@@ -97,6 +134,14 @@ TEST_F(RenderCommand, RefusesWhatCannotBeDoneInOneSentence)
     refused(2, "--reference-rays must be an even number", "x.png", {"--reference-rays", "15"});
     refused(2, "--mode", "x.png", {"--mode", "colourful"});
     refused(2, "--crease", "x.png", {"--crease", "181"});
+    refused(2, "for --at texels", "x.png", {"--size", "64"});
+    refused(2, "for --at texels", "x.png", {"--mode", "charts"});
+    refused(2, "for --at texels", "x.png", {"--atlas"});
+    refused(2, "for --surface triangles", "x.png", {"--at", "texels", "--surface", "splats"});
+    refused(2, "for --surface triangles", "x.png", {"--mode", "textured", "--surface", "points"});
+    refused(2, "for --at vertices", "x.png", {"--at", "texels", "--mode", "levels"});
+    refused(1, "a.obj: has no texture coordinates of number 1", "x.png",
+            {"--at", "texels", "--uv", "1"});
     refused(1, "the offset must be smaller than the scene", "x.png", {"--offset", "1000"});
 }
 

@@ -1,12 +1,9 @@
 // Pictures by OSMesa: the same pixels everywhere.
-//
-// SURFELAO_UPDATE_GOLDEN=1 writes tests/viewer/golden anew: look at what changed before it is kept.
 
 #include "viewer/render.h"
 
+#include "golden.h"
 #include "image/color_map.h"
-#include "image/difference.h"
-#include "image/image_file.h"
 #include "scenes.h"
 #include "surfels/errors.h"
 #include "viewer/solve_model.h"
@@ -18,8 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
@@ -394,27 +389,6 @@ Scene corner_with_ball()
            moved(bumpy_sphere(12), [](glm::dvec3 p) { return p + glm::dvec3(0, 0, 1.1); });
 }
 
-void expect_golden(const std::string& name, const Image& actual)
-{
-    namespace fs = std::filesystem;
-    const fs::path expected_file = fs::path(SURFELAO_GOLDEN_FOLDER) / (name + ".png");
-    if (std::getenv("SURFELAO_UPDATE_GOLDEN"))
-        write_image(expected_file, actual);
-    const Image expected = read_image(expected_file);
-    ASSERT_EQ(expected.width, actual.width);
-    ASSERT_EQ(expected.height, actual.height);
-    const ImageDifference difference = compare_images(actual, expected);
-    const bool agrees = difference.mean < 1.0 / 255.0 && difference.share_beyond < 0.005;
-    EXPECT_TRUE(agrees) << name << ": mean " << 255.0 * difference.mean << " / 255, share beyond "
-                        << difference.share_beyond << "; see " << testing::TempDir();
-    if (!agrees) {
-        const fs::path folder = testing::TempDir();
-        write_image(folder / (name + "_actual.png"), actual);
-        write_image(folder / (name + "_expected.png"), expected);
-        write_image(folder / (name + "_difference.png"), difference_image(actual, expected, 0.1f));
-    }
-}
-
 struct Golden {
     const char* name;
     Shape surface;
@@ -445,7 +419,7 @@ TEST(Render, LooksAsItDidWhenItWasLookedAt)
         options.samples = 4;
         options.view.colors = golden.colors;
         options.view.ground = true;
-        expect_golden(golden.name, render(model, own, reference, camera, options));
+        test::expect_golden(golden.name, render(model, own, reference, camera, options));
     }
 }
 
