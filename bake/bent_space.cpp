@@ -1,8 +1,11 @@
 #include "bake/bent_space.h"
 
+#include "atlas/tangents.h"
+
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include <utility>
 #include <vector>
 
 namespace surfelao {
@@ -20,26 +23,34 @@ std::vector<std::uint32_t> parts_of_triangles(const Scene& scene)
 
 }  // namespace
 
-BentEncoder bent_encoder(const Mesh& mesh, const MapLayout&, BentSpace space, bool)
+BentEncoder bent_encoder(const Mesh& mesh, const MapLayout& layout, BentSpace space,
+                         bool green_down)
 {
-    switch (space) {
-        case BentSpace::none:
-            return {};
-        case BentSpace::world:
-            return [](std::size_t, const SurfacePoint&, glm::vec3 direction) { return direction; };
-        case BentSpace::object:
-            break;
-        case BentSpace::tangent:
-            break;
+    BentEncoder encoder;
+    if (space == BentSpace::world) {
+        encoder.encode = [](std::size_t, const SurfacePoint&, glm::vec3 direction) {
+            return direction;
+        };
+    } else if (space == BentSpace::object) {
+        encoder.encode = [&mesh, parts = parts_of_triangles(mesh.scene)](
+                             std::size_t, const SurfacePoint& point, glm::vec3 direction) {
+            const std::uint32_t part = parts[mesh.geometry.scene_triangle(point.triangle)];
+            const glm::dvec3 turned =
+                glm::transpose(mesh.scene.parts[part].to_world) * glm::dvec3(direction);
+            const double length = glm::length(turned);
+            return length > 0.0 ? glm::vec3(turned / length) : glm::vec3(0.0f);
+        };
+    } else if (space == BentSpace::tangent) {
+        std::vector<Tangents> tangents;
+        for (const UvSet& uvs : layout.pages)
+            tangents.push_back(make_tangents(mesh, uvs));
+        encoder.is_of_chart = true;
+        encoder.encode = [&mesh, tangents = std::move(tangents), green_down](
+                             std::size_t page, const SurfacePoint& point, glm::vec3 direction) {
+            return to_tangent_space(mesh, tangents[page], point, direction, green_down);
+        };
     }
-    return [&mesh, parts = parts_of_triangles(mesh.scene)](std::size_t, const SurfacePoint& point,
-                                                           glm::vec3 direction) {
-        const std::uint32_t part = parts[mesh.geometry.scene_triangle(point.triangle)];
-        const glm::dvec3 turned =
-            glm::transpose(mesh.scene.parts[part].to_world) * glm::dvec3(direction);
-        const double length = glm::length(turned);
-        return length > 0.0 ? glm::vec3(turned / length) : glm::vec3(0.0f);
-    };
+    return encoder;
 }
 
 }  // namespace surfelao

@@ -78,7 +78,8 @@ private:
         glm::dvec3 bent(0.0);
         glm::vec3 first(0.0f);
         for (std::size_t i = 0; i < sheets.size(); ++i) {
-            const glm::vec3 direction = encode_(page, texels[i].point, sheets[i].bent_normal);
+            const glm::vec3 direction =
+                encode_.encode(page, texels[i].point, sheets[i].bent_normal);
             first = i == 0 ? direction : first;
             bent += (1.0 - sheets[i].occlusion) * glm::dvec3(direction);
         }
@@ -313,10 +314,13 @@ private:
             if (maps->empty())
                 continue;
             Known filled = known;
-            fill_across(mesh_, layout_, seams, settings_.padding, *maps, filled);
+            const bool has_seams = maps == &bake.visibility || !settings_.bent.is_of_chart;
+            if (has_seams)
+                fill_across(mesh_, layout_, seams, settings_.padding, *maps, filled);
             for (std::size_t page = 0; page < maps->size(); ++page)
                 fill_around((*maps)[page], filled[page], rings);
-            stitch(seams, *maps);
+            if (has_seams)
+                stitch(seams, *maps);
         }
         bake.seams = seams.list.size();
         bake.smooth_seams = seams.smooth_count();

@@ -68,8 +68,8 @@ public:
         }
         if (places_[vertex] == place)
             return vertex;
-        const auto [copy, is_new] = copies_.try_emplace(
-            {vertex, place.x, place.y}, static_cast<std::uint32_t>(places_.size()));
+        const auto [copy, is_new] = copies_.try_emplace({vertex, place.x, place.y},
+                                                        static_cast<std::uint32_t>(places_.size()));
         if (is_new) {
             places_.push_back(place);
             copied.push_back(vertex);
