@@ -28,7 +28,7 @@ constexpr double kWantedUse = 0.65;
 constexpr int kMostCuts = 6;
 constexpr double kLongShare = 0.5;
 /// What a cut must gain of the use, and how many may fail to in a row.
-constexpr double kCutGain = 1.03;
+constexpr double kCutGain = 1.01;
 constexpr int kVainCuts = 2;
 
 void check_settings(const AtlasSettings& settings)

@@ -75,12 +75,13 @@ struct Draft {
     Chart chart;
     std::uint32_t sheet = 0;  ///< its plane
     glm::dvec3 normals{0.0};  ///< weighted by area
+    double perimeter = 0.0;   ///< when borders were last looked at
 };
 
 /// Two charts with a common border.
 struct Border {
     std::uint32_t first, second;  ///< first < second
-    double length;
+    double smooth, hard;          ///< length
 };
 
 class ChartMaker {
@@ -124,8 +125,9 @@ public:
             for (std::size_t head = 0; head < queue_.size(); ++head) {
                 const std::uint32_t t = queue_[head];
                 sum += facets_.areas[t] * glm::dvec3(facets_.normals[t]);
-                for (const std::uint32_t next : facets_.neighbours[t]) {
-                    if (next == kNoTriangle || is_free_[next] == 0 || stamp_[next] == last_stamp_ ||
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const std::uint32_t next = facets_.neighbours[t][k];
+                    if (!is_free_across(t, k) || stamp_[next] == last_stamp_ ||
                         !faces(next, axis, least))
                         continue;
                     stamp_[next] = last_stamp_;
@@ -151,7 +153,7 @@ public:
                 const auto pair = std::minmax(a, b);
                 if (a == b || refused.contains(pair))
                     continue;
-                if (join_two(a, b, texel))
+                if (join_two(a, b, border.smooth > 0.0, texel))
                     has_joined = true;
                 else
                     refused.insert(pair);
@@ -209,13 +211,20 @@ private:
         lay(draft, seed);  // a triangle that rounding makes flat belongs to its chart all the same
         take_free(seed);
         for (std::size_t head = 0; head < draft.chart.triangles.size(); ++head) {
-            for (const std::uint32_t next : facets_.neighbours[draft.chart.triangles[head]]) {
-                if (next != kNoTriangle && is_free_[next] != 0 && faces(next, axis, least) &&
-                    lay(draft, next))
+            const std::uint32_t t = draft.chart.triangles[head];
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t next = facets_.neighbours[t][k];
+                if (is_free_across(t, k) && faces(next, axis, least) && lay(draft, next))
                     take_free(next);
             }
         }
         progress_.add(draft.chart.triangles.size());
+    }
+
+    [[nodiscard]] bool is_free_across(std::uint32_t t, std::size_t k) const
+    {
+        const std::uint32_t next = facets_.neighbours[t][k];
+        return next != kNoTriangle && facets_.is_smooth[t][k] && is_free_[next] != 0;
     }
 
     std::uint32_t owner(std::uint32_t chart)
@@ -226,18 +235,26 @@ private:
     }
 
     /// Longest first.
-    [[nodiscard]] std::vector<Border> borders() const
+    [[nodiscard]] std::vector<Border> borders()
     {
         std::vector<Border> sides;
+        for (Draft& draft : drafts_)
+            draft.perimeter = 0.0;
         for (std::uint32_t t = 0; t < chart_of_.size(); ++t) {
             for (std::size_t k = 0; k < 3; ++k) {
                 const std::uint32_t other = facets_.neighbours[t][k];
-                if (other == kNoTriangle || chart_of_[t] >= chart_of_[other])
+                if (other != kNoTriangle && chart_of_[t] == chart_of_[other])
                     continue;
                 const glm::vec3 from = geometry_.positions[facets_.corners[t][static_cast<int>(k)]];
                 const glm::vec3 to =
                     geometry_.positions[facets_.corners[t][static_cast<int>((k + 1) % 3)]];
-                sides.push_back({chart_of_[t], chart_of_[other], double{glm::distance(from, to)}});
+                const double length = glm::distance(from, to);
+                drafts_[chart_of_[t]].perimeter += length;
+                if (other == kNoTriangle || chart_of_[t] > chart_of_[other])
+                    continue;
+                const bool is_smooth = facets_.is_smooth[t][k];
+                sides.push_back({chart_of_[t], chart_of_[other], is_smooth ? length : 0.0,
+                                 is_smooth ? 0.0 : length});
             }
         }
         std::ranges::stable_sort(
@@ -245,28 +262,34 @@ private:
         std::vector<Border> whole;
         for (const Border& side : sides) {
             if (!whole.empty() && whole.back().first == side.first &&
-                whole.back().second == side.second)
-                whole.back().length += side.length;
-            else
+                whole.back().second == side.second) {
+                whole.back().smooth += side.smooth;
+                whole.back().hard += side.hard;
+            } else {
                 whole.push_back(side);
+            }
         }
-        std::ranges::stable_sort(whole, std::greater{}, &Border::length);
+        std::ranges::stable_sort(whole, std::greater{}, [](const Border& border) {
+            return std::pair(border.smooth, border.hard);
+        });
         return whole;
     }
 
-    [[nodiscard]] bool is_small(const Chart& chart, double texel) const
-    {
-        return chart.triangles.size() < kSmallChartTriangles ||
-               chart.area < kSmallChartTexels * texel * texel;
-    }
-
-    bool join_two(std::uint32_t a, std::uint32_t b, double texel)
+    bool join_two(std::uint32_t a, std::uint32_t b, bool has_smooth_border, double texel)
     {
         if (drafts_[a].chart.area < drafts_[b].chart.area)
             std::swap(a, b);
-        const bool b_is_small = is_small(drafts_[b].chart, texel);
-        const double least = cos_deg(b_is_small ? kSteepest : kChartLimit);
-        return absorb(a, b, least) || (!b_is_small && unite(a, b, least));
+        const Chart& smaller = drafts_[b].chart;
+        const double texels = smaller.area / (texel * texel);
+        const bool is_small =
+            texels < kSmallChartTexels ||
+            (smaller.triangles.size() < kFewChartTriangles && texels < kFewChartTexels);
+        const bool is_narrow = smaller.triangles.size() >= kFewChartTriangles &&
+                               2.0 * smaller.area < kNarrowTexels * texel * drafts_[b].perimeter;
+        if (!has_smooth_border && texels >= kSmallChartTexels && !is_narrow)
+            return false;
+        const double least = cos_deg(is_small ? kSteepest : kChartLimit);
+        return absorb(a, b, least) || (!is_small && unite(a, b, least));
     }
 
     /// Adds b to a, along a's axis.
@@ -339,6 +362,24 @@ private:
     std::vector<std::uint32_t> queue_;
 };
 
+/// Whether the corner normals on both sides of a triangle's side agree at one of its ends at least.
+bool is_smooth_side(const Mesh& mesh, const Facets& facets, std::uint32_t t, std::size_t k)
+{
+    const std::uint32_t other = facets.neighbours[t][k];
+    for (const std::size_t end : {k, (k + 1) % 3}) {
+        const int corner = static_cast<int>(end);
+        const glm::uvec3 places = facets.corners[other];
+        const std::uint32_t place = facets.corners[t][corner];
+        const int across = places.x == place ? 0 : places.y == place ? 1 : 2;
+        const Surface& surface = mesh.surface;
+        if (glm::dot(surface.normals[surface.corners[t][corner]],
+                     surface.normals[surface.corners[other][across]]) >=
+            static_cast<float>(cos_deg(kHardEdge)))
+            return true;
+    }
+    return false;
+}
+
 /// Whether any normal between those of a triangle's corners is within kLeastPageAngle of the side
 /// of the axis that the triangle faces.
 bool has_weight_on_page(const Mesh& mesh, const Facets& facets, std::uint32_t t, int axis)
@@ -401,6 +442,16 @@ Facets make_facets(const Mesh& mesh)
         for (std::uint32_t& other : facets.neighbours[t])
             if (other != kNoTriangle && (is_alone[t] != 0 || is_alone[other] != 0))
                 other = kNoTriangle;
+    facets.is_smooth.resize(count);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kFacetGrain),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t t = range.begin(); t < range.end(); ++t)
+                              for (std::size_t k = 0; k < 3; ++k)
+                                  facets.is_smooth[t][k] =
+                                      facets.neighbours[t][k] != kNoTriangle &&
+                                      is_smooth_side(mesh, facets, static_cast<std::uint32_t>(t),
+                                                     k);
+                      });
     return facets;
 }
 

@@ -3,8 +3,9 @@
 /// A chart is a connected piece of the surface and a direction, its axis: seen along it, from far
 /// away, each triangle shows its front, and none is behind another. So charts grow over the edges
 /// of a half-edge mesh, from the largest triangle that is left, as far as the surface keeps facing
-/// the axis within a limit and the plane is free (occupancy.h). Then charts with a common border
-/// become one wherever that is possible, longest border first; small ones are less particular.
+/// the axis within a limit and the plane is free (occupancy.h), but never over a hard edge: there
+/// values step, which no filter may smooth. Then charts with a common smooth border become one
+/// wherever that is possible, longest border first; small ones are less particular.
 #pragma once
 
 #include "surfels/half_edges.h"
@@ -14,6 +15,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -29,6 +31,9 @@ struct Facets {
                                      ///< which way a rough surface faces
     std::vector<double> areas;       ///< in the unit frame
     std::vector<Neighbours> neighbours;
+    /// Of each side: whether the surface is shaded as one across it, at either end; else it is
+    /// hard.
+    std::vector<std::array<bool, 3>> is_smooth;
 };
 
 /// O(n).
@@ -51,9 +56,17 @@ inline constexpr double kChartLimit = 65.0;
 /// The same for charts so small that nobody sees how they are stretched, and for the normal itself
 /// of any triangle: beyond, a twentieth of its area would be left.
 inline constexpr double kSteepest = 85.0;
-/// Charts of fewer triangles, or fewer texels, are small.
-inline constexpr std::size_t kSmallChartTriangles = 8;
+/// So small are charts of fewer texels than this, which join over hard edges too, and charts of
+/// fewer triangles, unless they have more texels than that.
 inline constexpr double kSmallChartTexels = 16.0;
+inline constexpr std::size_t kFewChartTriangles = 8;
+inline constexpr double kFewChartTexels = 256.0;
+/// Strips narrower than this (twice the area over the perimeter), as along a fluted column, join
+/// over hard edges as well: on their own they would be half padding. Not those of few triangles:
+/// posts and boards have flat sides, each with values of its own.
+inline constexpr double kNarrowTexels = 32.0;
+/// Degrees between corner normals at one place from which on an edge is hard.
+inline constexpr double kHardEdge = 20.0;
 
 /// Each triangle in one chart. texel: the side of a texel in the unit frame, for what is small.
 /// About 2 us a triangle, one thread; equal input gives equal bytes. progress: a unit a triangle.

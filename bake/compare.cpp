@@ -1,6 +1,6 @@
 #include "bake/compare.h"
 
-#include "bake/surface_error.h"
+#include "bake/compare_target.h"
 #include "engines/threads.h"
 #include "files/scene_io.h"
 #include "gpu/context.h"
@@ -26,32 +26,24 @@ constexpr std::size_t kMostRepeats = 50;
 
 /// What is asked, and what is right.
 struct Question {
-    VertexTarget target;
+    std::unique_ptr<const CompareTarget> target;
     SurfaceTruth truth;
     Floor floor;
 };
 
 TruthSettings truth_settings_of(const CompareSettings& settings, const Definition& definition,
-                                const Frame& frame)
+                                const Mesh& mesh, const CompareTarget& target)
 {
     TruthSettings truth;
     truth.definition = definition;
-    truth.offset = offset_of(settings.target, frame);
+    truth.offset = offset_of(settings.target, mesh.geometry.frame);
     truth.points = settings.sample > 0 ? settings.sample : kSurfacePoints;
     truth.rays = settings.reference_rays;
     truth.use_cache = settings.use_cache;
+    truth.measure = triangle_areas(mesh.geometry);
+    for (std::uint32_t t = 0; t < truth.measure.size(); ++t)
+        truth.measure[t] *= target.shows(t) ? 1.0 : 0.0;
     return truth;
-}
-
-Floor floor_of(const Comparison& comparison, const VertexTarget& target, const SurfaceTruth& truth,
-               const TruthSettings& settings, const Progress& progress)
-{
-    const Geometry& geometry = comparison.mesh->geometry;
-    if (comparison.target.values == VertexValues::fit)
-        return find_floor(target, geometry, truth, settings, progress);
-    TargetSettings fitted = comparison.target;
-    fitted.values = VertexValues::fit;
-    return find_floor(VertexTarget(comparison.mesh, fitted), geometry, truth, settings, progress);
 }
 
 void tell(const Question& question, std::uint32_t reference_rays, Comparison& comparison)
@@ -93,35 +85,18 @@ std::vector<WorstPoint> worst_of(const Mesh& mesh, const SurfaceTruth& truth,
     return worst;
 }
 
-/// The engine's own answers at the surface points: in one list with the receivers, so that they
-/// are answered in groups as these are. Rays have no groups.
-std::vector<Occlusion> answers_at_points(const Question& question, const Prepared& prepared,
-                                         const CompareRow& row, const Progress& progress)
-{
-    if (is_opponent(row))
-        return solve(prepared, question.truth.receivers, row.settings, progress).occlusion;
-    const std::span<const Receiver> all = question.target.receivers();
-    std::vector<Receiver> asked(all.begin(), all.end());
-    asked.insert(asked.end(), question.truth.receivers.begin(), question.truth.receivers.end());
-    std::vector<Occlusion> answers = solve(prepared, asked, row.settings, progress).occlusion;
-    answers.erase(answers.begin(), answers.begin() + static_cast<std::ptrdiff_t>(all.size()));
-    return answers;
-}
-
 /// Fills in everything about errors. They are the same in every round.
-void judge(const Question& question, const Mesh& mesh, const Prepared& prepared,
-           std::span<const Occlusion> values, CompareRow& row, const Progress& progress)
+void judge(const Question& question, const Mesh& mesh, const JobResult& result, CompareRow& row)
 {
     const SurfaceTruth& truth = question.truth;
-    const std::vector<Occlusion> shown = displayed_at(mesh.geometry, values, truth.points);
-    row.seen = error_against(truth, shown);
-    row.beyond = error_beyond(shown, question.floor);
-    row.worst = worst_of(mesh, truth, shown);
-    row.solve = error_against(truth, answers_at_points(question, prepared, row, progress));
+    row.seen = error_against(truth, result.displayed);
+    row.beyond = error_beyond(result.displayed, question.floor);
+    row.worst = worst_of(mesh, truth, result.displayed);
+    row.solve = error_against(truth, result.answers);
     if (is_opponent(row))
         return;
-    for (std::size_t v = 0; v < values.size(); ++v)
-        row.errors.push_back(values[v].occlusion - question.floor.values[v].occlusion);
+    for (std::size_t i = 0; i < result.occlusion.size(); ++i)
+        row.errors.push_back(result.occlusion[i] - question.floor.values[i].occlusion);
 }
 
 CompareRow row_of_rays(const CompareSettings& settings, const Definition& definition,
@@ -149,45 +124,67 @@ std::vector<CompareRow> rows_of(const CompareSettings& settings, const Definitio
     return rows;
 }
 
-/// Seconds of one row, one of each round.
-struct Times {
-    std::vector<double> builds, solves, fits;
+/// The members of JobSeconds, and where a row keeps them.
+constexpr std::pair<double JobSeconds::*, double CompareRow::*> kSeconds[] = {
+    {&JobSeconds::raster, &CompareRow::raster_s}, {&JobSeconds::build, &CompareRow::build_s},
+    {&JobSeconds::solve, &CompareRow::solve_s},   {&JobSeconds::fit, &CompareRow::fit_s},
+    {&JobSeconds::fill, &CompareRow::fill_s},
 };
 
-/// One round of one row; the first answer of all is judged.
-void run_round(const Comparison& comparison, const Question& question, const EngineChoice& choice,
-               CompareRow& row, Times& times, const Progress& progress)
+JobSeconds median_of(const std::vector<JobSeconds>& list)
 {
-    Times repeats;
-    double spent = 0.0;
-    bool judged = !times.solves.empty();
-    do {
-        const Prepared prepared = prepare(comparison.mesh->geometry, choice);
-        const Solution solution =
-            solve(prepared, question.target.receivers(), row.settings, progress);
-        Stopwatch fitting;
-        const std::vector<Occlusion> values = question.target.values(solution.occlusion);
-        repeats.fits.push_back(fitting.lap());
-        repeats.builds.push_back(prepared.seconds().surfels + prepared.seconds().tree);
-        repeats.solves.push_back(solution.seconds);
-        spent += repeats.builds.back() + repeats.solves.back() + repeats.fits.back();
-        if (!judged)
-            judge(question, *comparison.mesh, prepared, values, row, progress);
-        judged = true;
-    } while (spent < kLeastRound && repeats.solves.size() < kMostRepeats);
-    times.builds.push_back(quantile(repeats.builds, 0.5));
-    times.solves.push_back(quantile(repeats.solves, 0.5));
-    times.fits.push_back(quantile(repeats.fits, 0.5));
+    JobSeconds median;
+    for (const auto& [member, kept] : kSeconds) {
+        std::vector<double> seconds;
+        for (const JobSeconds& one : list)
+            seconds.push_back(one.*member);
+        median.*member = quantile(std::move(seconds), 0.5);
+    }
+    return median;
 }
 
-void set_times(CompareRow& row, const Times& times, std::size_t receiver_count)
+/// One round of one row; the first answer of all is judged.
+JobSeconds run_round(const Comparison& comparison, const Question& question,
+                     const EngineSettings& engine, bool is_judged, CompareRow& row,
+                     const Progress& progress)
 {
-    row.rounds = static_cast<int>(times.solves.size());
-    row.build_s = quantile(times.builds, 0.5);
-    row.solve_s = quantile(times.solves, 0.5);
-    row.fit_s = quantile(times.fits, 0.5);
+    std::vector<JobSeconds> repeats;
+    double spent = 0.0;
+    do {
+        const bool judges = is_judged && repeats.empty();
+        const JobResult result =
+            question.target->run(engine, judges ? &question.truth : nullptr, progress);
+        repeats.push_back(result.seconds);
+        for (const auto& [member, kept] : kSeconds)
+            spent += result.seconds.*member;
+        if (judges)
+            judge(question, *comparison.mesh, result, row);
+    } while (spent < kLeastRound && repeats.size() < kMostRepeats);
+    return median_of(repeats);
+}
+
+void set_times(CompareRow& row, const std::vector<JobSeconds>& rounds, std::size_t receiver_count)
+{
+    row.rounds = static_cast<int>(rounds.size());
+    const JobSeconds median = median_of(rounds);
+    for (const auto& [member, kept] : kSeconds)
+        row.*kept = median.*member;
     row.us_per_receiver =
         row.solve_s * 1e6 / static_cast<double>(std::max<std::size_t>(1, receiver_count));
+}
+
+/// The layout is told in the comparison.
+std::unique_ptr<const CompareTarget> target_of(const CompareSettings& settings,
+                                               Comparison& comparison)
+{
+    if (!settings.texels)
+        return vertices_to_compare(comparison.mesh, settings.target);
+    TexelLayout found = layout_for(*comparison.mesh, *settings.texels, /*can_hold_new=*/true);
+    comparison.page = found.layout.size;
+    comparison.pages = found.layout.pages.size();
+    comparison.uv_set = found.uv_set;
+    return map_to_compare(comparison.mesh, std::move(found.layout), settings.texels->padding,
+                          settings.target);
 }
 
 /// Whether a candidate is beyond the most exact row of the opponent.
@@ -234,7 +231,7 @@ bool is_opponent(const CompareRow& row)
 
 double job_seconds(const CompareRow& row, bool with_build)
 {
-    return row.solve_s + row.fit_s + (with_build ? row.build_s : 0.0);
+    return row.solve_s + row.fit_s + row.fill_s + (with_build ? row.build_s : 0.0);
 }
 
 double beyond_by_squares(const Comparison& comparison, const CompareRow& row)
@@ -257,37 +254,39 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     Comparison comparison;
     comparison.input = settings.input;
     comparison.target = settings.target;
+    comparison.texels = settings.texels;
     comparison.threads = thread_count();
     comparison.rounds = settings.rounds;
     static_cast<void>(stage("read"));
     Stopwatch watch;
     comparison.mesh = std::make_shared<const Mesh>(
         make_mesh(read_scene(settings.input), settings.target.normals));
-    VertexTarget target(comparison.mesh, settings.target);
+    std::unique_ptr<const CompareTarget> target = target_of(settings, comparison);
     comparison.read_s = watch.lap();
     comparison.vertices = comparison.mesh->scene.positions.size();
     comparison.triangles = comparison.mesh->scene.triangles.size();
     comparison.dropped_triangles = comparison.mesh->geometry.dropped_triangles;
-    comparison.receivers = target.receivers().size();
-    const Frame& frame = comparison.mesh->geometry.frame;
-    const Definition definition = definition_of(settings.max_distance, settings.kernel, frame);
-    const TruthSettings truth_settings = truth_settings_of(settings, definition, frame);
+    comparison.receivers = target->receivers();
+    const Definition definition =
+        definition_of(settings.max_distance, settings.kernel, comparison.mesh->geometry.frame);
+    const TruthSettings truth_settings =
+        truth_settings_of(settings, definition, *comparison.mesh, *target);
     SurfaceTruth truth = trace_truth(*comparison.mesh, truth_settings, stage("reference"));
-    Floor floor = floor_of(comparison, target, truth, truth_settings, stage("floor"));
+    Floor floor = target->floor(truth, truth_settings, stage("floor"));
     const Question question{std::move(target), std::move(truth), std::move(floor)};
     tell(question, settings.reference_rays, comparison);
 
     // rounds: one after the other, so that whatever slows the machine slows all alike
     std::vector<CompareRow>& rows = comparison.rows;
     rows = rows_of(settings, definition);
-    std::vector<Times> times(rows.size());
+    std::vector<std::vector<JobSeconds>> times(rows.size());
     std::optional<GlContext> context;  // one for all, so that shaders are compiled once
     const auto run = [&](std::size_t i) {
-        EngineChoice choice = rows[i].settings;
-        if (choice.device == Device::gpu && choice.context == nullptr)
-            choice.context = context ? &*context : &context.emplace(GlContext::create());
-        run_round(comparison, question, choice, rows[i], times[i],
-                  stage(name_of(rows[i].settings.engine) + " " + setting_of(rows[i].settings)));
+        EngineSettings engine = rows[i].settings;
+        if (engine.device == Device::gpu && engine.context == nullptr)
+            engine.context = context ? &*context : &context.emplace(GlContext::create());
+        times[i].push_back(run_round(comparison, question, engine, times[i].empty(), rows[i],
+                                     stage(name_of(engine.engine) + " " + setting_of(engine))));
     };
     for (int round = 0; round < settings.rounds; ++round) {
         for (std::size_t i = 0; i < rows.size(); ++i)

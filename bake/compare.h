@@ -1,11 +1,12 @@
 /// compare.h: one scene by several engines and by rays: how long, how wrong.
 ///
-/// All engines do the same job, values at the vertices: build, solve the target's receivers
-/// (vertex_target.h), fit. They run in one process on the same threads, one after the other in
-/// rounds, and the median of the rounds counts: a busy machine then slows all of them alike. What
-/// takes less than 50 ms is repeated within a round, for threads need a millisecond to wake. The
-/// opponent is Embree in its strongest mode (reference/rays.h) at the same receivers with the same
-/// fit.
+/// All engines do the same job. Values at the vertices: build, solve the target's receivers
+/// (vertex_target.h), fit. Or a map (map_bake.h): raster, build, solve the texels, fill. They run
+/// in one process on the same threads, one after the other in rounds, and the median of the rounds
+/// counts: a busy machine then slows all of them alike. What takes less than 50 ms is repeated
+/// within a round, for threads need a millisecond to wake. The opponent is Embree in its strongest
+/// mode (reference/rays.h) at the same receivers with the same fit or fill. Choosing the receivers
+/// is the same for all, and no part of who is faster.
 ///
 /// Errors are taken at points all over the surface (surface_error.h says what seen error, solve
 /// error, floor and beyond are). Points without a well-defined answer (reference/well_defined.h)
@@ -36,6 +37,7 @@ struct CompareSettings {
     DistanceLimit max_distance;
     Kernel kernel = Kernel::cosine;
     TargetSettings target;
+    std::optional<TexelSettings> texels;            ///< a map; empty: values at the vertices
     std::uint32_t reference_rays = 4096;            ///< an even number
     std::uint64_t sample = 0;                       ///< points of the surface; 0 = kSurfacePoints
     int rounds = 3;                                 ///< >= 1
@@ -59,33 +61,40 @@ struct WorstPoint {
 
 struct CompareRow {
     EngineSettings settings;
-    int rounds = 0;        ///< times it ran
-    double build_s = 0.0;  ///< median seconds
+    int rounds = 0;         ///< times it ran
+    double raster_s = 0.0;  ///< median seconds; of maps
+    double build_s = 0.0;
     double solve_s = 0.0;
-    double fit_s = 0.0;                            ///< from answers to values
-    double us_per_receiver = 0.0;                  ///< of solving
-    ErrorStatistics seen;                          ///< what is displayed
-    ErrorStatistics solve;                         ///< the engine's own answers at the same points
-    double beyond = 0.0;                           ///< RMS: what of `seen` is not the floor's
-    std::optional<EmbreeRatio> ratio;              ///< of solving and fitting; rows of the opponent
-                                                   ///< have none
+    double fit_s = 0.0;                ///< from answers to values at vertices
+    double fill_s = 0.0;               ///< from answers to a map
+    double us_per_receiver = 0.0;      ///< of solving
+    ErrorStatistics seen;              ///< what is displayed; of maps no bent normals
+    ErrorStatistics solve;             ///< the engine's own answers at the same points
+    double beyond = 0.0;               ///< RMS: what of `seen` is not the floor's
+    std::optional<EmbreeRatio> ratio;  ///< of solving and fitting or filling; rows of the opponent
+                                       ///< have none
     std::optional<EmbreeRatio> ratio_with_builds;  ///< with builds on both sides
     std::vector<WorstPoint> worst;                 ///< up to 5, worst first
-    std::vector<float> errors;  ///< candidates: per vertex, value less the floor's value
+    std::vector<float> errors;  ///< candidates: per vertex, or per texel and page: occlusion less
+                                ///< the floor's
 };
 
 struct Comparison {
     std::filesystem::path input;
     std::shared_ptr<const Mesh> mesh;
     TargetSettings target;
-    std::vector<float> reference;  ///< per vertex: occlusion of the floor's values
+    std::optional<TexelSettings> texels;  ///< empty: values at the vertices
+    MapSize page;                         ///< of a map: the size of each page
+    std::uint64_t pages = 0;
+    std::optional<std::uint32_t> uv_set;  ///< the file's coordinates; empty: new ones
+    std::vector<float> reference;  ///< as CompareRow::errors: occlusion of the floor's values
     std::uint64_t vertices = 0;
     std::uint64_t triangles = 0;
     std::uint64_t dropped_triangles = 0;
     std::uint64_t receivers = 0;  ///< that every engine solves
     int threads = 0;
     int rounds = 0;
-    double read_s = 0.0;  ///< file, clean geometry and target: everyone's
+    double read_s = 0.0;  ///< file, clean geometry and target, for a map its layout: everyone's
     std::uint32_t reference_rays = 0;
     double reference_noise = 0.0;
     bool reference_from_cache = false;
@@ -109,16 +118,16 @@ struct Comparison {
 /// Whether the row is ray tracing, the opponent.
 [[nodiscard]] bool is_opponent(const CompareRow& row);
 
-/// Seconds of the job: solving and fitting, with or without building.
+/// Seconds of the job: solving and fitting or filling, with or without building.
 [[nodiscard]] double job_seconds(const CompareRow& row, bool with_build);
 
 /// sqrt(seen^2 - floor^2), 0 where that is below 0: what `beyond` is but for noise.
 [[nodiscard]] double beyond_by_squares(const Comparison& comparison, const CompareRow& row);
 
-/// Keys input, vertices, triangles, receivers, threads, rounds, target{...}, reference{rays, noise,
-/// points, ill_defined, ...}, floor{rmse, ..., rays, noise}, rows[{engine, setting, rounds,
-/// build_s, solve_s, fit_s, us_per_receiver, seen{rmse, bias, p95, max, ...}, solve{the same},
-/// beyond, beyond_by_squares, embree_ratio, ...}].
+/// Keys input, vertices, triangles, receivers, threads, rounds, target{..., texels},
+/// reference{rays, noise, points, ill_defined, ...}, floor{rmse, ..., rays, noise}, rows[{engine,
+/// setting, rounds, raster_s, build_s, solve_s, fit_s, fill_s, us_per_receiver, seen{rmse, bias,
+/// p95, max, ...}, solve{the same}, beyond, beyond_by_squares, embree_ratio, ...}].
 [[nodiscard]] std::string json_of(const Comparison& comparison);
 
 /// One line of names, then one line per row.
@@ -127,9 +136,9 @@ struct Comparison {
 /// The aligned table for people.
 [[nodiscard]] std::string table_of(const Comparison& comparison);
 
-/// The scene as binary PLY (coordinates as double) with the row's errors as colour (error_color of
-/// image/color_map.h, full at kFullColorError) and as property `error`; marked as a result of
-/// `compare` (files/maker_mark.h).
+/// Of values at vertices: the scene as binary PLY (coordinates as double) with the row's errors as
+/// colour (error_color of image/color_map.h, full at kFullColorError) and as property `error`;
+/// marked as a result of `compare` (files/maker_mark.h).
 void write_difference(const std::filesystem::path& path, const Comparison& comparison,
                       const CompareRow& row);
 

@@ -28,18 +28,19 @@ std::string csv_number(double value)
     return ',' + exact(value);
 }
 
-std::string csv_numbers(const ErrorStatistics& error)
+std::string csv_numbers(const ErrorStatistics& error, bool has_bent)
 {
     return csv_number(error.rmse) + csv_number(error.bias) + csv_number(error.p95) +
-           csv_number(error.max) + csv_number(error.bent_mean_deg) + csv_number(error.bent_p95_deg);
+           csv_number(error.max) +
+           (has_bent ? csv_number(error.bent_mean_deg) + csv_number(error.bent_p95_deg) : ",,");
 }
 
 }  // namespace
 
 std::string csv_head()
 {
-    return "input,vertices,triangles,receivers,points,ill_defined,floor,engine,setting,build_s,"
-           "solve_s,fit_s,us_per_receiver" +
+    return "input,vertices,triangles,receivers,points,ill_defined,floor,engine,setting,raster_s,"
+           "build_s,solve_s,fit_s,fill_s,us_per_receiver" +
            csv_names("seen") + csv_names("solve") +
            ",beyond,embree_ratio,embree_ratio_with_builds,extrapolated\n";
 }
@@ -63,13 +64,28 @@ std::string csv_rows_of(const Comparison& comparison)
     std::string text;
     for (const CompareRow& row : comparison.rows) {
         text += scene + ',' + name_of(row.settings.engine) + ',' +
-                csv_field(setting_of(row.settings)) + csv_number(row.build_s) +
-                csv_number(row.solve_s) + csv_number(row.fit_s) + csv_number(row.us_per_receiver) +
-                csv_numbers(row.seen) + csv_numbers(row.solve) + csv_number(row.beyond) +
-                ratio(row.ratio) + ratio(row.ratio_with_builds) +
+                csv_field(setting_of(row.settings)) + csv_number(row.raster_s) +
+                csv_number(row.build_s) + csv_number(row.solve_s) + csv_number(row.fit_s) +
+                csv_number(row.fill_s) + csv_number(row.us_per_receiver) +
+                csv_numbers(row.seen, !comparison.texels) + csv_numbers(row.solve, true) +
+                csv_number(row.beyond) + ratio(row.ratio) + ratio(row.ratio_with_builds) +
                 (row.ratio && row.ratio->extrapolated ? ",1\n" : ",0\n");
     }
     return text;
+}
+
+std::string target_text(const Comparison& comparison)
+{
+    return std::to_string(comparison.page.width) + " x " + std::to_string(comparison.page.height) +
+           " texels" +
+           (comparison.pages > 1 ? " on " + std::to_string(comparison.pages) + " pages" : "") +
+           (comparison.uv_set ? " (texture coordinates " + std::to_string(*comparison.uv_set) + ")"
+                              : " (new texture coordinates)");
+}
+
+std::string bent_text(const Comparison& comparison, double degrees)
+{
+    return comparison.texels ? "-" : fixed(degrees, 2);
 }
 
 std::string text_of(const std::optional<EmbreeRatio>& ratio)
@@ -105,17 +121,37 @@ std::string errors_text(const Comparison& comparison)
 
 std::string table_of(const Comparison& comparison)
 {
-    Table table({"engine", "setting", "build s", "solve s", "fit s", "seen RMSE", "bias", "p95",
-                 "max", "bent deg", "solve RMSE", "beyond", "Embree/ours", "with builds"});
+    const bool is_map = comparison.texels.has_value();
+    std::vector<std::string> head = {
+        "engine", "setting", "build s",  "solve s",    "fit s",  "seen RMSE",   "bias",
+        "p95",    "max",     "bent deg", "solve RMSE", "beyond", "Embree/ours", "with builds"};
+    if (is_map) {
+        head[4] = "fill s";
+        head.insert(head.begin() + 2, "raster s");
+    }
+    Table table(head);
     for (const CompareRow& row : comparison.rows) {
-        table.add({name_of(row.settings.engine), setting_of(row.settings), fixed(row.build_s, 4),
-                   fixed(row.solve_s, 4), fixed(row.fit_s, 4), fixed(row.seen.rmse, 4),
-                   signed_fixed(row.seen.bias, 4), fixed(row.seen.p95, 4), fixed(row.seen.max, 3),
-                   fixed(row.seen.bent_mean_deg, 2), fixed(row.solve.rmse, 4), fixed(row.beyond, 4),
-                   text_of(row.ratio), text_of(row.ratio_with_builds)});
+        std::vector<std::string> cells = {name_of(row.settings.engine),
+                                          setting_of(row.settings),
+                                          fixed(row.build_s, 4),
+                                          fixed(row.solve_s, 4),
+                                          fixed(is_map ? row.fill_s : row.fit_s, 4),
+                                          fixed(row.seen.rmse, 4),
+                                          signed_fixed(row.seen.bias, 4),
+                                          fixed(row.seen.p95, 4),
+                                          fixed(row.seen.max, 3),
+                                          bent_text(comparison, row.seen.bent_mean_deg),
+                                          fixed(row.solve.rmse, 4),
+                                          fixed(row.beyond, 4),
+                                          text_of(row.ratio),
+                                          text_of(row.ratio_with_builds)};
+        if (is_map)
+            cells.insert(cells.begin() + 2, fixed(row.raster_s, 4));
+        table.add(std::move(cells));
     }
     std::string text = comparison.input.string() + ": " + std::to_string(comparison.vertices) +
                        " vertices, " + std::to_string(comparison.triangles) + " triangles, " +
+                       (is_map ? target_text(comparison) + ", " : "") +
                        std::to_string(comparison.receivers) + " receivers, " +
                        std::to_string(comparison.threads) + " threads, median of " +
                        std::to_string(comparison.rounds) + '\n' + errors_text(comparison) + "\n\n" +

@@ -12,8 +12,14 @@ namespace surfelao {
 [[nodiscard]] std::string csv_head();
 [[nodiscard]] std::string csv_rows_of(const Comparison& comparison);
 
+/// "1024 x 1024 texels", " on 3 pages" where there are several, and whose coordinates.
+[[nodiscard]] std::string target_text(const Comparison& comparison);
+
 /// "4.81"; "4.81*" where extrapolated, "-" where there is none.
 [[nodiscard]] std::string text_of(const std::optional<EmbreeRatio>& ratio);
+
+/// Degrees with two digits; "-" of maps, which hold no bent normals.
+[[nodiscard]] std::string bent_text(const Comparison& comparison, double degrees);
 
 /// Two lines without the last end: points, floor, what is left out; rays and noise of references.
 [[nodiscard]] std::string errors_text(const Comparison& comparison);

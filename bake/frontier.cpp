@@ -14,6 +14,7 @@ namespace surfelao {
 namespace {
 
 constexpr int kPictureWidth = 400, kPictureHeight = 300;
+constexpr std::uint32_t kMapSide = 512;
 
 /// Settings of one engine from coarse to fine: its family, the same for every scene.
 std::vector<float> qualities_of(Engine engine)
@@ -30,26 +31,44 @@ double seconds_of(const Comparison& comparison, const CompareRow& row, Cost cost
 {
     double seconds = job_seconds(row, cost != Cost::solve);
     if (cost == Cost::file)
-        seconds += comparison.read_s;
+        seconds += comparison.read_s + row.raster_s;
     return seconds;
+}
+
+/// The pages of a map side by side: of so many texels in each direction one, where they are more
+/// than a picture shows.
+Picture draw_texels(const Comparison& comparison, const std::vector<Rgb>& colors)
+{
+    const auto [width, height] = comparison.page;
+    const std::size_t step = (std::max(width, height) + kMapSide - 1) / kMapSide;
+    const std::size_t columns = (width + step - 1) / step, rows = (height + step - 1) / step;
+    Picture picture;
+    picture.width = static_cast<int>(columns * comparison.pages);
+    picture.height = static_cast<int>(rows);
+    for (std::size_t y = 0; y < rows; ++y)
+        for (std::size_t page = 0; page < comparison.pages; ++page)
+            for (std::size_t x = 0; x < columns; ++x)
+                picture.pixels.push_back(colors[(page * height + y * step) * width + x * step]);
+    return picture;
 }
 
 /// What the floor's values look like, and how far from them each engine's are at `good`.
 std::vector<std::pair<std::string, std::string>> pictures_of(const Comparison& comparison)
 {
-    const Geometry& geometry = comparison.mesh->geometry;
     std::vector<std::pair<std::string, std::string>> pictures;
     const auto add = [&](std::string caption, const std::vector<Rgb>& colors) {
         pictures.emplace_back(
             std::move(caption),
-            png_of(draw_vertices(geometry, colors, kPictureWidth, kPictureHeight)));
+            png_of(comparison.texels ? draw_texels(comparison, colors)
+                                     : draw_vertices(comparison.mesh->geometry, colors,
+                                                     kPictureWidth, kPictureHeight)));
     };
     std::vector<Rgb> colors;
     for (const float occlusion : comparison.reference) {
         const auto grey = static_cast<std::uint8_t>(std::lround(255.0f * (1.0f - occlusion)));
         colors.push_back({grey, grey, grey});
     }
-    add("visibility by rays, fitted", colors);
+    add(comparison.texels ? "visibility by rays" : "visibility by rays, fitted", colors);
     for (const CompareRow& row : comparison.rows) {
         if (row.errors.empty() || row.settings.quality != kGood)
             continue;
@@ -130,7 +149,9 @@ Frontier frontier(const FrontierSettings& settings, const StageProgress& progres
             candidate.quality = quality;
         }
     }
-    compare_settings.rays = {1, 2, 4, 16, 64, 256, 1024};
+    compare_settings.rays = {1, 2, 4, 16, 64, 256};
+    if (!compare_settings.texels)  // of maps once, where it is needed (compare())
+        compare_settings.rays.push_back(1024);
 
     Frontier result;
     result.engines = settings.engines;

@@ -94,7 +94,7 @@ struct Axis {
     }
 };
 
-/// Error beyond the floor against seconds of solving and fitting, log-log. Lower left is better.
+/// Error beyond the floor against seconds of the job without builds, log-log. Lower left is better.
 std::string plot_of(const Comparison& comparison)
 {
     const std::vector<Series> series = series_of(comparison);
@@ -134,7 +134,8 @@ std::string plot_of(const Comparison& comparison)
             line(x.from, y.at(decade * i), x.to, y.at(decade * i), i == 1 ? "#bbb" : "#eee");
         text(x.from - 6, y.at(decade) + 4, "end", exact(decade));
     }
-    text(0.5 * (x.from + x.to), y.from + 38, "middle", "seconds of solving and fitting");
+    text(0.5 * (x.from + x.to), y.from + 38, "middle",
+         "seconds of solving, and of fitting or filling");
     text(x.from, 12, "start", "beyond the floor, RMS");
     double legend = y.to + 16;
     for (const Series& one : series) {
@@ -172,18 +173,22 @@ std::string row_of_cells(const std::vector<std::string>& cells, const char* tag)
 std::string rows_html(const Comparison& comparison)
 {
     std::string html = "<table>\n";
-    html += row_of_cells({"engine", "setting", "build s", "solve s", "fit s", "µs/receiver",
-                          "seen RMSE", "bias", "p95", "max", "bent mean °", "bent p95 °",
-                          "solve RMSE", "solve max", "beyond", "Embree/ours", "with builds"},
-                         "th");
+    const bool is_map = comparison.texels.has_value();
+    html +=
+        row_of_cells({"engine", "setting", "build s", "solve s", is_map ? "fill s" : "fit s",
+                      "µs/receiver", "seen RMSE", "bias", "p95", "max", "bent mean °", "bent p95 °",
+                      "solve RMSE", "solve max", "beyond", "Embree/ours", "with builds"},
+                     "th");
     for (const CompareRow& row : comparison.rows) {
         html += row_of_cells(
             {name_of(row.settings.engine), setting_of(row.settings), fixed(row.build_s, 4),
-             fixed(row.solve_s, 4), fixed(row.fit_s, 4), fixed(row.us_per_receiver, 3),
-             fixed(row.seen.rmse, 4), signed_fixed(row.seen.bias, 4), fixed(row.seen.p95, 4),
-             fixed(row.seen.max, 3), fixed(row.seen.bent_mean_deg, 2),
-             fixed(row.seen.bent_p95_deg, 2), fixed(row.solve.rmse, 4), fixed(row.solve.max, 3),
-             fixed(row.beyond, 4), text_of(row.ratio), text_of(row.ratio_with_builds)},
+             fixed(row.solve_s, 4), fixed(is_map ? row.fill_s : row.fit_s, 4),
+             fixed(row.us_per_receiver, 3), fixed(row.seen.rmse, 4), signed_fixed(row.seen.bias, 4),
+             fixed(row.seen.p95, 4), fixed(row.seen.max, 3),
+             bent_text(comparison, row.seen.bent_mean_deg),
+             bent_text(comparison, row.seen.bent_p95_deg), fixed(row.solve.rmse, 4),
+             fixed(row.solve.max, 3), fixed(row.beyond, 4), text_of(row.ratio),
+             text_of(row.ratio_with_builds)},
             "td");
     }
     return html + "</table>\n";
@@ -221,6 +226,7 @@ std::string scene_html(const FrontierScene& scene)
             std::to_string(comparison.receivers) + " receivers, " +
             std::to_string(comparison.triangles) + " triangles (" +
             std::to_string(comparison.dropped_triangles) + " without area dropped); " +
+            (comparison.texels ? "a map of " + target_text(comparison) + "; " : "") +
             errors_text(comparison) + ". " + std::to_string(comparison.threads) +
             " threads, medians of " + std::to_string(comparison.rounds) +
             " rounds. Distance limit " +
@@ -248,7 +254,7 @@ std::string summary_html(const Frontier& frontier)
                          "th");
     for (const Engine engine : frontier.engines) {
         for (const auto& [cost, words] :
-             {std::pair(Cost::solve, "solve and fit"), std::pair(Cost::build, "with builds"),
+             {std::pair(Cost::solve, "solve, fit or fill"), std::pair(Cost::build, "with builds"),
               std::pair(Cost::file, "with builds and file")}) {
             for (const double beyond : kTargets) {
                 const RatioSummary s = summary_of(frontier, engine, beyond, cost);
@@ -276,14 +282,16 @@ std::string html_of(const Frontier& frontier)
         make_mark("compare", "speed against error") +
         "\"><title>surfelao: speed against error</title>\n<style>" + std::string(kStyle) +
         "</style></head><body>\n<h1>Speed against error</h1>\n"
-        "<p>Occlusion fitted to every vertex by point-based engines and by Embree in its strongest "
-        "mode, which do the same job; all in one process on the same threads, in turns. "
+        "<p>Occlusion, fitted to every vertex or as a map, by point-based engines and by Embree in "
+        "its strongest mode, which do the same job; all in one process on the same threads, in "
+        "turns. "
         "<i>Seen</i> "
         "is the error of what is displayed at points all over the surface against many robust "
         "rays, "
         "<i>solve</i> that of the engine's own answers there. The <i>floor</i> is the seen error "
         "of "
-        "the best values that the vertices can hold, and <i>beyond</i> what an engine adds to it: "
+        "the best values that vertices or texels can hold, and <i>beyond</i> what an engine adds "
+        "to it: "
         "seen² = floor² + beyond². In the plots lower left is better. In the pictures red is "
         "too dark, blue too bright against the floor's values, full colour at an error of " +
         fixed(kFullColorError, 1) + ".</p>\n";

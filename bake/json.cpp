@@ -180,6 +180,12 @@ Json json_of(const ErrorStatistics& error)
             {"bent_p95_deg", error.bent_p95_deg}};
 }
 
+/// A map holds no bent normals: null.
+void without_bent(Json& error)
+{
+    error["bent_mean_deg"] = error["bent_p95_deg"] = nullptr;
+}
+
 Json json_of(const Comparison& comparison, const CompareRow& row)
 {
     Json worst = Json::array();
@@ -189,15 +195,20 @@ Json json_of(const Comparison& comparison, const CompareRow& row)
                          {"displayed", point.displayed},
                          {"reference", point.reference}});
     }
+    Json seen = json_of(row.seen);
+    if (comparison.texels)
+        without_bent(seen);
     return {{"engine", name_of(row.settings.engine)},
             {"setting", setting_of(row.settings)},
             {"settings", json_of(row.settings)},
             {"rounds", row.rounds},
+            {"raster_s", row.raster_s},
             {"build_s", row.build_s},
             {"solve_s", row.solve_s},
             {"fit_s", row.fit_s},
+            {"fill_s", row.fill_s},
             {"us_per_receiver", row.us_per_receiver},
-            {"seen", json_of(row.seen)},
+            {"seen", seen},
             {"solve", json_of(row.solve)},
             {"beyond", row.beyond},
             {"beyond_by_squares", beyond_by_squares(comparison, row)},
@@ -220,12 +231,25 @@ Json json_object_of(const Comparison& comparison)
     json["read_s"] = comparison.read_s;
     json["target"] = Json::object();
     add(json["target"], comparison.target);
+    if (comparison.texels) {
+        json["target"]["values"] = nullptr;
+        json["target"]["texels"] = {
+            {"width", comparison.page.width},
+            {"height", comparison.page.height},
+            {"pages", comparison.pages},
+            {"uv_set", comparison.uv_set ? Json(*comparison.uv_set) : Json()},
+            {"padding", comparison.texels->padding}};
+    } else {
+        json["target"]["texels"] = nullptr;
+    }
     json["reference"] = {{"rays", comparison.reference_rays},
                          {"noise", comparison.reference_noise},
                          {"from_cache", comparison.reference_from_cache},
                          {"points", comparison.points},
                          {"ill_defined", comparison.ill_defined}};
     json["floor"] = json_of(comparison.floor);
+    if (comparison.texels)
+        without_bent(json["floor"]);
     json["floor"]["rays"] = comparison.floor_rays;
     json["floor"]["noise"] = comparison.floor_noise;
     json["rows"] = Json::array();

@@ -78,8 +78,7 @@ private:
         glm::dvec3 bent(0.0);
         glm::vec3 first(0.0f);
         for (std::size_t i = 0; i < sheets.size(); ++i) {
-            const glm::vec3 direction =
-                encode_.encode(page, texels[i].point, sheets[i].bent_normal);
+            const glm::vec3 direction = encode_(page, texels[i].point, sheets[i].bent_normal);
             first = i == 0 ? direction : first;
             bent += (1.0 - sheets[i].occlusion) * glm::dvec3(direction);
         }
@@ -310,18 +309,18 @@ private:
         const Seams seams = seams_of(mesh_, layout_);
         const std::uint32_t rings =
             bake.hidden == 0 ? settings_.padding : std::max(settings_.padding, kHiddenRings / 2);
-        for (std::vector<Map>* maps : {&bake.visibility, &bake.bent}) {
-            if (maps->empty())
-                continue;
+        const auto fill = [&](std::vector<Map>& maps, bool joins) {
             Known filled = known;
-            const bool has_seams = maps == &bake.visibility || !settings_.bent.is_of_chart;
-            if (has_seams)
-                fill_across(mesh_, layout_, seams, settings_.padding, *maps, filled);
-            for (std::size_t page = 0; page < maps->size(); ++page)
-                fill_around((*maps)[page], filled[page], rings);
-            if (has_seams)
-                stitch(seams, *maps);
-        }
+            if (joins)
+                fill_across(mesh_, layout_, seams, settings_.padding, maps, filled);
+            for (std::size_t page = 0; page < maps.size(); ++page)
+                fill_around(maps[page], filled[page], rings);
+            if (joins)
+                stitch(seams, maps);
+        };
+        fill(bake.visibility, true);
+        if (!bake.bent.empty())
+            fill(bake.bent, settings_.joins_bent);
         bake.seams = seams.list.size();
         bake.smooth_seams = seams.smooth_count();
         bake.jump = seam_jump(seams, bake.visibility);

@@ -25,20 +25,15 @@ namespace surfelao {
 
 class HighDetail;
 
-/// From directions in the world to what a map holds of them.
-struct BentEncoder {
-    /// At a point of the surface on a page: of unit length, or zero.
-    std::function<glm::vec3(std::size_t page, const SurfacePoint& point, glm::vec3 direction)>
-        encode;
-    /// What one chart holds means nothing in the next (tangent space): seams stay as they are.
-    bool is_of_chart = false;
-
-    explicit operator bool() const { return static_cast<bool>(encode); }
-};
+/// From a direction in the world to what a map of a page holds at a point of the surface: of unit
+/// length, or zero.
+using BentEncoder =
+    std::function<glm::vec3(std::size_t page, const SurfacePoint& point, glm::vec3 direction)>;
 
 struct MapSettings {
     std::uint32_t padding = 4;  ///< texels around what is covered that take their neighbours' mean
     BentEncoder bent = {};      ///< bent normals too, in this space (bent_space.h)
+    bool joins_bent = true;     ///< across seams; not in tangent space, which is another there
     MapDepth depth = MapDepth::byte;
     bool half_is_whole = true;           ///< what 16 bits are in the file (image/map.h)
     std::uint32_t check = kCheckPoints;  ///< as BakeSettings::check

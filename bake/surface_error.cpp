@@ -39,14 +39,6 @@ glm::vec2 place_in_triangle(std::uint64_t number)
     return {static_cast<float>(u), static_cast<float>(v)};
 }
 
-std::uint32_t floor_rays(std::size_t receivers, std::uint32_t truth_rays)
-{
-    const double wanted = kFloorRays / static_cast<double>(std::max<std::size_t>(1, receivers));
-    const std::uint32_t rays = std::bit_floor(
-        static_cast<std::uint32_t>(std::clamp<double>(wanted, kFewestFloorRays, kMostFloorRays)));
-    return std::min(rays, truth_rays);
-}
-
 }  // namespace
 
 std::vector<SurfacePoint> surface_points(const Geometry& geometry, std::uint64_t count)
@@ -86,7 +78,9 @@ std::vector<std::uint32_t> stratified(std::span<const double> measure, std::uint
 
 SurfaceTruth trace_truth(const Mesh& mesh, const TruthSettings& settings, const Progress& progress)
 {
-    const std::vector<SurfacePoint> points = surface_points(mesh.geometry, settings.points);
+    const std::vector<SurfacePoint> points =
+        settings.measure.empty() ? surface_points(mesh.geometry, settings.points)
+                                 : surface_points(settings.measure, settings.points);
     const std::vector<Receiver> receivers =
         receivers_at(mesh.geometry, mesh.surface, points, settings.offset);
     const Reference reference =
@@ -137,6 +131,14 @@ ErrorStatistics seen_error(const Geometry& geometry, std::span<const Occlusion> 
                            const SurfaceTruth& truth)
 {
     return error_against(truth, displayed_at(geometry, values, truth.points));
+}
+
+std::uint32_t floor_rays(std::size_t receivers, std::uint32_t truth_rays)
+{
+    const double wanted = kFloorRays / static_cast<double>(std::max<std::size_t>(1, receivers));
+    const std::uint32_t rays = std::bit_floor(
+        static_cast<std::uint32_t>(std::clamp<double>(wanted, kFewestFloorRays, kMostFloorRays)));
+    return std::min(rays, truth_rays);
 }
 
 Floor find_floor(const VertexTarget& fitted, const Geometry& geometry, const SurfaceTruth& truth,

@@ -1,18 +1,23 @@
-/// surface_error.h: what people see of a mesh with values at its vertices, against the truth.
+/// surface_error.h: what people see of a mesh with values at its vertices, or with a map, against
+/// the truth.
 ///
 /// *Surface points* lie all over the surface, uniform by area; the *truth* is traced there with
 /// many robust rays (reference/reference_cache.h). Points that have no well-defined answer
 /// (reference/well_defined.h) are left out, and counted.
 ///
 /// - **Solve error**: an engine's answers at the surface points against the truth.
-/// - **Seen error**: what is displayed there, interpolated from the vertices, against the truth.
+/// - **Seen error**: what is displayed there, interpolated from the vertices or fetched between
+///   texels, against the truth.
 /// - **Floor**: the seen error of the best values that these vertices can hold: the fit
-///   (vertex_fit.h) of the reference's answers. It belongs to the mesh, not to the engine.
+///   (vertex_fit.h) of the reference's answers. It belongs to the mesh, not to the engine. Of a
+///   map: what it shows when every texel has the answer of many rays.
 /// - **Beyond**: RMS over the surface points of what is displayed less what the floor's values
 ///   display: the engine's part. Least squares makes the floor's own error orthogonal to all that
 ///   vertices can hold, so that seen^2 = floor^2 + beyond^2 but for the fit's few samples, its
-///   smoothness and its other cut of quads: to a few percent of beyond. Where the floor is .2 the
-///   fourth digit of either error decides over that difference of squares; beyond has it first.
+///   smoothness and its other cut of quads: to a few percent of beyond. (A map is no least square,
+///   but what its texels cannot hold is between them, where no engine is asked.) Where the floor is
+///   .2 the fourth digit of either error decides over that difference of squares; beyond has it
+///   first.
 ///
 /// All RMS figures are what they would be with exact references: the variances of the noise of
 /// truth and floor, both known from two independent halves, are taken out of the squares.
@@ -57,6 +62,7 @@ struct TruthSettings {
     std::uint64_t points = kSurfacePoints;  ///< >= 1
     std::uint32_t rays = 4096;              ///< per point, an even number
     bool use_cache = true;
+    std::vector<double> measure = {};  ///< per triangle, >= 0: by it points lie; empty: by area
 };
 
 /// The well-defined surface points and what is true there; one entry per point in each list.
@@ -90,11 +96,12 @@ struct SurfaceTruth {
 
 /// The best values of a mesh, and what they show.
 struct Floor {
-    std::vector<Occlusion> values;     ///< per vertex: the fit of the reference
+    std::vector<Occlusion> values;     ///< per vertex: the fit of the reference; per texel: its
+                                       ///< answer or what fills it, without bent normals
     std::vector<Occlusion> displayed;  ///< of these, one per point of the truth
     ErrorStatistics error;
     double noise = 0.0;      ///< RMS error of `displayed` by sampling
-    std::uint32_t rays = 0;  ///< per receiver of the fit
+    std::uint32_t rays = 0;  ///< per receiver
     bool from_cache = false;
 };
 
@@ -102,6 +109,9 @@ struct Floor {
 /// Receivers times rays are about this, with a power of two between the ends.
 inline constexpr double kFloorRays = 8e7;
 inline constexpr std::uint32_t kFewestFloorRays = 256, kMostFloorRays = 4096;
+
+/// As many as that, but no more than `truth_rays`.
+[[nodiscard]] std::uint32_t floor_rays(std::size_t receivers, std::uint32_t truth_rays);
 
 /// fitted: the mesh's target with VertexValues::fit. settings: those of the truth; no more rays are
 /// traced than there. Throws as trace_truth().

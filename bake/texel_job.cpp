@@ -186,6 +186,7 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
     const MapSettings map_settings{
         .padding = texels.padding,
         .bent = bent_encoder(mesh, layout, texels.bent, texels.green_down),
+        .joins_bent = texels.bent != BentSpace::tangent,
         .depth = texels.depth,
         .half_is_whole = lower_extension(settings.output) != ".exr",
         .check = settings.check};

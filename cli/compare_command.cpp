@@ -5,6 +5,7 @@
 #include "cli/engine_options.h"
 #include "cli/output.h"
 #include "cli/progress_bar.h"
+#include "cli/texel_options.h"
 #include "engines/threads.h"
 #include "reference/rays.h"
 #include "surfels/atomic_file.h"
@@ -33,6 +34,7 @@ struct CompareOptions {
     std::optional<std::vector<std::string>> qualities;
     MeasureOptions measure;
     SurfaceOptions surface;
+    TexelOptions texels;
     std::uint32_t reference_rays = 4096;
     std::uint64_t sample = kSurfacePoints;
     int rounds = 3;
@@ -49,6 +51,7 @@ CompareSettings common_settings(const CompareOptions& options)
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
     settings.target = target_settings_of(options.surface);
+    settings.texels = shown_texels_of(options.texels);
     settings.reference_rays = options.reference_rays;
     settings.sample = options.sample;
     settings.rounds = options.rounds;
@@ -126,8 +129,10 @@ int run_compare(const CompareOptions& options, std::vector<fs::path>& written)
     print_or_write(options, comparison, written);
     if (!options.output)
         return kDone;
-    write_difference(difference_of(options), comparison, shown_row(comparison));
-    written.push_back(difference_of(options));
+    if (!comparison.texels) {
+        write_difference(difference_of(options), comparison, shown_row(comparison));
+        written.push_back(difference_of(options));
+    }
     Frontier frontier;
     for (const std::string& engine : options.engines)
         frontier.engines.push_back(engine_of(engine));
@@ -165,7 +170,7 @@ std::vector<fs::path> own_names(const CompareOptions& options)
 {
     if (!options.output)
         return {};
-    if (options.frontier)
+    if (options.frontier || options.texels.at == "texels")
         return {report_of(options)};
     return {difference_of(options), report_of(options)};
 }
@@ -236,7 +241,8 @@ void add_compare_command(CLI::App& app, Work& work)
     command
         ->add_option("-o,--output", options->output,
                      "Folder for difference.ply, the scene with the error as colour (not with "
-                     "--frontier), and report.html; without it no file is written")
+                     "--frontier or --at texels), and report.html; without it no file is "
+                     "written")
         ->type_name("DIR");
     add_overwrite_option(*command, options->overwrite);
     command->add_flag(
@@ -266,6 +272,7 @@ void add_compare_command(CLI::App& app, Work& work)
         ->default_str("draft,good,best");
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
+    add_layout_options(*command, options->texels, kShownMaps);
     command
         ->add_option("--reference-rays", options->reference_rays,
                      "Rays per surface point of the reference, an even number")

@@ -240,7 +240,7 @@ void add_render_command(CLI::App& app, Work& work)
         ->type_name("auto|egl|osmesa")
         ->capture_default_str();
     add_show_options(*command, options->show);
-    add_shown_texel_options(*command, options->texels);
+    add_layout_options(*command, options->texels, kShownMaps);
     add_atlas_option(*command, options->atlas);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);

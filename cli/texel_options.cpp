@@ -21,8 +21,17 @@ bool is_picture(const std::filesystem::path& output)
                                [&](const char* known) { return extension == known; });
 }
 
+}  // namespace
+
 void add_layout_options(CLI::App& command, TexelOptions& options, const std::string& group)
 {
+    command
+        .add_option("--at", options.at,
+                    "Where occlusion is asked: vertices, or texels of a map on the triangles "
+                    "(default: vertices; of bake, texels for pictures)")
+        ->check(CLI::IsMember({"vertices", "texels"}))
+        ->type_name("vertices|texels")
+        ->group(group);
     command.add_option("--size", options.size, "Texels of each side of the map")
         ->check(CLI::Range(1u, kMostTexels))
         ->type_name("N")
@@ -66,44 +75,9 @@ void add_layout_options(CLI::App& command, TexelOptions& options, const std::str
         ->group(group);
 }
 
-}  // namespace
-
-namespace {
-constexpr const char* kShownGroup = "Map (--at texels)";
-}
-
-void add_atlas_option(CLI::App& command, bool& atlas)
-{
-    command
-        .add_flag("--atlas", atlas,
-                  "The map itself, flat, with the borders of its charts, in place of the model")
-        ->group(kShownGroup);
-}
-
-void add_shown_texel_options(CLI::App& command, TexelOptions& options)
-{
-    command
-        .add_option("--at", options.at,
-                    "Where occlusion is asked and shown from: vertices; texels of a map on the "
-                    "triangles")
-        ->check(CLI::IsMember({"vertices", "texels"}))
-        ->type_name("vertices|texels")
-        ->default_str("vertices")
-        ->group(kShownGroup);
-    add_layout_options(command, options, kShownGroup);
-}
-
 void add_texel_options(CLI::App& command, TexelOptions& options)
 {
     constexpr const char* kGroup = "Maps (-o NAME.png, .tif, .exr, or --at texels)";
-    command
-        .add_option(
-            "--at", options.at,
-            "Where: vertices, or texels of a map over the file's texture coordinates, which "
-            "a glTF gets as its occlusionTexture (default: texels for pictures)")
-        ->check(CLI::IsMember({"vertices", "texels"}))
-        ->type_name("vertices|texels")
-        ->group(kGroup);
     add_layout_options(command, options, kGroup);
     command
         .add_option("--depth", options.depth,
@@ -140,6 +114,14 @@ void add_texel_options(CLI::App& command, TexelOptions& options)
         ->type_name("D|P%")
         ->default_str("2%")
         ->group(kGroup);
+}
+
+void add_atlas_option(CLI::App& command, bool& atlas)
+{
+    command
+        .add_flag("--atlas", atlas,
+                  "The map itself, flat, with the borders of its charts, in place of the model")
+        ->group(kShownMaps);
 }
 
 namespace {

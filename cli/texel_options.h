@@ -31,10 +31,14 @@ struct TexelOptions {
     std::optional<std::string> cage;
 };
 
+/// Where values are asked, and where the surface lies in a map; shown in the help under `group`.
+void add_layout_options(CLI::App& command, TexelOptions& options, const std::string& group);
+
+/// All of them: what a map holds and how it stands in a file too.
 void add_texel_options(CLI::App& command, TexelOptions& options);
 
-/// Those of where a map lies, for a command that shows it.
-void add_shown_texel_options(CLI::App& command, TexelOptions& options);
+/// For commands that show a map.
+inline constexpr const char* kShownMaps = "Maps (--at texels)";
 void add_atlas_option(CLI::App& command, bool& atlas);
 
 /// Nothing where values at vertices are asked: by --at, or by an output that is no picture. Throws

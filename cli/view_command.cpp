@@ -76,7 +76,7 @@ void add_view_command(CLI::App& app, Work& work)
                      "Where from, as for render: azimuth=30,elevation=18,distance=1,fov=35")
         ->type_name("WHERE");
     add_show_options(*command, options->show);
-    add_shown_texel_options(*command, options->texels);
+    add_layout_options(*command, options->texels, kShownMaps);
     add_atlas_option(*command, options->atlas);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);

@@ -267,6 +267,7 @@ Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
         RayOptions options;
         options.definition = settings.definition;
         options.rays = settings.rays;
+        options.seed = settings.seed;
         solution.occlusion = trace_occlusion(*impl.rays, receivers, options, progress);
     }
     solution.seconds = watch.lap();

@@ -68,6 +68,7 @@ struct SolveSettings {
     int passes = 2;            ///< disks: >= 1 (tree/disks/disks.h)
     float strength = 1.0f;     ///< disks: >= 0
     std::uint32_t rays = 256;  ///< rays: 1 to kMostRays
+    std::uint32_t seed = 0;    ///< rays: another seed, another independent estimate
     bool operator==(const SolveSettings&) const = default;
 };
 

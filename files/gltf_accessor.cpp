@@ -182,6 +182,11 @@ std::vector<glm::dvec2> read_pairs(const GltfAccessor& accessor)
     return load_vectors<glm::dvec2>(accessor);
 }
 
+std::vector<glm::dvec4> read_quadruples(const GltfAccessor& accessor)
+{
+    return load_vectors<glm::dvec4>(accessor);
+}
+
 std::vector<glm::dvec4> read_colors(const GltfAccessor& accessor)
 {
     const std::vector<double> numbers = read_numbers(accessor);

@@ -70,6 +70,9 @@ struct AccessorError : std::runtime_error {
 /// The same for two components.
 [[nodiscard]] std::vector<glm::dvec2> read_pairs(const GltfAccessor& accessor);
 
+/// The same for four.
+[[nodiscard]] std::vector<glm::dvec4> read_quadruples(const GltfAccessor& accessor);
+
 /// Asks for three components of any type (alpha is then 1) or four. Throws like read_numbers.
 [[nodiscard]] std::vector<glm::dvec4> read_colors(const GltfAccessor& accessor);
 

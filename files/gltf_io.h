@@ -16,7 +16,9 @@
 /// Scene::notes says what is not honoured: animations, see-through materials, points and lines.
 ///
 /// Normals are those of NORMAL at unit length, moved along with morph targets, joints and nodes (by
-/// the inverse transpose); zero where a part has none or what it has is no number.
+/// the inverse transpose); zero where a part has none or what it has is no number. Tangents are
+/// those of TANGENT in the same way, but along the matrix itself, and their sign turns under a
+/// mirror.
 ///
 /// Texture coordinates are those of TEXCOORD_0 to TEXCOORD_7 as sets 0 to 7, of any type, each use
 /// of a mesh at the same places of the map. KHR_texture_transform is a material's matter and not
@@ -28,8 +30,8 @@
 ///
 /// A primitive becomes one Part per use of its mesh, with all vertices of its POSITION accessor;
 /// primitives of one mesh that share all accessors their vertices come from (POSITION, NORMAL,
-/// joints, weights, targets, but not texture coordinates) are one Part (Part::primitive is the
-/// first of them).
+/// TANGENT, joints, weights, targets, but not texture coordinates) are one Part (Part::primitive is
+/// the first of them).
 ///
 /// Refused are compressed geometry (KHR_draco_mesh_compression, EXT_meshopt_compression without
 /// plain data), and any extension that the file requires unless it is known to leave triangles

@@ -29,11 +29,11 @@ std::size_t influence_set_count(const tinygltf::Primitive& primitive)
 /// All accessors that a group's vertices come from: equal lists, equal vertices.
 std::vector<int> vertex_accessors(const tinygltf::Primitive& primitive)
 {
-    std::vector<int> accessors{attribute(primitive.attributes, "POSITION"),
-                               attribute(primitive.attributes, "NORMAL")};
-    for (const auto& target : primitive.targets) {
-        accessors.push_back(attribute(target, "POSITION"));
-        accessors.push_back(attribute(target, "NORMAL"));
+    std::vector<int> accessors;
+    for (const char* name : {"POSITION", "NORMAL", "TANGENT"}) {
+        accessors.push_back(attribute(primitive.attributes, name));
+        for (const auto& target : primitive.targets)
+            accessors.push_back(attribute(target, name));
     }
     for (std::size_t set = 0; set < influence_set_count(primitive); ++set) {
         for (const char* name : {"JOINTS_", "WEIGHTS_"})
@@ -85,9 +85,10 @@ private:
     Group resolve_vertices(const tinygltf::Primitive& source, const std::string& element) const
     {
         Group group{
-            positions(attribute(source.attributes, "POSITION"), element), {}, {}, {}, {}, {}};
+            positions(attribute(source.attributes, "POSITION"), element), {}, {}, {}, {}, {}, {}};
         const std::size_t count = group.positions.accessor.count;
-        group.normals = normals(source.attributes, count, element);
+        group.normals = directions("NORMAL", 3, source.attributes, count, element);
+        group.tangents = directions("TANGENT", 4, source.attributes, count, element);
         for (std::size_t t = 0; t < source.targets.size(); ++t) {
             const std::string place = element + numbered(" target", t);
             MorphTarget target;
@@ -95,7 +96,8 @@ private:
                 target.positions = positions(index, place);
                 resolver_.check_count(*target.positions, count);
             }
-            target.normals = normals(source.targets[t], count, place);
+            target.normals = directions("NORMAL", 3, source.targets[t], count, place);
+            target.tangents = directions("TANGENT", 3, source.targets[t], count, place);
             group.targets.push_back(std::move(target));
         }
         for (std::size_t set = 0; set < influence_set_count(source); ++set)
@@ -114,17 +116,19 @@ private:
         return named;
     }
 
-    std::optional<NamedAccessor> normals(const std::map<std::string, int>& attributes,
-                                         std::size_t count, const std::string& element) const
+    /// Normals or tangents.
+    std::optional<NamedAccessor> directions(const std::string& name, int dimension,
+                                            const std::map<std::string, int>& attributes,
+                                            std::size_t count, const std::string& element) const
     {
-        const int index = attribute(attributes, "NORMAL");
+        const int index = attribute(attributes, name);
         if (index == kNone)
             return std::nullopt;
-        NamedAccessor named = resolver_.resolve(index, element + " NORMAL");
-        if (named.accessor.dimension != 3)
-            resolver_.fail(named.element, "is not of type VEC3");
+        NamedAccessor named = resolver_.resolve(index, element + ' ' + name);
+        if (named.accessor.dimension != dimension)
+            resolver_.fail(named.element, "is not of type VEC" + std::to_string(dimension));
         if (is_index_type(named.accessor.component))
-            resolver_.fail(named.element, "is of an unsigned type, which no normal may be");
+            resolver_.fail(named.element, "is of an unsigned type, which no direction may be");
         resolver_.check_count(named, count);
         return named;
     }

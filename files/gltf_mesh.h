@@ -9,6 +9,10 @@
 #include <string>
 #include <vector>
 
+namespace tinygltf {
+class Model;
+}
+
 namespace surfelao {
 
 /// Sets of texture coordinates that are read: a file might name its accessors any number of times.
@@ -33,6 +37,7 @@ struct Primitive {
 struct MorphTarget {
     std::optional<NamedAccessor> positions;
     std::optional<NamedAccessor> normals;
+    std::optional<NamedAccessor> tangents;
 };
 
 /// Four joints and their weights for each vertex: JOINTS_n and WEIGHTS_n.
@@ -46,6 +51,7 @@ struct InfluenceSet {
 struct Group {
     NamedAccessor positions;
     std::optional<NamedAccessor> normals;
+    std::optional<NamedAccessor> tangents;
     std::vector<MorphTarget> targets;
     std::vector<InfluenceSet> influences;
     std::vector<Primitive> primitives;

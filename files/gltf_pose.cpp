@@ -77,6 +77,13 @@ std::vector<glm::dvec3> read_places(const NamedAccessor& named, const Group& gro
     return places;
 }
 
+/// At unit length; zero where there is no direction.
+glm::vec3 unit_or_zero(const glm::dvec3& direction)
+{
+    const double length = glm::length(direction);
+    return length > 0.0 && std::isfinite(length) ? glm::vec3(direction / length) : glm::vec3(0.0f);
+}
+
 }  // namespace
 
 MeshVertices read_vertices(const Group& group, std::span<const double> weights,
@@ -88,6 +95,8 @@ MeshVertices read_vertices(const Group& group, std::span<const double> weights,
     // exporters leave NaN where triangles have no area: such a normal is none, no fault
     if (group.normals)
         vertices.normals = read_named(*group.normals, resolver, read_vectors);
+    if (group.tangents)
+        vertices.tangents = read_named(*group.tangents, resolver, read_quadruples);
     for (std::size_t t = 0; t < std::min(weights.size(), group.targets.size()); ++t) {
         const MorphTarget& target = group.targets[t];
         if (weights[t] == 0.0)
@@ -98,6 +107,12 @@ MeshVertices read_vertices(const Group& group, std::span<const double> weights,
         if (target.normals && group.normals)
             add_scaled(vertices.normals, read_named(*target.normals, resolver, read_vectors),
                        weights[t]);
+        if (target.tangents && group.tangents) {
+            const std::vector<glm::dvec3> shifts =
+                read_named(*target.tangents, resolver, read_vectors);
+            for (std::size_t v = 0; v < shifts.size(); ++v)
+                vertices.tangents[v] += glm::dvec4(weights[t] * shifts[v], 0.0);
+        }
     }
     if (!lost.empty()) {
         const std::vector<bool> used = used_vertices(group, resolver);
@@ -204,9 +219,17 @@ NormalMatrix::NormalMatrix(const glm::dmat3& to_world)
 
 glm::vec3 NormalMatrix::operator()(const glm::dvec3& normal) const
 {
-    const glm::dvec3 direction = matrix_ * normal;
-    const double length = glm::length(direction);
-    return length > 0.0 && std::isfinite(length) ? glm::vec3(direction / length) : glm::vec3(0.0f);
+    return unit_or_zero(matrix_ * normal);
+}
+
+glm::vec4 tangent_in_world(const glm::dmat3& to_world, const glm::dvec4& tangent)
+{
+    const glm::dmat3 m = scaled_to_one(to_world);
+    const glm::vec3 direction = unit_or_zero(m * glm::dvec3(tangent));
+    if (direction == glm::vec3(0.0f))
+        return glm::vec4(0.0f);
+    const bool is_turned = (tangent.w < 0.0) != (glm::determinant(m) < 0.0);
+    return {direction, is_turned ? -1.0f : 1.0f};
 }
 
 }  // namespace surfelao

@@ -17,8 +17,9 @@ namespace surfelao {
 /// The vertices of a group, in mesh space.
 struct MeshVertices {
     std::vector<glm::dvec3> positions;
-    std::vector<glm::dvec3> normals;  ///< as stored, of any length, finite or not; may be empty
-    std::size_t lost_count = 0;       ///< positions that were not finite, in no triangle
+    std::vector<glm::dvec3> normals;   ///< as stored, of any length, finite or not; may be empty
+    std::vector<glm::dvec4> tangents;  ///< likewise
+    std::size_t lost_count = 0;        ///< positions that were not finite, in no triangle
 };
 
 /// The stored vertices plus the displacements of the targets times their weights; targets beyond
@@ -53,6 +54,10 @@ public:
 private:
     glm::dmat3 matrix_;
 };
+
+/// A tangent of mesh space in the world, as Scene has it: along the matrix itself, of unit length;
+/// a mirror turns the sign. Zero where there is no direction.
+[[nodiscard]] glm::vec4 tangent_in_world(const glm::dmat3& to_world, const glm::dvec4& tangent);
 
 /// The matrix times a positive number, so that its largest entry is 1: for directions, which must
 /// neither underflow nor overflow. Zero stays zero.

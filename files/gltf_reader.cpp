@@ -181,20 +181,21 @@ private:
     void reserve()
     {
         Amounts amounts(asset_, meshes_.size());
-        bool has_normals = false;
         for (const MeshNode& use : nodes_.mesh_nodes) {
             const std::vector<Group>& groups = *meshes_[use.mesh];
             const std::optional<std::size_t> instances = instance_count(model_, use, resolver_);
             amounts.add(use, instances, groups, weights_of(use));
-            has_normals = has_normals || std::ranges::any_of(groups, [](const Group& group) {
-                              return group.normals.has_value();
-                          });
+            for (const Group& group : groups) {
+                has_normals_ = has_normals_ || group.normals;
+                has_tangents_ = has_tangents_ || group.tangents;
+            }
         }
         scene_.positions.reserve(amounts.vertices());
         scene_.triangles.reserve(amounts.triangles());
-        if (has_normals)
+        if (has_normals_)
             scene_.normals.values.reserve(amounts.vertices());
-        has_normals_ = has_normals;
+        if (has_tangents_)
+            scene_.tangents.reserve(amounts.vertices());
         for (std::size_t set = 0; set < kMostUvSets; ++set) {
             if (amounts.uvs(set) == 0)
                 continue;
@@ -291,10 +292,7 @@ private:
         const NormalMatrix normal_matrix{glm::dmat3(world)};
         for (std::size_t v = 0; v < vertices.positions.size(); ++v) {
             add_position(use, v, world, vertices.positions[v]);
-            if (has_normals_)
-                scene_.normals.values.push_back(vertices.normals.empty()
-                                                    ? glm::vec3(0.0f)
-                                                    : normal_matrix(vertices.normals[v]));
+            add_directions(vertices, v, normal_matrix, glm::dmat3(world));
         }
     }
 
@@ -312,12 +310,23 @@ private:
             const glm::dmat3 linear = scaled_to_one(glm::dmat3(matrices[v]));
             mirrored.push_back(glm::determinant(linear) < 0.0);
             asset_.parts.back().vertices_to_world.emplace_back(linear);
-            if (has_normals_)
-                scene_.normals.values.push_back(vertices.normals.empty()
-                                                    ? glm::vec3(0.0f)
-                                                    : NormalMatrix(linear)(vertices.normals[v]));
+            add_directions(vertices, v, NormalMatrix(linear), linear);
         }
         return mirrored;
+    }
+
+    /// The vertex' normal and tangent, if the scene has any.
+    void add_directions(const MeshVertices& vertices, std::size_t vertex,
+                        const NormalMatrix& normal_matrix, const glm::dmat3& to_world)
+    {
+        if (has_normals_)
+            scene_.normals.values.push_back(vertices.normals.empty()
+                                                ? glm::vec3(0.0f)
+                                                : normal_matrix(vertices.normals[vertex]));
+        if (has_tangents_)
+            scene_.tangents.push_back(vertices.tangents.empty()
+                                          ? glm::vec4(0.0f)
+                                          : tangent_in_world(to_world, vertices.tangents[vertex]));
     }
 
     void add_position(const MeshNode& use, std::size_t vertex, const glm::dmat4& world,
@@ -426,6 +435,7 @@ private:
     AccessorResolver resolver_;
     PlacedNodes nodes_;
     bool has_normals_ = false;
+    bool has_tangents_ = false;
     /// Of the part that is being added: where the values of each set's accessors begin.
     std::array<std::map<int, std::uint32_t>, kMostUvSets> part_uvs_;
     std::uint64_t lost_count_ = 0;

@@ -69,9 +69,9 @@ constexpr Field kPrimitive[] = {
 };
 constexpr Field kAccessorIndex = {"", Kind::index, Need::optional, "accessors"};
 /// For is_listed().
-constexpr std::string_view kAttributes[] = {"POSITION", "NORMAL",   "COLOR_0",
+constexpr std::string_view kAttributes[] = {"POSITION", "NORMAL",   "TANGENT",  "COLOR_0",
                                             "JOINTS_",  "WEIGHTS_", "TEXCOORD_"};
-constexpr std::string_view kTargetAttributes[] = {"POSITION", "NORMAL"};
+constexpr std::string_view kTargetAttributes[] = {"POSITION", "NORMAL", "TANGENT"};
 constexpr Field kNode[] = {
     {"name", Kind::text},
     {"mesh", Kind::index, Need::optional, "meshes"},

@@ -185,6 +185,12 @@ const Polygons* source_polygons(const Scene& scene)
     return source && !source->polygons.sizes.empty() ? &source->polygons : nullptr;
 }
 
+std::size_t longest_face(const Scene& scene)
+{
+    const Polygons* polygons = source_polygons(scene);
+    return polygons ? *std::ranges::max_element(polygons->sizes) : 3;
+}
+
 std::size_t face_count(const Scene& scene)
 {
     const Polygons* polygons = source_polygons(scene);

@@ -96,6 +96,9 @@ void for_each_face(const Scene& scene, const Visit& visit);
 /// How many times for_each_face calls.
 [[nodiscard]] std::size_t face_count(const Scene& scene);
 
+/// The most corners of a face.
+[[nodiscard]] std::size_t longest_face(const Scene& scene);
+
 // ------------------------------------------------------------------------------------------------
 
 /// The source's polygons, or null where the triangles are the faces.

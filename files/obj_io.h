@@ -42,4 +42,20 @@ namespace surfelao {
                                        std::span<const Occlusion> occlusion,
                                        const WriteOptions& options = {});
 
+/// The scene as OBJ whose materials have the map of map_file_of(path) as map_Ka, and the text of
+/// the file that they stand in: map_materials_of(path), which is the only one that the OBJ names.
+///
+/// A scene that came from OBJ gives the text of its file, its own colours kept. `usemtl` of a plain
+/// material stands before faces without one. The materials are those of the file's own libraries
+/// (obj_materials.h). With new coordinates (map.uvs) its `vt` lines go and new ones stand before
+/// the first face, `f` gets new vt; a polygon whose corners have several places becomes its
+/// triangles. Any other scene gives its coordinates, colours and faces, over map.uvs or its own set
+/// map.uv_set, with one plain material.
+struct ObjWithMap : WrittenFile {
+    std::string materials;
+};
+[[nodiscard]] ObjWithMap obj_contents_with_map(const std::filesystem::path& path,
+                                               const Scene& scene, const OcclusionMap& map,
+                                               const WriteOptions& options = {});
+
 }  // namespace surfelao

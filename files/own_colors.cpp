@@ -236,7 +236,7 @@ std::string_view line_end_of(std::string_view text)
 
 bool colors_are_baked(std::string_view mark)
 {
-    return command_of_mark(mark) == "bake" &&
+    return command_of_mark(mark) == "bake" && mark.find(" at=texels") == mark.npos &&
            mark.find(" colors=" + name_of(VertexColors::keep)) == mark.npos;
 }
 

@@ -97,7 +97,7 @@ private:
 [[nodiscard]] std::string_view line_end_of(std::string_view text);
 
 /// Whether the colours of a file with this mark are those of a bake (maker_mark.h), as far as they
-/// do not stand in it a second time.
+/// do not stand in it a second time. A bake of a map (`at=texels`) leaves them alone.
 [[nodiscard]] bool colors_are_baked(std::string_view mark);
 
 }  // namespace surfelao

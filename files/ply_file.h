@@ -105,6 +105,8 @@ public:
     Header header;
     std::size_t vertices_begin = 0;  ///< bytes of the vertex rows, counted from the data's first
     std::size_t vertices_end = 0;
+    std::size_t faces_begin = 0;  ///< likewise; 0 and 0 without any
+    std::size_t faces_end = 0;
 
     [[nodiscard]] std::string_view data() const
     {
@@ -113,6 +115,11 @@ public:
     [[nodiscard]] std::string_view vertex_rows() const
     {
         return data().substr(vertices_begin, vertices_end - vertices_begin);
+    }
+
+    [[nodiscard]] std::string_view face_rows() const
+    {
+        return data().substr(faces_begin, faces_end - faces_begin);
     }
 
     struct Own {

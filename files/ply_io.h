@@ -50,6 +50,22 @@ namespace surfelao {
                                        std::span<const Occlusion> occlusion,
                                        const WriteOptions& options = {});
 
+/// The scene as PLY with `comment TextureFile` of map_file_of(path), in place of other such
+/// comments, as MeshLab and Blender read it; of colours the file's own.
+///
+/// A scene that came from PLY gives its own file as above. Over its own coordinates its rows stay
+/// as they are. With new ones (map.uvs) each face has them in a last property `list uchar float
+/// texcoord`, u and v of each corner, v up, none for a face without; `texcoord` and `texnumber` of
+/// its own go. A polygon whose corners have several places becomes its triangles, each with all
+/// other properties. Where it has triangle strips, and for any other scene, a new file is made, of
+/// coordinates, colours and faces, over map.uvs or the scene's own set map.uv_set.
+[[nodiscard]] WrittenFile ply_contents_with_map(const std::filesystem::path& path,
+                                                const Scene& scene, const OcclusionMap& map,
+                                                const WriteOptions& options = {});
+
+/// Whether the .ply at `path` is the result of a bake that names this picture.
+[[nodiscard]] bool names_our_texture(const std::filesystem::path& path, std::string_view picture);
+
 /// What stands at the vertices of a new file behind their coordinates.
 struct PlyValues {
     std::vector<std::string> properties;  ///< "float error"
@@ -62,10 +78,18 @@ enum class PlyCoordinates {
     exact,        ///< double
 };
 
-/// The scene with the polygons of its source as a new binary_little_endian file.
+/// A picture that lies over the faces.
+struct PlyTexture {
+    std::string_view name;
+    const UvSet& uvs;  ///< of each triangle of the scene
+};
+
+/// The scene with the polygons of its source as a new binary_little_endian file. With a texture:
+/// as ply_contents_with_map().
 [[nodiscard]] std::string new_ply(const Scene& scene, const PlyValues& values,
                                   std::string_view mark,
-                                  PlyCoordinates coordinates = PlyCoordinates::near_enough);
+                                  PlyCoordinates coordinates = PlyCoordinates::near_enough,
+                                  const PlyTexture* texture = nullptr);
 
 /// The bytes of a number as a binary PLY holds them.
 template <class Value>

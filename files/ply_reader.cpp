@@ -187,6 +187,7 @@ private:
         const std::size_t uvs = uv_list(element);
         index_type_ = element.properties[list].type;
         std::vector<glm::dvec2> row_uvs;
+        source_.faces_begin = data_.offset();
         for (std::uint64_t row = 0; row < element.count; ++row) {
             const std::size_t first = polygons.corners.size();
             std::uint64_t uv_numbers = 0;
@@ -205,6 +206,7 @@ private:
                 ++odd_uv_lists;
             row_uvs.clear();
         }
+        source_.faces_end = data_.offset();
     }
 
     void read_uvs(std::uint64_t length, Type type, std::vector<glm::dvec2>& uvs)

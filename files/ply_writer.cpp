@@ -1,8 +1,10 @@
+#include "files/face_places.h"
 #include "files/maker_mark.h"
 #include "files/mesh_source.h"
 #include "files/own_colors.h"
 #include "files/ply_file.h"
 #include "files/ply_io.h"
+#include "files/ply_text.h"
 #include "files/sidecars.h"
 #include "surfels/number_text.h"
 
@@ -12,7 +14,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <limits>
+#include <optional>
 
 namespace surfelao {
 namespace {
@@ -24,26 +28,6 @@ constexpr std::string_view kMeasured[] = {"float occlusion", "float bent_nx", "f
 constexpr std::string_view kColor[] = {"red", "green", "blue"};
 constexpr std::string_view kOwnColor[] = {"own_red", "own_green", "own_blue"};
 
-template <class Properties>
-void append_property_lines(std::string& text, const Properties& properties,
-                           std::string_view newline)
-{
-    for (const auto& property : properties)
-        text.append("property ").append(property).append(newline);
-}
-
-void append_mark_line(std::string& text, std::string_view mark, std::string_view newline)
-{
-    if (!mark.empty())
-        text.append("comment ").append(mark).append(newline);
-}
-
-/// How numbers stand in the rows of a file.
-struct Notation {
-    bool ascii = false;
-    std::endian endian = std::endian::little;
-};
-
 void append_measured(std::string& text, const Occlusion& o, Notation notation)
 {
     for (const float value : {o.occlusion, o.bent_normal.x, o.bent_normal.y, o.bent_normal.z}) {
@@ -51,28 +35,6 @@ void append_measured(std::string& text, const Occlusion& o, Notation notation)
             append_shortest(text += ' ', value);
         else
             append_bytes(text, value, notation.endian);
-    }
-}
-
-/// A channel of a colour, white being `white`.
-void append_channel(std::string& text, Type type, double value, Notation notation)
-{
-    const std::int64_t whole = std::llround(value);
-    if (notation.ascii) {
-        if (is_integer(type))
-            append_integer(text, whole);
-        else
-            append_shortest(text, static_cast<float>(value));
-    } else if (type == Type::float32) {
-        append_bytes(text, static_cast<float>(value), notation.endian);
-    } else if (type == Type::float64) {
-        append_bytes(text, value, notation.endian);
-    } else if (size_of(type) == 1) {
-        append_bytes(text, static_cast<std::uint8_t>(whole), notation.endian);
-    } else if (size_of(type) == 2) {
-        append_bytes(text, static_cast<std::uint16_t>(whole), notation.endian);
-    } else {
-        append_bytes(text, static_cast<std::uint32_t>(whole), notation.endian);
     }
 }
 
@@ -107,7 +69,7 @@ struct VertexChanges {
     }
 };
 
-VertexChanges changes_of(const PlySource& source, const WriteOptions& options,
+VertexChanges changes_of(const PlySource& source, const WriteOptions& options, bool is_measured,
                          std::vector<std::string>& notes)
 {
     const Element& vertices = *find_element(source.header, "vertex");
@@ -115,7 +77,8 @@ VertexChanges changes_of(const PlySource& source, const WriteOptions& options,
     VertexChanges changes{
         color_places(vertices),
         plan_colors(options, std::move(own.colors), OcclusionPlace::beside, notes), own.largest};
-    changes.new_properties.assign(std::begin(kMeasured), std::end(kMeasured));
+    if (is_measured)
+        changes.new_properties.assign(std::begin(kMeasured), std::end(kMeasured));
     for (std::size_t c = 0; c < 3; ++c) {
         std::string line;
         if (changes.plan.replaces())
@@ -130,27 +93,43 @@ VertexChanges changes_of(const PlySource& source, const WriteOptions& options,
     return changes;
 }
 
+/// What becomes of a file's faces.
+struct FaceChanges {
+    std::string texture;         ///< the name of a picture; empty: there is none
+    const UvSet* uvs = nullptr;  ///< new coordinates; null: the file's stay
+    std::size_t count = 0;       ///< rows, with new coordinates
+    std::vector<std::string> new_properties = {};
+
+    [[nodiscard]] bool drops(std::string_view property) const
+    {
+        return uvs && (property == "texcoord" || property == "texnumber");
+    }
+};
+
 /// The header of the source with the new properties behind the others of the vertex, the mark
 /// behind the format and names of files as they are reached from `folder`; older properties and
 /// marks are left out.
 class HeaderWriter {
 public:
-    HeaderWriter(const PlySource& source, const VertexChanges& changes,
+    HeaderWriter(const PlySource& source, const VertexChanges& changes, const FaceChanges& faces,
                  std::filesystem::path folder)
-        : source_(source), changes_(changes), folder_(std::move(folder))
+        : source_(source), changes_(changes), faces_(faces), folder_(std::move(folder))
     {
+        insert(*find_element(source.header, "vertex"), changes.new_properties);
+        if (faces.uvs)
+            insert(*find_element(source.header, "face"), faces.new_properties);
+        std::ranges::sort(inserts_, {}, &Insert::at);
     }
 
     std::string write(std::string_view mark)
     {
-        const std::size_t insert_at = find_element(source_.header, "vertex")->lines_end;
-        bool inserted = false;
+        std::size_t inserted = 0;
         TextCursor cursor({}, old_, {});
         while (cursor.next_line()) {
-            if (!inserted && cursor.offset() >= insert_at) {
-                copy_to(insert_at);
-                inserted = true;
-                append_property_lines(text_, changes_.new_properties, source_.header.newline);
+            for (; inserted < inserts_.size() && cursor.offset() >= inserts_[inserted].at;
+                 ++inserted) {
+                copy_to(inserts_[inserted].at);
+                text_ += inserts_[inserted].lines;
             }
             write_line(cursor, mark);
         }
@@ -159,8 +138,20 @@ public:
     }
 
     std::vector<std::string> missing;  ///< names of files that are not there
+    std::size_t replaced = 0;          ///< other textures
 
 private:
+    struct Insert {
+        std::size_t at;
+        std::string lines;
+    };
+
+    void insert(const Element& element, const std::vector<std::string>& properties)
+    {
+        inserts_.push_back({element.lines_end, {}});
+        append_property_lines(inserts_.back().lines, properties, source_.header.newline);
+    }
+
     void copy_to(std::size_t end)
     {
         text_.append(old_.substr(copied_, end - copied_));
@@ -172,8 +163,11 @@ private:
         const std::size_t line_begin = cursor.offset();
         const std::string_view keyword = cursor.word();
         std::string_view last;
-        if (keyword == "element")
-            in_vertex_ = cursor.word() == "vertex";
+        if (keyword == "element") {
+            element_ = cursor.word();
+            if (element_ == "face" && faces_.uvs)
+                replace_count(cursor);
+        }
         const std::size_t words_begin = cursor.at_line_end() ? line_begin : cursor.offset();
         while (!cursor.at_line_end())
             last = cursor.word();
@@ -181,11 +175,16 @@ private:
         const std::size_t line_end = line_after(old_, words_end);
         const std::string_view words = old_.substr(words_begin, words_end - words_begin);
         const bool is_comment = keyword == "comment";
+        const bool is_texture = is_comment && words.starts_with(kTextureKeyword);
+        if (is_texture && !faces_.texture.empty())
+            replaced += words.substr(kTextureKeyword.size() + 1) == faces_.texture ? 0 : 1;
         if ((is_comment && !command_of_mark(words).empty()) ||
-            (keyword == "property" && in_vertex_ && changes_.drops(last))) {
+            (is_texture && !faces_.texture.empty()) ||
+            (keyword == "property" && ((element_ == "vertex" && changes_.drops(last)) ||
+                                       (element_ == "face" && faces_.drops(last))))) {
             copy_to(line_begin);
             copied_ = line_end;
-        } else if (is_comment && words.starts_with(kTextureKeyword)) {
+        } else if (is_texture) {
             copy_to(words_begin + kTextureKeyword.size());
             text_ += names_from(folder_, source_.folder, old_.substr(copied_, words_end - copied_),
                                 missing);
@@ -193,16 +192,28 @@ private:
         } else if (keyword == "format") {
             copy_to(line_end);
             append_mark_line(text_, mark, source_.header.newline);
+            append_texture_line(text_, faces_.texture, source_.header.newline);
         }
+    }
+
+    void replace_count(TextCursor& cursor)
+    {
+        static_cast<void>(cursor.at_line_end());  // goes to the next word
+        copy_to(cursor.offset());
+        append_integer(text_, static_cast<std::int64_t>(faces_.count));
+        cursor.word();
+        copied_ = cursor.offset();
     }
 
     const PlySource& source_;
     const VertexChanges& changes_;
+    const FaceChanges& faces_;
     std::filesystem::path folder_;
     std::string_view old_ = std::string_view(source_.contents).substr(0, source_.header.data_begin);
     std::string text_;
     std::size_t copied_ = 0;  ///< bytes of the old header
-    bool in_vertex_ = false;
+    std::string_view element_;
+    std::vector<Insert> inserts_;
 };
 
 /// The number itself, without the blanks that stand before it in an ascii file.
@@ -213,16 +224,14 @@ std::string_view word_of(std::string_view property, Notation notation)
     return property;
 }
 
-/// Appends the rows of the vertices with what changes.
+/// Appends the rows of the vertices with what changes. occlusion: empty for a map.
 template <class Data>
 void append_vertex_rows(std::string& text, const PlySource& source,
                         std::span<const Occlusion> occlusion, const VertexChanges& changes)
 {
     const Element& vertices = *find_element(source.header, "vertex");
     const std::vector<Property>& properties = vertices.properties;
-    const Notation notation{
-        source.header.format == Format::ascii,
-        source.header.format == Format::big_endian ? std::endian::big : std::endian::little};
+    const Notation notation = notation_of(source.header);
     const ColorPlan& plan = changes.plan;
     constexpr int kStays = -1, kGoes = -2;
     std::vector<int> fates(properties.size(), kStays);  // or a channel of the colour
@@ -265,7 +274,8 @@ void append_vertex_rows(std::string& text, const PlySource& source,
                 append_channel(text, type, numbers[fates[p]] * white_of(type, changes.largest),
                                notation);
         }
-        append_measured(text, occlusion[row], notation);
+        if (!occlusion.empty())
+            append_measured(text, occlusion[row], notation);
         if (!plan.has_own() && plan.writes())
             append_color_bytes(text, numbers, notation);
         for (std::size_t c = 0; c < 3 && plan.replaces(); ++c)
@@ -274,100 +284,157 @@ void append_vertex_rows(std::string& text, const PlySource& source,
     text.append(rows.substr(row_end));
 }
 
-WrittenFile spliced(const PlySource& source, std::span<const Occlusion> occlusion,
+/// The rows of the faces with places in a map; counts them.
+template <class Data>
+class FaceRows {
+public:
+    FaceRows(const PlySource& source, const Scene& scene, const UvSet& uvs, Type length_type)
+        : source_(source),
+          faces_(*find_element(source.header, "face")),
+          uvs_(uvs),
+          length_type_(length_type),
+          notation_(notation_of(source.header)),
+          places_(scene, uvs),
+          data_(no_name_, source.face_rows(), source.header)
+    {
+    }
+
+    std::string write(FaceChanges& changes)
+    {
+        const std::string_view rows = source_.face_rows();
+        std::size_t row_end = 0;
+        for (std::uint64_t row = 0; row < faces_.count; ++row) {
+            data_.begin_row(faces_, row);
+            text_.append(rows.substr(row_end, data_.offset() - row_end));
+            read_row(rows);
+            row_end = data_.offset();
+            if (corners_.size() < 3) {
+                append_row(changes, nullptr);
+                continue;
+            }
+            const std::span<const PlacedFace> placed = places_.next();
+            for (const PlacedFace& face : placed) {
+                if (notation_.ascii && &face != placed.data())
+                    text_ += source_.header.newline;
+                append_row(changes, &face);
+            }
+        }
+        return std::move(text_.append(rows.substr(row_end)));
+    }
+
+private:
+    /// Where the properties stand, and each of the vertices.
+    void read_row(std::string_view rows)
+    {
+        old_.resize(faces_.properties.size());
+        for (std::size_t p = 0; p < old_.size(); ++p) {
+            const Property& property = faces_.properties[p];
+            const std::size_t begin = data_.offset();
+            if (property.name != "vertex_indices" && property.name != "vertex_index") {
+                skip_property(data_, property);
+            } else {
+                corners_.resize(read_length(data_, property));
+                for (std::string_view& corner : corners_) {
+                    const std::size_t at = data_.offset();
+                    data_.skip(property.type, 1);
+                    corner = rows.substr(at, data_.offset() - at);
+                }
+            }
+            old_[p] = rows.substr(begin, data_.offset() - begin);
+        }
+    }
+
+    /// A face, or null: one that is none, as it stands.
+    void append_row(FaceChanges& changes, const PlacedFace* face)
+    {
+        ++changes.count;
+        for (std::size_t p = 0; p < old_.size(); ++p) {
+            const Property& property = faces_.properties[p];
+            const bool is_list =
+                property.name == "vertex_indices" || property.name == "vertex_index";
+            if (is_list && face && face->corners.size() < corners_.size()) {
+                append_number(text_, *property.count_type,
+                              static_cast<double>(face->corners.size()), notation_);
+                for (const std::uint32_t corner : face->corners)
+                    text_ += corners_[corner];
+            } else if (!changes.drops(property.name)) {
+                text_ += old_[p];
+            }
+        }
+        append_places(text_, uvs_, face ? face->places : std::span<const std::uint32_t>(),
+                      length_type_, notation_);
+    }
+
+    const PlySource& source_;
+    const Element& faces_;
+    const UvSet& uvs_;
+    Type length_type_;
+    Notation notation_;
+    FacePlaces places_;
+    const std::string no_name_;
+    Data data_;
+    std::vector<std::string_view> old_, corners_;
+    std::string text_;
+};
+
+/// The file of the source with what changes. occlusion: empty for a map.
+template <class Data>
+WrittenFile spliced(const PlySource& source, const Scene& scene,
+                    std::span<const Occlusion> occlusion, FaceChanges faces,
                     const WriteOptions& options, const std::filesystem::path& folder)
 {
+    struct Piece {
+        std::size_t begin, end;  ///< of the old data
+        std::string text;
+    };
     WrittenFile written;
-    const VertexChanges changes = changes_of(source, options, written.notes);
-    HeaderWriter header(source, changes, folder);
-    std::string& text = written.contents;
-    text = header.write(options.mark);
-    note_missing(header.missing, written.notes);
+    const VertexChanges changes = changes_of(source, options, !occlusion.empty(), written.notes);
+    std::vector<Piece> pieces{{source.vertices_begin, source.vertices_end, {}}};
     const bool ascii = source.header.format == Format::ascii;
-    text.reserve(source.contents.size() + text.size() + occlusion.size() * (ascii ? 60 : 19));
-    text.append(source.data().substr(0, source.vertices_begin));
-    if (ascii)
-        append_vertex_rows<AsciiData>(text, source, occlusion, changes);
-    else
-        append_vertex_rows<BinaryData>(text, source, occlusion, changes);
-    text.append(source.data().substr(source.vertices_end));
+    pieces[0].text.reserve(source.vertices_end - source.vertices_begin +
+                           occlusion.size() * (ascii ? 60 : 19));
+    append_vertex_rows<Data>(pieces[0].text, source, occlusion, changes);
+    if (faces.uvs) {
+        const std::size_t longest = 2 * longest_face(scene);
+        const Type length_type = length_type_for(longest);
+        faces.new_properties = {"list " + std::string(name_of(length_type)) + " float texcoord"};
+        pieces.push_back({source.faces_begin, source.faces_end,
+                          FaceRows<Data>(source, scene, *faces.uvs, length_type).write(faces)});
+        if (source.faces_begin < source.vertices_begin)
+            std::swap(pieces[0], pieces[1]);
+    }
+    HeaderWriter header(source, changes, faces, folder);
+    written.contents = header.write(options.mark);
+    note_missing(header.missing, written.notes);
+    if (header.replaced > 0)
+        written.notes.push_back("the map takes the place of " +
+                                count_text(header.replaced, "texture") + " that the file names");
+    std::size_t copied = 0;
+    for (const Piece& piece : pieces) {
+        written.contents.append(source.data().substr(copied, piece.begin - copied))
+            .append(piece.text);
+        copied = piece.end;
+    }
+    written.contents.append(source.data().substr(copied));
     return written;
 }
 
-/// Whether rounding to float would move some vertex by a visible share of the scene.
-bool needs_double(const std::vector<glm::dvec3>& positions)
+WrittenFile spliced(const PlySource& source, const Scene& scene,
+                    std::span<const Occlusion> occlusion, const FaceChanges& faces,
+                    const WriteOptions& options, const std::filesystem::path& folder)
 {
-    glm::dvec3 low = positions[0];
-    glm::dvec3 high = positions[0];
-    double largest_shift = 0.0;
-    for (const glm::dvec3& p : positions) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-        const glm::dvec3 shift = glm::abs(p - glm::dvec3(glm::vec3(p)));
-        largest_shift = std::max({largest_shift, shift.x, shift.y, shift.z});
-    }
-    return !(largest_shift <= kFloatSlack * glm::distance(low, high));
+    return source.header.format == Format::ascii
+               ? spliced<AsciiData>(source, scene, occlusion, faces, options, folder)
+               : spliced<BinaryData>(source, scene, occlusion, faces, options, folder);
 }
 
 }  // namespace
-
-std::string new_ply(const Scene& scene, const PlyValues& values, std::string_view mark,
-                    PlyCoordinates coordinates)
-{
-    const bool wide = coordinates == PlyCoordinates::exact || needs_double(scene.positions);
-    const bool many = scene.positions.size() > std::numeric_limits<std::int32_t>::max();
-    std::size_t most_corners = 0;
-    std::size_t corner_count = 0;
-    for_each_face(scene, [&](std::span<const std::uint32_t> corners) {
-        most_corners = std::max(most_corners, corners.size());
-        corner_count += corners.size();
-    });
-    const bool big_polygons = most_corners > 255;
-    std::string text = "ply\nformat binary_little_endian 1.0\n";
-    append_mark_line(text, mark, "\n");
-    text += "element vertex ";
-    append_integer(text, static_cast<std::int64_t>(scene.positions.size()));
-    text += '\n';
-    for (const char* axis : {"x\n", "y\n", "z\n"})
-        text.append(wide ? "property double " : "property float ").append(axis);
-    append_property_lines(text, values.properties, "\n");
-    text += "element face ";
-    append_integer(text, static_cast<std::int64_t>(face_count(scene)));
-    text.append("\nproperty list ")
-        .append(big_polygons ? "uint " : "uchar ")
-        .append(many ? "uint" : "int")
-        .append(" vertex_indices\nend_header\n");
-
-    // of the values 19 bytes: what a bake has at a vertex
-    text.reserve(text.size() + scene.positions.size() * (wide ? 43 : 31) +
-                 face_count(scene) * (big_polygons ? 4 : 1) + corner_count * 4);
-    for (std::size_t v = 0; v < scene.positions.size(); ++v) {
-        for (int axis = 0; axis < 3; ++axis) {
-            const double value = scene.positions[v][axis];
-            if (wide)
-                append_bytes(text, value);
-            else
-                append_bytes(text, static_cast<float>(value));
-        }
-        values.append(text, v);
-    }
-    for_each_face(scene, [&](std::span<const std::uint32_t> corners) {
-        const std::uint32_t size = static_cast<std::uint32_t>(corners.size());
-        if (big_polygons)
-            append_bytes(text, size);
-        else
-            text += static_cast<char>(size);
-        for (const std::uint32_t corner : corners)
-            append_bytes(text, corner);
-    });
-    return text;
-}
 
 WrittenFile ply_contents(const std::filesystem::path& path, const Scene& scene,
                          std::span<const Occlusion> occlusion, const WriteOptions& options)
 {
     if (const auto* source = dynamic_cast<const PlySource*>(scene.asset.get()))
-        return spliced(*source, occlusion, options, path.parent_path());
+        return spliced(*source, scene, occlusion, {}, options, path.parent_path());
     WrittenFile written;
     const ColorPlan plan =
         plan_colors(options, own_colors_of(scene), OcclusionPlace::beside, written.notes);
@@ -398,6 +465,55 @@ WrittenFile ply_contents(const std::filesystem::path& path, const Scene& scene,
     };
     written.contents = new_ply(scene, values, options.mark);
     return written;
+}
+
+WrittenFile ply_contents_with_map(const std::filesystem::path& path, const Scene& scene,
+                                  const OcclusionMap& map, const WriteOptions& options)
+{
+    WriteOptions keeping = options;
+    keeping.colors = VertexColors::keep;
+    const std::string picture = map_file_of(path)->filename().string();
+    const auto* source = dynamic_cast<const PlySource*>(scene.asset.get());
+    const auto has_strips = [&] {
+        const Element* strips = find_element(source->header, "tristrips");
+        return strips && strips->count > 0;
+    };
+    if (source && !(map.uvs && has_strips())) {
+        WrittenFile written = spliced(*source, scene, {}, {picture, map.uvs ? &*map.uvs : nullptr},
+                                      keeping, path.parent_path());
+        if (map.uvs && !scene.uvs.empty())
+            written.notes.push_back("new texture coordinates take the place of the file's");
+        return written;
+    }
+    WrittenFile written;
+    if (source)
+        written.notes.push_back("strips become faces, and only coordinates and colours are kept");
+    const ColorPlan plan =
+        plan_colors(keeping, own_colors_of(scene), OcclusionPlace::beside, written.notes);
+    PlyValues values;
+    for (std::size_t c = 0; c < 3 && plan.has_own(); ++c)
+        values.properties.push_back("uchar " + std::string(kColor[c]));
+    values.append = [&](std::string& row, std::size_t v) {
+        if (plan.has_own())
+            append_color_bytes(row, numbers_of(plan.own[v]), {});
+    };
+    const PlyTexture texture{picture, map.uvs ? *map.uvs : scene.uvs[map.uv_set]};
+    written.contents = new_ply(scene, values, options.mark, PlyCoordinates::near_enough, &texture);
+    return written;
+}
+
+bool names_our_texture(const std::filesystem::path& path, std::string_view picture)
+{
+    if (command_of_mark(read_mark(path)) != "bake")
+        return false;
+    std::string wanted;
+    append_texture_line(wanted, picture, "");
+    std::ifstream file(path, std::ios::binary);
+    for (std::string line; std::getline(file, line) && !line.starts_with("end_header");) {
+        if (line == wanted || line == wanted + '\r')
+            return true;
+    }
+    return false;
 }
 
 }  // namespace surfelao

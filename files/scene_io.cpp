@@ -6,6 +6,7 @@
 #include "files/gltf_links.h"
 #include "files/gltf_uri.h"
 #include "files/obj_io.h"
+#include "files/obj_materials.h"
 #include "files/off_io.h"
 #include "files/ply_io.h"
 #include "files/stl_io.h"
@@ -61,6 +62,20 @@ WrittenFile contents_for(const fs::path& path, const Scene& scene,
             return ply_contents(path, scene, occlusion, options);
         default:
             return gltf_contents(path, scene, occlusion, options);
+    }
+}
+
+/// Whether the result with a map that would be written to `output` is there already, with its map.
+bool is_of_result(const fs::path& output)
+{
+    const std::string picture = map_file_of(output)->filename().string();
+    switch (type_of(output)) {
+        case FileType::obj:
+            return is_our_materials(*map_materials_of(output), picture);
+        case FileType::ply:
+            return names_our_texture(output, picture);
+        default:
+            return names_our_picture(output, encode_uri(picture));
     }
 }
 
@@ -130,28 +145,39 @@ std::vector<std::string> write_scene(const fs::path& path, const Scene& scene,
 
 std::optional<fs::path> map_file_of(const fs::path& output)
 {
-    if (type_of(output) != FileType::gltf)
+    const FileType type = type_of(output);
+    if (type != FileType::gltf && type != FileType::obj && type != FileType::ply)
         return std::nullopt;
     return output.parent_path() / (output.stem().string() + ".ao.png");
 }
 
+std::optional<fs::path> map_materials_of(const fs::path& output)
+{
+    if (type_of(output) != FileType::obj)
+        return std::nullopt;
+    return output.parent_path() / (output.stem().string() + ".ao.mtl");
+}
+
 void check_output_with_map(const fs::path& input, const fs::path& output)
 {
-    if (!is_gltf(type_of(output)) || !is_gltf(type_of(input)))
+    const FileType type = type_of(output);
+    const bool is_known = is_gltf(type) || type == FileType::obj || type == FileType::ply;
+    if (!is_known || (is_gltf(type) && !is_gltf(type_of(input))))
         throw InputError(output.string() + ": " +
-                         (is_gltf(type_of(output))
-                              ? "only a scene that was read from glTF can be written as glTF"
-                              : "a map goes into .glb and .gltf only") +
+                         (is_known ? "only a scene that was read from glTF can be written as glTF"
+                                   : "a map goes into .glb, .gltf, .obj and .ply only") +
                          ", use .png, .tif or .exr for the map alone");
     check_output(input, output);
-    const std::optional<fs::path> file = map_file_of(output);
     std::error_code error;
-    if (!file || !fs::exists(fs::symlink_status(*file, error)))
-        return;
-    if (!names_our_picture(output, encode_uri(file->filename().string())))
-        throw InputError(file->string() + ": exists and is no map of " +
-                         output.filename().string() + ", which would replace it; use .glb");
-    check_writable(*file);
+    for (const std::optional<fs::path>& file : {map_file_of(output), map_materials_of(output)}) {
+        if (!file || !fs::exists(fs::symlink_status(*file, error)))
+            continue;
+        if (!is_of_result(output))
+            throw InputError(file->string() + ": exists and is of no result at " +
+                             output.filename().string() + ", which would replace it" +
+                             (type == FileType::gltf ? "; use .glb" : ""));
+        check_writable(*file);
+    }
 }
 
 std::vector<std::string> write_scene_with_map(const fs::path& path, const Scene& scene,
@@ -160,17 +186,36 @@ std::vector<std::string> write_scene_with_map(const fs::path& path, const Scene&
     check_output_with_map(path, path);
     if (map.uvs)
         check_places(scene, *map.uvs);
-    WrittenFile written = gltf_contents_with_map(path, scene, map, options);
-    const std::optional<fs::path> file = map_file_of(path);
+    else if (!is_gltf(type_of(path)) &&
+             (map.uv_set >= scene.uvs.size() || scene.uvs[map.uv_set].empty()))
+        throw InputError(path.string() + ": the mesh has no texture coordinates " +
+                         std::to_string(map.uv_set) + ", which a map is to lie over");
+    std::vector<std::pair<fs::path, std::string_view>> files;
+    if (const std::optional<fs::path> file = map_file_of(path))
+        files.emplace_back(*file, map.png);
+    WrittenFile written;
+    ObjWithMap obj;
+    if (const std::optional<fs::path> file = map_materials_of(path)) {
+        obj = obj_contents_with_map(path, scene, map, options);
+        files.emplace_back(*file, obj.materials);
+        written = {std::move(obj.contents), std::move(obj.notes)};
+    } else if (type_of(path) == FileType::ply) {
+        written = ply_contents_with_map(path, scene, map, options);
+    } else {
+        written = gltf_contents_with_map(path, scene, map, options);
+    }
+    files.emplace_back(path, written.contents);
+    std::vector<fs::path> added;
     std::error_code error;
-    const bool is_new = file && !fs::exists(*file, error);
-    if (file)
-        write_atomically(*file, map.png);
     try {
-        write_atomically(path, written.contents);
+        for (const auto& [file, contents] : files) {
+            if (!fs::exists(file, error))
+                added.push_back(file);
+            write_atomically(file, contents);
+        }
     } catch (...) {
-        if (is_new)
-            fs::remove(*file, error);
+        for (const fs::path& file : added)
+            fs::remove(file, error);
         throw;
     }
     return std::move(written.notes);

@@ -60,18 +60,23 @@ struct OcclusionMap {
     std::optional<UvSet> uvs = {};
 };
 
-/// Where the map of a result at `output` stands: STEM.ao.png beside a .gltf; nothing for a .glb,
-/// which holds it.
+/// Where the map of a result at `output` stands: STEM.ao.png beside a .gltf, .obj or .ply; nothing
+/// for a .glb, which holds it.
 [[nodiscard]] std::optional<std::filesystem::path> map_file_of(const std::filesystem::path& output);
 
-/// check_output() for a result with a map: glTF from glTF only. Refused as well is a .gltf whose
-/// map_file_of() is there already, unless the .gltf that is there names it as the map of a result:
-/// the file is its user's.
+/// Where the materials of an .obj with a map stand: STEM.ao.mtl beside it; nothing for others.
+[[nodiscard]] std::optional<std::filesystem::path> map_materials_of(
+    const std::filesystem::path& output);
+
+/// check_output() for a result with a map: glTF from glTF, .obj and .ply from all. Refused as well
+/// is an output whose map_file_of() or map_materials_of() is there already, unless it is the one of
+/// an earlier result that is there: the file is its user's.
 void check_output_with_map(const std::filesystem::path& input, const std::filesystem::path& output);
 
-/// write_scene() with a map in place of values at vertices (gltf_io.h); the file of the map is
-/// written as well. Throws InputError as check_output_with_map() does and where nothing in the file
-/// has the coordinates; SettingsError where map.uvs does not fit the scene.
+/// write_scene() with a map in place of values at vertices (gltf_io.h, obj_io.h, ply_io.h); the
+/// files of the map are written as well, before the mesh: new ones go again where that fails.
+/// Throws InputError as check_output_with_map() does and where nothing in the file has the
+/// coordinates; SettingsError where map.uvs does not fit the scene.
 std::vector<std::string> write_scene_with_map(const std::filesystem::path& path, const Scene& scene,
                                               const OcclusionMap& map,
                                               const WriteOptions& options = {});

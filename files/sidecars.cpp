@@ -78,12 +78,6 @@ void for_each_line(const fs::path& path, const Visit& visit)
     }
 }
 
-bool names_texture(std::string_view keyword)
-{
-    constexpr std::string_view kKeywords[] = {"bump", "disp", "decal", "refl", "norm"};
-    return keyword.starts_with("map_") || std::ranges::find(kKeywords, keyword) != kKeywords + 5;
-}
-
 void add_of_obj(const fs::path& mesh, std::vector<fs::path>& files)
 {
     const fs::path folder = mesh.parent_path();
@@ -124,6 +118,12 @@ void add_of_gltf(const fs::path& mesh, std::vector<fs::path>& files)
 }
 
 }  // namespace
+
+bool names_texture(std::string_view keyword)
+{
+    constexpr std::string_view kKeywords[] = {"bump", "disp", "decal", "refl", "norm"};
+    return keyword.starts_with("map_") || std::ranges::find(kKeywords, keyword) != kKeywords + 5;
+}
 
 std::vector<NamedFile> files_named(const fs::path& folder, std::string_view names)
 {

@@ -18,6 +18,9 @@ namespace surfelao {
 /// A comment of a PLY's header names textures behind this word.
 inline constexpr std::string_view kTextureKeyword = "TextureFile";
 
+/// Whether a line of an OBJ's material file that begins with this word names a texture.
+[[nodiscard]] bool names_texture(std::string_view keyword);
+
 struct NamedFile {
     std::string_view name;       ///< into the names
     std::filesystem::path file;  ///< empty where there is none

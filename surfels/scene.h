@@ -81,8 +81,13 @@ struct Scene {
     std::vector<glm::dvec3> positions;  ///< world space, in the file's own order and number
     std::vector<glm::uvec3> triangles;  ///< into positions; polygons are already cut up
     std::vector<Part> parts;
-    CornerNormals normals;       ///< empty where the file has none
-    std::vector<UvSet> uvs;      ///< by number: glTF's TEXCOORD_0, _1 and so on
+    CornerNormals normals;   ///< empty where the file has none
+    std::vector<UvSet> uvs;  ///< by number: glTF's TEXCOORD_0, _1 and so on
+    /// One per vertex, as the file gives them (glTF's TANGENT): the direction of the world in which
+    /// u grows, of unit length, and in w the sign of the third axis, w * cross(normal, tangent).
+    /// Zero where a part has none; empty where all parts do. They belong to the texture coordinates
+    /// of the material's normalTexture, which are mostly set 0.
+    std::vector<glm::vec4> tangents;
     bool free_vertices = false;  ///< the file has none of its own (STL): they may be split
     /// What the file holds and nobody honours, and what in it was let pass: a sentence each.
     std::vector<std::string> notes;
@@ -95,8 +100,8 @@ struct Scene {
                                std::span<const glm::uvec3> triangles);
 
 /// All of them as one, one behind the other, with their normals; parts without a name get their
-/// scene's. Texture coordinates and assets are left out. Throws SettingsError for more elements
-/// than kMostElements.
+/// scene's. Texture coordinates, tangents and assets are left out. Throws SettingsError for more
+/// elements than kMostElements.
 [[nodiscard]] Scene join(std::span<const Scene> scenes);
 
 /// Throws InputError as make_scene does, but takes a scene without triangles.

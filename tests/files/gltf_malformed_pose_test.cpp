@@ -67,12 +67,14 @@ const Malformed kMalformedPoses[] = {
     // normals
     {"NormalOutOfRange", "mesh 0 primitive 0: NORMAL 8 is out of range, there are 8 accessors",
      [](GltfMaker& m) { primitive(m)["attributes"]["NORMAL"] = 8; }},
+    {"TangentIsVec3", "mesh 0 primitive 0 TANGENT accessor 1 is not of type VEC4",
+     [](GltfMaker& m) { primitive(m)["attributes"]["TANGENT"] = 1; }},
     {"NormalIsVec4", "mesh 0 primitive 0 NORMAL accessor 4 is not of type VEC3",
      [](GltfMaker& m) { primitive(m)["attributes"]["NORMAL"] = 4; }},
     {"NormalsTooFew", "mesh 0 primitive 0 NORMAL accessor 7 has 2 elements for 4 vertices",
      [](GltfMaker& m) { primitive(m)["attributes"]["NORMAL"] = 7; }},
     {"NormalUnsigned",
-     "mesh 0 primitive 0 NORMAL accessor 8 is of an unsigned type, which no normal may be",
+     "mesh 0 primitive 0 NORMAL accessor 8 is of an unsigned type, which no direction may be",
      [](GltfMaker& m) {
          primitive(m)["attributes"]["NORMAL"] =
              m.add_vectors<std::uint8_t>({1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1});

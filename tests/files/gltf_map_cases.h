@@ -130,7 +130,7 @@ inline std::string baked(const char* path, const std::string& contents, Way way)
 {
     const Scene scene = read_gltf(path, contents);
     const WriteOptions options = {
-        .mark = make_mark("bake", way == Way::vertices ? "vertices" : "texels")};
+        .mark = make_mark("bake", way == Way::vertices ? "vertices" : "at=texels")};
     if (way == Way::vertices)
         return gltf_contents(path, scene, pattern(scene), options).contents;
     OcclusionMap map = map_over(0);

@@ -130,6 +130,66 @@ TEST(GltfNormals, OtherNormalsAtTheSamePositionsMakeAnotherPart)
     EXPECT_EQ(scene.normals.values[4], glm::vec3(0, 0, 1));
 }
 
+// ---- tangents
+
+/// (1, 0, 1) and a sign of -1, -1, 1, 0 at the vertices.
+GltfMaker square_with_tangents()
+{
+    GltfMaker maker = square_with_normals();
+    primitive(maker)["attributes"]["TANGENT"] = maker.add_accessor(
+        maker.add_view(bytes_of<float>({1, 0, 1, -1, 1, 0, 1, -1, 1, 0, 1, 1, 0, 0, 0, 1})), 5126,
+        "VEC4", 4);
+    return maker;
+}
+
+using Tangents = std::vector<glm::vec4>;
+const float kHalf = std::sqrt(0.5f);
+
+TEST(GltfTangents, MoveWithTheSurface)
+{
+    GltfMaker maker = square_with_tangents();
+    EXPECT_EQ(
+        read_made(maker).tangents,
+        (Tangents{
+            {kHalf, 0, kHalf, -1}, {kHalf, 0, kHalf, -1}, {kHalf, 0, kHalf, 1}, {0, 0, 0, 0}}));
+    EXPECT_TRUE(read_made(square_with_normals()).tangents.empty());
+    node(maker)["scale"] = {3, 1, -4};  // along the matrix, and a mirror
+    EXPECT_EQ(read_made(maker).tangents[0], glm::vec4(0.6f, 0.0f, -0.8f, 1.0f));
+}
+
+TEST(GltfTangents, PartsWithoutHaveZeros)
+{
+    GltfMaker maker = square_with_tangents();
+    json without = primitive(maker);
+    without["attributes"].erase("TANGENT");
+    maker.document["meshes"][0]["primitives"].push_back(without);
+    const Scene scene = read_made(maker);
+    EXPECT_EQ(scene.parts.size(), 2u);
+    ASSERT_EQ(scene.tangents.size(), 8u);
+    EXPECT_EQ(scene.tangents[2], glm::vec4(kHalf, 0, kHalf, 1));
+    EXPECT_EQ(scene.tangents[4], glm::vec4(0.0f));
+}
+
+TEST(GltfTangents, AreMorphedAndSkinned)
+{
+    GltfMaker maker = square_with_tangents();
+    primitive(maker)["targets"] = {
+        {{"TANGENT", maker.add_vectors<float>({-2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0})}}};
+    maker.document["meshes"][0]["weights"] = {0.5};
+    EXPECT_EQ(read_made(maker).tangents[0], glm::vec4(0, 0, 1, -1));
+
+    json& attributes = primitive(maker)["attributes"];
+    attributes["JOINTS_0"] =
+        maker.add_accessor(maker.add_view(std::string(16, '\0')), 5121, "VEC4", 4);
+    attributes["WEIGHTS_0"] = maker.add_accessor(
+        maker.add_view(bytes_of<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0})), 5126,
+        "VEC4", 4);
+    maker.document["nodes"] = {{{"mesh", 0}, {"skin", 0}}, {{"scale", {-3, 4, 4}}}};
+    maker.document["scenes"][0]["nodes"] = {0, 1};
+    maker.document["skins"] = {{{"joints", {1}}}};
+    EXPECT_EQ(read_made(maker).tangents[1], glm::vec4(-0.6f, 0, 0.8f, 1));
+}
+
 // ---- skins
 
 /// The square on two joints, nodes 1 and 2, under a node that must not count: vertices 0 and 3

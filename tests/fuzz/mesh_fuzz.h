@@ -53,6 +53,22 @@ void check_baked_twice(const Scene& scene, std::span<const Occlusion> occlusion,
 
 enum class From { obj, ply, other };
 
+/// Over places for each corner that come apart in some faces.
+inline void check_maps(const Scene& scene)
+{
+    OcclusionMap map{"", 0, UvSet{}};
+    for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+        map.uvs->corners.push_back(t % 5 == 4 ? glm::uvec3(UvSet::kNone)
+                                              : glm::uvec3(0, 1, t % 3 == 2 ? 2 : 1));
+    }
+    map.uvs->values = {{0.0, 0.0}, {0.25, 0.5}, {0.5, 1.0}};
+    const Scene obj = read_obj("obj", obj_contents_with_map("x.obj", scene, map).contents);
+    check_same(obj, scene, false);
+    const Scene ply = read_ply("ply", ply_contents_with_map("x.ply", scene, map).contents);
+    SURFELAO_CHECK(ply.triangles.size() == scene.triangles.size());
+    SURFELAO_CHECK(obj.uvs.size() == ply.uvs.size());
+}
+
 /// What came from OBJ or PLY keeps its normals there.
 inline void check_round_trips(const Scene& scene, From from)
 {
@@ -71,6 +87,7 @@ inline void check_round_trips(const Scene& scene, From from)
         check_same_normals(again.normals, scene.normals);
     // what we wrote is replaced, not added to
     SURFELAO_CHECK(ply_contents("x.ply", again, occlusion).contents.size() == ply.size());
+    check_maps(scene);
     check_baked_twice(scene, occlusion, read_off, off_contents);
     check_baked_twice(scene, occlusion, read_obj,
                       [](auto&&... rest) { return obj_contents("x.obj", rest...); });

@@ -1,0 +1,114 @@
+#include "files/face_places.h"
+#include "files/mesh_source.h"
+#include "files/ply_io.h"
+#include "files/ply_text.h"
+#include "surfels/number_text.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+namespace surfelao {
+namespace {
+
+using namespace ply;
+
+/// The rows of the faces, and how many there are.
+struct NewFaces {
+    std::string bytes;
+    std::size_t count = 0;
+};
+
+NewFaces new_faces(const Scene& scene, Type length_type, const PlyTexture* texture,
+                   Type uv_length_type)
+{
+    NewFaces faces;
+    std::optional<FacePlaces> places;
+    if (texture)
+        places.emplace(scene, texture->uvs);
+    for_each_face(scene, [&](std::span<const std::uint32_t> vertices) {
+        const auto append_vertices = [&](std::span<const std::uint32_t> corners) {
+            ++faces.count;
+            append_number(faces.bytes, length_type, static_cast<double>(corners.size()), {});
+            for (const std::uint32_t corner : corners)
+                append_bytes(faces.bytes, corner);
+        };
+        if (!places)
+            return append_vertices(vertices);
+        std::vector<std::uint32_t> of_face;
+        for (const PlacedFace& face : places->next()) {
+            of_face.clear();
+            for (const std::uint32_t corner : face.corners)
+                of_face.push_back(vertices[corner]);
+            append_vertices(of_face);
+            append_places(faces.bytes, texture->uvs, face.places, uv_length_type, {});
+        }
+    });
+    return faces;
+}
+
+/// Whether rounding to float would move some vertex by a visible share of the scene.
+bool needs_double(const std::vector<glm::dvec3>& positions)
+{
+    glm::dvec3 low = positions[0];
+    glm::dvec3 high = positions[0];
+    double largest_shift = 0.0;
+    for (const glm::dvec3& p : positions) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+        const glm::dvec3 shift = glm::abs(p - glm::dvec3(glm::vec3(p)));
+        largest_shift = std::max({largest_shift, shift.x, shift.y, shift.z});
+    }
+    return !(largest_shift <= kFloatSlack * glm::distance(low, high));
+}
+
+}  // namespace
+
+std::string new_ply(const Scene& scene, const PlyValues& values, std::string_view mark,
+                    PlyCoordinates coordinates, const PlyTexture* texture)
+{
+    const bool wide = coordinates == PlyCoordinates::exact || needs_double(scene.positions);
+    const bool many = scene.positions.size() > std::numeric_limits<std::int32_t>::max();
+    const std::size_t longest = longest_face(scene);
+    const Type length_type = length_type_for(longest),
+               uv_length_type = length_type_for(2 * longest);
+    const NewFaces faces = new_faces(scene, length_type, texture, uv_length_type);
+    std::string text = "ply\nformat binary_little_endian 1.0\n";
+    append_mark_line(text, mark, "\n");
+    if (texture)
+        append_texture_line(text, texture->name, "\n");
+    text += "element vertex ";
+    append_integer(text, static_cast<std::int64_t>(scene.positions.size()));
+    text += '\n';
+    for (const char* axis : {"x\n", "y\n", "z\n"})
+        text.append(wide ? "property double " : "property float ").append(axis);
+    append_property_lines(text, values.properties, "\n");
+    text += "element face ";
+    append_integer(text, static_cast<std::int64_t>(faces.count));
+    text.append("\nproperty list ")
+        .append(name_of(length_type))
+        .append(many ? " uint" : " int")
+        .append(" vertex_indices\n");
+    if (texture)
+        text.append("property list ").append(name_of(uv_length_type)).append(" float texcoord\n");
+    text += "end_header\n";
+
+    // of the values 19 bytes: what a bake has at a vertex
+    text.reserve(text.size() + scene.positions.size() * (wide ? 43 : 31) + faces.bytes.size());
+    for (std::size_t v = 0; v < scene.positions.size(); ++v) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const double value = scene.positions[v][axis];
+            if (wide)
+                append_bytes(text, value);
+            else
+                append_bytes(text, static_cast<float>(value));
+        }
+        values.append(text, v);
+    }
+    return text += faces.bytes;
+}
+
+}  // namespace surfelao
