@@ -1,7 +1,7 @@
 """map_views.py: views of docs/figures/maps.json and map_frontier.json: maps against Blender's and
 against Embree's (docs/maps.md)."""
 
-from figure_views import fixed, ratio_of, ratio_text, row_of, short, table, thousands, three_errors, view
+from figure_views import cell, fixed, ratio_of, ratio_text, row_of, short, table, thousands, three_errors, view
 
 
 def four(error):
@@ -58,7 +58,7 @@ def maps_large(figures):
     """Large maps: time and memory"""
     return table(["model", "texels", "covered", "seconds", "MiB"],
                  [[row["name"], f"{row['size']} x {row['size']}", fixed(100 * row["covered"], 0) + " %",
-                   fixed(row["seconds"], 1), fixed(row["mib"], 0)] for row in figures["maps"]["large"]])
+                   cell(row, "seconds", 1), fixed(row["mib"], 0)] for row in figures["maps"]["large"]])
 
 
 @view

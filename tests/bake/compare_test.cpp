@@ -241,7 +241,7 @@ TEST_F(Compare, OfMapsJudgesWhatABakeWouldShow)
         EXPECT_GT(row.raster_s, 0.0);
         EXPECT_GT(row.fill_s, 0.0);
         EXPECT_EQ(row.fit_s, 0.0);
-        EXPECT_EQ(job_seconds(row, true), row.build_s + row.solve_s + row.fill_s);
+        EXPECT_DOUBLE_EQ(job_seconds(row, true), row.build_s + row.solve_s + row.fill_s);
     }
     EXPECT_TRUE(c.rows[0].ratio);
 }
