@@ -160,7 +160,8 @@ Extent extent_of(const Shape& shape, const Placement& placement)
 /// Cuts charts of a single page, the longest across its middle, until the page is full enough, and
 /// keeps the fullest of all that were seen.
 void cut_to_fill(const Mesh& mesh, const Facets& facets, const PackingSettings& settings,
-                 std::vector<std::vector<Chart>>& pages, Packing& packing, ProgressMeter& meter)
+                 std::vector<std::vector<Chart>>& pages, Packing& packing, ProgressMeter& meter,
+                 std::uint64_t& units)
 {
     const double wanted = kWantedUse * settings.size * settings.size;
     std::vector<std::vector<Chart>> tried_pages = pages;
@@ -188,7 +189,8 @@ void cut_to_fill(const Mesh& mesh, const Facets& facets, const PackingSettings& 
         std::vector<Chart> pieces = cut(mesh, facets, charts[longest], is_beyond);
         charts.erase(charts.begin() + static_cast<std::ptrdiff_t>(longest));
         std::ranges::move(pieces, std::back_inserter(charts));
-        tried = pack(shapes_of(mesh, facets, tried_pages), settings, meter);
+        tried = pack(shapes_of(mesh, facets, tried_pages), settings, meter, units / 2);
+        units -= units / 2;
         ++vain;
         if (static_cast<double>(tried.covered) >
             static_cast<double>(packing.covered) * std::pow(kCutGain, vain)) {
@@ -216,7 +218,8 @@ Atlas make_atlas(const Mesh& mesh, const AtlasSettings& settings, const Progress
     const Geometry& geometry = mesh.geometry;
     const std::uint32_t page_count = settings.blended ? 3 : 1;
     const std::size_t count = geometry.triangles.size();
-    ProgressMeter meter(progress, count * page_count + kPackingUnits);
+    std::uint64_t units = count * page_count;  // packing counts as much as making charts
+    ProgressMeter meter(progress, 2 * units);
     const Facets facets = make_facets(mesh);
     const double area = std::accumulate(facets.areas.begin(), facets.areas.end(), 0.0);
 
@@ -229,9 +232,11 @@ Atlas make_atlas(const Mesh& mesh, const AtlasSettings& settings, const Progress
     PackingSettings packing_settings{settings.size, {}, settings.padding, page_count};
     if (settings.texels_per_unit)
         packing_settings.scale = *settings.texels_per_unit * diagonal;
-    Packing packing = pack(shapes_of(mesh, facets, pages), packing_settings, meter);
+    Packing packing = pack(shapes_of(mesh, facets, pages), packing_settings, meter, units / 2);
+    units -= units / 2;
     if (page_count == 1 && !settings.texels_per_unit)
-        cut_to_fill(mesh, facets, packing_settings, pages, packing, meter);
+        cut_to_fill(mesh, facets, packing_settings, pages, packing, meter, units);
+    meter.add(2 * count * page_count);  // all that may be left
 
     Atlas atlas;
     atlas.layout.size = {packing.size, packing.size};

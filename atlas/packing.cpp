@@ -421,7 +421,10 @@ static_assert(kTrials == kOrders);
 
 class Search {
 public:
-    Search(const Packer& packer, ProgressMeter& progress) : packer_(packer), progress_(progress) {}
+    Search(const Packer& packer, ProgressMeter& progress, std::uint64_t units)
+        : packer_(packer), progress_(progress), units_left_(units)
+    {
+    }
 
     std::optional<Packing> first_that_fits(const Trials& trials, std::uint32_t size)
     {
@@ -442,20 +445,20 @@ public:
         return found;
     }
 
-    void finish() { progress_.add(kPackingUnits - told_); }
+    void finish() { progress_.add(units_left_); }
 
 private:
     /// How long a search takes is not known beforehand.
     void tell()
     {
-        const std::uint64_t units = (kPackingUnits - told_) / 8;
-        told_ += units;
+        const std::uint64_t units = units_left_ / 8;
+        units_left_ -= units;
         progress_.add(units);
     }
 
     const Packer& packer_;
     ProgressMeter& progress_;
-    std::uint64_t told_ = 0;
+    std::uint64_t units_left_;
 };
 
 /// The share of a page that shapes may cover at most, and the first step down from there.
@@ -540,10 +543,12 @@ std::optional<Packing> smallest_size(const Packer& packer, double scale, std::ui
 }  // namespace
 
 Packing pack(std::span<const Shape> shapes, const PackingSettings& settings,
-             ProgressMeter& progress)
+             ProgressMeter& progress, std::uint64_t units)
 {
+    if (shapes.empty())
+        return {settings.size, settings.scale.value_or(1.0), {}, 0};
     const Packer packer(shapes, settings);
-    Search search(packer, progress);
+    Search search(packer, progress, units);
     std::optional<Packing> packing =
         settings.scale ? smallest_size(packer, *settings.scale, settings.padding, search)
                        : largest_scale(packer, settings, search);

@@ -54,13 +54,11 @@ struct Packing {
 /// 2 padding + 1 apart, and padding + 1 from the rim. Large pages are packed in blocks of a
 /// thousandth of their side.
 ///
-/// Throws SettingsError where the shapes do not fit: so many that not even their padding does, or
-/// at the given scale not on kMostTexels. All cores, the same bytes on any number of them;
-/// progress gets kPackingUnits in all.
+/// Without shapes pages have the size of the settings. Throws SettingsError where the shapes do not
+/// fit: so many that not even their padding does, or at the given scale not on kMostTexels. All
+/// cores, the same bytes on any number of them; progress gets `units` in all.
 [[nodiscard]] Packing pack(std::span<const Shape> shapes, const PackingSettings& settings,
-                           ProgressMeter& progress);
-
-inline constexpr std::uint64_t kPackingUnits = 1024;
+                           ProgressMeter& progress, std::uint64_t units);
 
 /// Shapes of at most so many texels in both directions have a padding of 1, whatever is asked:
 /// coarser maps do not show them, and thousands of them would fill the page with padding.

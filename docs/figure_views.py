@@ -391,6 +391,19 @@ def scaling_exponent(figures, engine):
 
 
 @view
+def charts(figures):
+    """Charts beside those of xatlas: number, seams, stretch, use"""
+    def cells(found):
+        return ([found["charts"], fixed(found["seam"], 1),
+                 f"{fixed(found['stretch'], 2)}, {fixed(found['largest'], 1)}",
+                 fixed(found["use"], 2)] if found else ["", "", "", ""])
+    rows = [[row["name"], thousands(row["triangles"]), *cells(row["ours"]), *cells(row["xatlas"])]
+            for row in figures["atlas"]["rows"]]
+    return table(["mesh", "triangles", "charts", "seams", "stretch: mean, largest", "use",
+                  "xatlas: charts", "seams", "stretch", "use"], rows)
+
+
+@view
 def device(figures, part="gpu"):
     """device gpu|drawing: the GPU that made the part's figures"""
     return figures[part]["device"]
@@ -618,4 +631,5 @@ def stated_cost(figures, least="0", most="1e9"):
 
 
 import mask_views  # noqa: E402, F401 - more views, in files of their own
+import map_views  # noqa: E402, F401
 import viewer_views  # noqa: E402, F401

@@ -29,21 +29,24 @@ glm::dvec3 position_at(const Mesh& mesh, const SurfacePoint& point)
            double{point.at.y} * mesh.scene.positions[corners.z];
 }
 
-/// Maps that hold the known value at every texel of a layout.
+/// Maps that hold the known value at every texel of a layout, each page with an error of its own:
+/// where one page ends, the others must have all the weight already.
 std::vector<Map> known_maps(const Mesh& mesh, const MapLayout& layout)
 {
     std::vector<Map> maps;
+    double error = 0.0;
     for (const UvSet& page : layout.pages) {
         Map map(layout.size.width, layout.size.height, 1);
         std::vector<std::uint8_t> known(map.texels(), 0);
         for (const Texel& texel :
              MapRaster(mesh.geometry, page, layout.size).texels(0, layout.size.height)) {
             map.values[map.index(texel.x, texel.y)] =
-                static_cast<float>(known_value(position_at(mesh, texel.point)));
+                static_cast<float>(known_value(position_at(mesh, texel.point)) + error);
             known[map.index(texel.x, texel.y)] = 1;
         }
         fill_around(map, known, 4);
         maps.push_back(std::move(map));
+        error += 0.05;
     }
     return maps;
 }
