@@ -40,6 +40,7 @@ TruthSettings truth_settings_of(const CompareSettings& settings, const Definitio
     truth.points = settings.sample > 0 ? settings.sample : kSurfacePoints;
     truth.rays = settings.reference_rays;
     truth.use_cache = settings.use_cache;
+    truth.leave_out_hidden = settings.texels.has_value();
     truth.measure = triangle_areas(mesh.geometry);
     for (std::uint32_t t = 0; t < truth.measure.size(); ++t)
         truth.measure[t] *= target.shows(t) ? 1.0 : 0.0;
@@ -53,6 +54,7 @@ void tell(const Question& question, std::uint32_t reference_rays, Comparison& co
     comparison.reference_from_cache = question.truth.from_cache;
     comparison.points = question.truth.points.size();
     comparison.ill_defined = question.truth.ill_defined;
+    comparison.hidden = question.truth.hidden;
     comparison.floor = question.floor.error;
     comparison.floor_rays = question.floor.rays;
     comparison.floor_noise = question.floor.noise;

@@ -10,7 +10,8 @@
 ///
 /// Errors are taken at points all over the surface (surface_error.h says what seen error, solve
 /// error, floor and beyond are). Points without a well-defined answer (reference/well_defined.h)
-/// are left out, for there nobody is right or wrong, and counted.
+/// are left out, for there nobody is right or wrong, and counted; so are, of maps, those inside of
+/// bodies, whose texels take what surrounds them (hidden_texels.h).
 ///
 /// Who is faster is asked at equal *beyond*: nobody is below the floor, and near it the seen errors
 /// of all are alike. By Pythagoras beyond is sqrt(seen^2 - floor^2), with far less noise.
@@ -100,6 +101,7 @@ struct Comparison {
     bool reference_from_cache = false;
     std::uint64_t points = 0;       ///< of the surface that count
     std::uint64_t ill_defined = 0;  ///< left out: they have no answer of their own
+    std::uint64_t hidden = 0;       ///< of maps left out: inside of bodies, where nobody looks
     ErrorStatistics floor;
     std::uint32_t floor_rays = 0;  ///< per receiver
     double floor_noise = 0.0;      ///< taken out of floor and beyond

@@ -112,8 +112,10 @@ std::string errors_text(const Comparison& comparison)
                          static_cast<double>(std::max<std::uint64_t>(1, all));
     return "surface error (seen) over " + std::to_string(comparison.points) + " points, floor " +
            fixed(comparison.floor.rmse, 4) + "; " + std::to_string(comparison.ill_defined) +
-           " ill-defined points left out (" + fixed(share, 2) +
-           " %)\nreference: " + std::to_string(comparison.reference_rays) +
+           " ill-defined points left out (" + fixed(share, 2) + " %)" +
+           (comparison.hidden > 0 ? ", " + std::to_string(comparison.hidden) + " hidden ones"
+                                  : "") +
+           "\nreference: " + std::to_string(comparison.reference_rays) +
            " robust rays a point, noise " + fixed(comparison.reference_noise, 4) +
            "; floor: " + std::to_string(comparison.floor_rays) + " rays a receiver, noise " +
            fixed(comparison.floor_noise, 4);

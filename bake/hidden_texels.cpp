@@ -35,7 +35,8 @@ std::vector<std::uint8_t> texels_maybe_hidden(const Map& visibility,
             continue;
         bool is_beside = false;
         for_each_around(visibility, texel, [&](std::size_t other) {
-            is_beside |= known[other] != 0 && visibility.values[other] > kHiddenVisibility;
+            is_beside |= known[other] != 0 &&
+                         visibility.values[other] > visibility.values[texel] + kHiddenVisibility;
         });
         if (is_beside)
             front.push_back(texel);

@@ -22,15 +22,15 @@
 namespace surfelao {
 
 /// Texels of less visibility may be hidden: inside of a box the masks of `draft` leave as much
-/// open. Where such a texel has no neighbour of more, nothing is there that would show as a fringe.
+/// open. Where no neighbour has more by as much, nothing is there that would show as a fringe.
 inline constexpr float kHiddenVisibility = 0.1f;
 
-/// Texels from there that are looked at. What is shown of a texel at the foot fetches two
+/// How many texels from there on are looked at. What is shown of a texel at the foot fetches two
 /// more in the next mip level, three in all; they are filled from both sides, of which the inner
 /// one is dark: twice as many.
 inline constexpr std::uint32_t kHiddenRings = 6;
 
-/// Nonzero where a texel may be hidden: those beside open ones, and other closed ones within
+/// Nonzero where a texel may be hidden: closed ones with such a neighbour, and others within
 /// kHiddenRings of it. Empty where there is none. known: nonzero where a texel has a value.
 /// O(texels).
 [[nodiscard]] std::vector<std::uint8_t> texels_maybe_hidden(const Map& visibility,

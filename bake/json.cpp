@@ -246,7 +246,8 @@ Json json_object_of(const Comparison& comparison)
                          {"noise", comparison.reference_noise},
                          {"from_cache", comparison.reference_from_cache},
                          {"points", comparison.points},
-                         {"ill_defined", comparison.ill_defined}};
+                         {"ill_defined", comparison.ill_defined},
+                         {"hidden", comparison.hidden}};
     json["floor"] = json_of(comparison.floor);
     if (comparison.texels)
         without_bent(json["floor"]);

@@ -1,5 +1,6 @@
 #include "bake/surface_error.h"
 
+#include "bake/hidden_texels.h"
 #include "reference/reference_cache.h"
 
 #include <glm/geometric.hpp>
@@ -37,6 +38,29 @@ glm::vec2 place_in_triangle(std::uint64_t number)
         v = 1.0 - v;
     }
     return {static_cast<float>(u), static_cast<float>(v)};
+}
+
+/// Nonzero for receivers inside of bodies. occlusion: what is true there, one per receiver.
+std::vector<std::uint8_t> hidden_receivers(const Geometry& geometry,
+                                           std::span<const Receiver> receivers,
+                                           std::span<const Occlusion> occlusion,
+                                           const Definition& definition)
+{
+    std::vector<std::size_t> closed;
+    std::vector<Receiver> asked;
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        if (1.0f - occlusion[i].occlusion >= kHiddenVisibility)
+            continue;
+        closed.push_back(i);
+        asked.push_back(receivers[i]);
+    }
+    const RayScene scene(geometry, RayScene::Build::quick);
+    const std::vector<std::uint8_t> inside =
+        inside_bodies(geometry, scene, asked, definition.max_distance);
+    std::vector<std::uint8_t> hidden(receivers.size(), 0);
+    for (std::size_t i = 0; i < closed.size(); ++i)
+        hidden[closed[i]] = inside[i];
+    return hidden;
 }
 
 }  // namespace
@@ -86,12 +110,20 @@ SurfaceTruth trace_truth(const Mesh& mesh, const TruthSettings& settings, const 
     const Reference reference =
         trace_reference(mesh.geometry, receivers,
                         {settings.definition, settings.rays, settings.use_cache}, progress);
+    const std::vector<std::uint8_t> hidden =
+        settings.leave_out_hidden
+            ? hidden_receivers(mesh.geometry, receivers, reference.occlusion, settings.definition)
+            : std::vector<std::uint8_t>(receivers.size(), 0);
     SurfaceTruth truth;
     truth.from_cache = reference.from_cache;
     double squares = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (!reference.well_defined(i)) {
             ++truth.ill_defined;
+            continue;
+        }
+        if (hidden[i] != 0) {
+            ++truth.hidden;
             continue;
         }
         truth.points.push_back(points[i]);

@@ -63,6 +63,7 @@ struct TruthSettings {
     std::uint32_t rays = 4096;              ///< per point, an even number
     bool use_cache = true;
     std::vector<double> measure = {};  ///< per triangle, >= 0: by it points lie; empty: by area
+    bool leave_out_hidden = false;     ///< points inside of bodies, as maps do (hidden_texels.h)
 };
 
 /// The well-defined surface points and what is true there; one entry per point in each list.
@@ -72,6 +73,7 @@ struct SurfaceTruth {
     std::vector<Occlusion> reference;
     double noise = 0.0;             ///< RMS error of the reference's occlusion by sampling
     std::uint64_t ill_defined = 0;  ///< points that were left out
+    std::uint64_t hidden = 0;       ///< points that were left out for lying inside of bodies
     bool from_cache = false;
 };
 

@@ -134,6 +134,34 @@ void write_pictures(const std::filesystem::path& path, const std::vector<Map>& p
     }
 }
 
+/// The mesh with its map; adds the files beside it.
+std::vector<std::string> write_mesh(const BakeSettings& settings, const Scene& scene,
+                                    const TexelLayout& place, const std::vector<Map>& pages,
+                                    std::vector<std::filesystem::path>& written)
+{
+    const WriteOptions options{.mark = mark_of(settings)};
+    const std::vector<UvSet>& uvs = place.layout.pages;
+    const auto bytes = [&](std::size_t page) {
+        return map_bytes(pages[page], settings.texels->depth);
+    };
+    if (place.layout.is_blended)
+        return write_scene_with_blended_map(
+            settings.output, scene, {{bytes(0), bytes(1), bytes(2)}, {uvs[0], uvs[1], uvs[2]}},
+            options);
+    OcclusionMap picture{bytes(0), 0, {}};
+    if (place.uv_set)
+        picture.uv_set = *place.uv_set;
+    else
+        picture.uvs = uvs[0];
+    const std::vector<std::string> notes =
+        write_scene_with_map(settings.output, scene, picture, options);
+    for (const auto& beside : {map_file_of(settings.output), map_materials_of(settings.output)}) {
+        if (beside)
+            written.push_back(*beside);
+    }
+    return notes;
+}
+
 }  // namespace
 
 std::filesystem::path bent_path(const std::filesystem::path& output)
@@ -153,7 +181,10 @@ void check_texel_output(const BakeSettings& settings)
 {
     if (is_map(settings.output))
         return check_map_output(settings.output, settings.texels->depth);
-    check_output_with_map(settings.input, settings.output);
+    if (settings.texels->blended)
+        check_output_with_blended_map(settings.input, settings.output);
+    else
+        check_output_with_map(settings.input, settings.output);
     if (settings.texels->depth == MapDepth::whole)
         throw InputError(settings.output.string() + ": a map of a mesh has 8 or 16 bits");
 }
@@ -211,16 +242,9 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
     if (is_map(settings.output)) {
         write_pictures(settings.output, map.visibility, report, told.written);
     } else {
-        OcclusionMap picture{map_bytes(map.visibility[0], texels.depth), 0, {}};
-        if (place.uv_set)
-            picture.uv_set = *place.uv_set;
-        else
-            picture.uvs = layout.pages[0];
         const std::vector<std::string> notes =
-            write_scene_with_map(settings.output, mesh.scene, picture, {.mark = mark_of(settings)});
+            write_mesh(settings, mesh.scene, place, map.visibility, told.written);
         report.notes.insert(report.notes.end(), notes.begin(), notes.end());
-        if (const auto beside = map_file_of(settings.output))
-            told.written.push_back(*beside);
     }
     report.seconds.write = watch.lap();
 }

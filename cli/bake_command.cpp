@@ -68,9 +68,13 @@ std::vector<Job> jobs_of(const BakeOptions& options)
         jobs.push_back({input, into_folder ? output_in_folder(input, options.output)
                                            : fs::path(options.output)});
         files.writes(jobs.back().output, input);
-        if (const auto texels = texel_settings_of(options.texels, jobs.back().output);
-            texels && map_file_of(jobs.back().output))
-            files.writes(*map_file_of(jobs.back().output), input);
+        if (texel_settings_of(options.texels, jobs.back().output)) {
+            for (const auto& beside :
+                 {map_file_of(jobs.back().output), map_materials_of(jobs.back().output)}) {
+                if (beside)
+                    files.writes(*beside, input);
+            }
+        }
         if (options.texels.bent.value_or("none") != "none")
             files.writes(bent_path(jobs.back().output), input);
     }

@@ -7,8 +7,8 @@
 
 namespace surfelao {
 
-FacePlaces::FacePlaces(const Scene& scene, const UvSet& uvs)
-    : scene_(scene), uvs_(uvs), polygons_(source_polygons(scene))
+FacePlaces::FacePlaces(const Scene& scene, const UvSet& uvs, FaceShape shape)
+    : scene_(scene), uvs_(uvs), shape_(shape), polygons_(source_polygons(scene))
 {
 }
 
@@ -21,7 +21,7 @@ std::span<const PlacedFace> FacePlaces::next()
     const glm::uvec3* const of_triangles =
         (uvs_.corners.empty() ? scene_.triangles : uvs_.corners).data() + triangle_;
     whole_.assign(size, UvSet::kNone);
-    bool is_whole = true;
+    bool is_whole = size == 3 || shape_ == FaceShape::polygons;
     for (std::size_t t = 0; t < cut_.size(); ++t) {
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t place = of_triangles[t][k];

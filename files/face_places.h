@@ -15,13 +15,17 @@ struct PlacedFace {
     std::span<const std::uint32_t> places;   ///< of each, into UvSet::values; empty: it has none
 };
 
+/// Whether faces of more than three corners may stay.
+enum class FaceShape { polygons, triangles };
+
 /// Goes through the faces of a scene: the source's polygons, else its triangles (for_each_face).
 class FacePlaces {
 public:
     /// Both must outlive it; the places fit the scene (write_scene_with_map).
-    FacePlaces(const Scene& scene, const UvSet& uvs);
+    FacePlaces(const Scene& scene, const UvSet& uvs, FaceShape shape);
 
-    /// The next face: in one, where each of its corners has one place, else its triangles. A corner
+    /// The next face: in one, where that may be and each of its corners has one place, else its
+    /// triangles. A corner
     /// that has none beside others that have one stands with one of these. Good until the next
     /// call. O(corners), and once more what it takes to cut a polygon.
     [[nodiscard]] std::span<const PlacedFace> next();
@@ -31,6 +35,7 @@ private:
 
     const Scene& scene_;
     const UvSet& uvs_;
+    FaceShape shape_;
     const Polygons* polygons_;
     std::size_t face_ = 0;
     std::size_t corner_ = 0;    ///< of all polygons

@@ -5,12 +5,11 @@
 #include "files/maker_mark.h"
 #include "surfels/errors.h"
 
-#include <glm/vec2.hpp>
-
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <tuple>
+#include <array>
+#include <optional>
 
 namespace surfelao {
 namespace {
@@ -50,16 +49,37 @@ struct Digest {
     }
 };
 
+/// u and v in each set.
+using CornerPlaces = std::array<float, 2 * kMostCutSets>;
+
+/// Nothing where the corner has no place in any set.
+std::optional<CornerPlaces> places_of_corner(const Scene& scene, std::span<const UvSet> sets,
+                                             std::size_t triangle, int k)
+{
+    std::optional<CornerPlaces> places;
+    for (std::size_t s = 0; s < sets.size(); ++s) {
+        const std::uint32_t place =
+            (sets[s].corners.empty() ? scene.triangles : sets[s].corners)[triangle][k];
+        if (place == UvSet::kNone)
+            continue;
+        if (!places)
+            places.emplace();  // zeros
+        (*places)[2 * s] = static_cast<float>(sets[s].values[place].x);
+        (*places)[2 * s + 1] = static_cast<float>(sets[s].values[place].y);
+    }
+    return places;
+}
+
 /// Hands out the vertices of a part.
 class PlacedVertices {
 public:
     explicit PlacedVertices(std::size_t count)
-        : places_(count, glm::vec2(0.0f)), has_place_(count, false)
+        : places_(count, CornerPlaces{}), has_place_(count, false)
     {
     }
 
     /// The one of this vertex and its copies that lies there.
-    std::uint32_t at(std::uint32_t vertex, const glm::vec2& place)
+    std::uint32_t at(std::uint32_t vertex, const CornerPlaces& place)
     {
         if (!has_place_[vertex]) {
             has_place_[vertex] = true;
@@ -68,8 +88,8 @@ public:
         }
         if (places_[vertex] == place)
             return vertex;
-        const auto [copy, is_new] = copies_.try_emplace({vertex, place.x, place.y},
-                                                        static_cast<std::uint32_t>(places_.size()));
+        const auto [copy, is_new] =
+            copies_.try_emplace({vertex, place}, static_cast<std::uint32_t>(places_.size()));
         if (is_new) {
             places_.push_back(place);
             copied.push_back(vertex);
@@ -77,43 +97,43 @@ public:
         return copy->second;
     }
 
-    [[nodiscard]] std::vector<float> places() const
+    [[nodiscard]] std::vector<float> places(std::size_t set) const
     {
         std::vector<float> numbers;
         numbers.reserve(2 * places_.size());
-        for (const glm::vec2& place : places_)
-            numbers.insert(numbers.end(), {place.x, place.y});
+        for (const CornerPlaces& place : places_)
+            numbers.insert(numbers.end(), {place[2 * set], place[2 * set + 1]});
         return numbers;
     }
 
     std::vector<std::uint32_t> copied;
 
 private:
-    std::vector<glm::vec2> places_;
+    std::vector<CornerPlaces> places_;
     std::vector<bool> has_place_;
-    std::map<std::tuple<std::uint32_t, float, float>, std::uint32_t> copies_;
+    std::map<std::pair<std::uint32_t, CornerPlaces>, std::uint32_t> copies_;
 };
 
 }  // namespace
 
-GltfCut cut_part(const Scene& scene, const Part& part, const GltfPart& in_file, const UvSet& uvs)
+GltfCut cut_part(const Scene& scene, const Part& part, const GltfPart& in_file,
+                 std::span<const UvSet> sets)
 {
     PlacedVertices vertices(part.vertex_count);
-    const std::vector<glm::uvec3>& corners = uvs.corners.empty() ? scene.triangles : uvs.corners;
     GltfCut cut;
     cut.triangles.reserve(part.triangle_count);
     for (std::uint32_t t = 0; t < part.triangle_count; ++t) {
         glm::uvec3 triangle = scene.triangles[part.first_triangle + t] - part.first_vertex;
-        const glm::uvec3 places = corners[part.first_triangle + t];
         for (int k = 0; k < 3; ++k) {
-            if (places[k] != UvSet::kNone)
-                triangle[k] = vertices.at(triangle[k], glm::vec2(uvs.values[places[k]]));
+            if (const auto places = places_of_corner(scene, sets, part.first_triangle + t, k))
+                triangle[k] = vertices.at(triangle[k], *places);
         }
         if (in_file.turned[t])
             std::swap(triangle.y, triangle.z);
         cut.triangles.push_back(triangle);
     }
-    cut.places = vertices.places();
+    for (std::size_t s = 0; s < sets.size(); ++s)
+        cut.places.push_back(vertices.places(s));
     cut.copied = std::move(vertices.copied);
     return cut;
 }
@@ -188,7 +208,7 @@ void GltfCutter::cut(json& primitive, const std::string& element, const GltfCut&
         if (primitive.contains(key))
             original[key] = primitive[key];
     }
-    const std::size_t vertices = cut.places.size() / 2;
+    const std::size_t vertices = cut.places[0].size() / 2;
     const std::size_t number = cuts_.try_emplace(cut.copied, cuts_.size()).first->second;
     const json attributes = attributes_of(primitive);
     for (const auto& [place, index] : attributes.items()) {

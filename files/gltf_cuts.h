@@ -29,16 +29,21 @@
 
 namespace surfelao {
 
+/// Sets of coordinates that vertices may be cut along at once: the pages of a blended map.
+inline constexpr std::size_t kMostCutSets = 3;
+
 struct GltfCut {
-    std::vector<float> places;          ///< u and v of each vertex, the copies behind the others
+    /// Of each set u and v of each vertex, the copies behind the others.
+    std::vector<std::vector<float>> places;
     std::vector<std::uint32_t> copied;  ///< the part's vertex that each copy is one of
     std::vector<glm::uvec3> triangles;  ///< the part's, as its mesh winds them
 };
 
-/// A vertex has the first place that a triangle gives it (0, 0 where none does), and a copy for
-/// each other one; places are equal when they are as floats. O(corners log copies).
+/// A vertex has the first places that a triangle gives it (0, 0 where none does), and a copy for
+/// each other ones; places are equal when they are as floats. A corner that has a place in some of
+/// the sets is at 0, 0 in the others. O(corners log copies).
 [[nodiscard]] GltfCut cut_part(const Scene& scene, const Part& part, const GltfPart& in_file,
-                               const UvSet& uvs);
+                               std::span<const UvSet> sets);
 
 /// Reads accessors as bytes.
 class GltfElements {

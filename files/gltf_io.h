@@ -152,4 +152,17 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
                                                  const Scene& scene, const OcclusionMap& map,
                                                  const WriteOptions& options = {});
 
+/// The same with a map of three pages that fade into each other, each with a set of coordinates of
+/// its own: the first three that are free. No viewer but ours knows such maps: the pictures are
+/// textures of the file (in a .gltf too), which the primitives' materials, copies of the file's,
+/// name in their extras with the sets, page by page:
+///
+///     "extras": {"surfelao": {"blended": [{"index": 5, "texCoord": 1}, ...], "original": 0}}
+///
+/// A corner that is not on a page is at 0, 0 there, as are the others of its triangle. What else
+/// the materials have stays, an occlusionTexture too.
+[[nodiscard]] WrittenFile gltf_contents_with_blended_map(const std::filesystem::path& path,
+                                                         const Scene& scene, const BlendedMap& map,
+                                                         const WriteOptions& options = {});
+
 }  // namespace surfelao

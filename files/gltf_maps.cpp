@@ -10,8 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -21,6 +23,14 @@ using nlohmann::json;
 constexpr int kLinearFilter = 9729;
 constexpr int kLinearMipmapLinear = 9987;
 constexpr int kClampingWrap = 33071;
+
+json clamping_sampler()
+{
+    return {{"magFilter", kLinearFilter},
+            {"minFilter", kLinearFilter},
+            {"wrapS", kClampingWrap},
+            {"wrapT", kClampingWrap}};
+}
 
 /// Whether a primitive has no material, or one that could get a texture.
 bool can_be_occluded(const json& document, const json& primitive)
@@ -33,6 +43,7 @@ bool can_be_occluded(const json& document, const json& primitive)
 struct Covered {
     std::vector<Occluded> primitives;
     std::size_t without = 0;
+    std::vector<std::vector<std::size_t>> sets = {};  ///< of each primitive, where they are new
 };
 
 /// Those with TEXCOORD_set.
@@ -58,12 +69,12 @@ Covered with_own_places(json& document, const GltfAsset& asset, std::uint32_t se
 /// Gives all primitives with triangles that have a place the new coordinates, each use of a mesh
 /// its own.
 Covered with_new_places(json& document, const GltfAsset& asset, const Scene& scene,
-                        const UvSet& uvs, AddedData& added)
+                        std::span<const UvSet> sets, AddedData& added)
 {
     Covered covered;
     const std::vector<std::size_t> meshes = separate_uses(document, asset.uses);
     GltfCutter cutter(document, asset, added);
-    const auto has_place = [&](const GltfTriangles& triangles) {
+    const auto has_place = [](const UvSet& uvs, const GltfTriangles& triangles) {
         const std::span<const glm::uvec3> corners(uvs.corners);
         return corners.empty() ||
                std::ranges::any_of(
@@ -73,17 +84,18 @@ Covered with_new_places(json& document, const GltfAsset& asset, const Scene& sce
     for (std::size_t p = 0; p < scene.parts.size(); ++p) {
         const Part& part = scene.parts[p];
         const GltfPart& in_file = asset.parts[p];
-        const GltfCut cut = cut_part(scene, part, in_file, uvs);
-        std::optional<std::size_t> coordinates;
+        const GltfCut cut = cut_part(scene, part, in_file, sets);
+        std::vector<std::size_t> coordinates;
         for (const GltfTriangles& triangles : in_file.primitives) {
             if (triangles.count == 0)
                 continue;
-            if (!has_place(triangles)) {
+            if (std::ranges::none_of(sets,
+                                     [&](const UvSet& uvs) { return has_place(uvs, triangles); })) {
                 ++covered.without;
                 continue;
             }
-            if (!coordinates)
-                coordinates = added.add_floats(2, cut.places, kAddedCoordinates);
+            for (std::size_t s = coordinates.size(); s < sets.size(); ++s)
+                coordinates.push_back(added.add_floats(2, cut.places[s], kAddedCoordinates));
             json& primitive =
                 document["meshes"][meshes[in_file.use]]["primitives"][triangles.primitive];
             if (!cut.copied.empty())
@@ -93,10 +105,15 @@ Covered with_new_places(json& document, const GltfAsset& asset, const Scene& sce
                            cut,
                            std::span(cut.triangles)
                                .subspan(triangles.first - part.first_triangle, triangles.count));
-            const std::size_t set = free_set(primitive["attributes"]);
-            primitive["attributes"]["TEXCOORD_" + std::to_string(set)] = *coordinates;
-            if (can_be_occluded(document, primitive))
-                covered.primitives.push_back({&primitive, set});
+            std::vector<std::size_t> numbers;
+            for (const std::size_t of_set : coordinates) {
+                numbers.push_back(free_set(primitive["attributes"]));
+                primitive["attributes"]["TEXCOORD_" + std::to_string(numbers.back())] = of_set;
+            }
+            if (!can_be_occluded(document, primitive))
+                continue;
+            covered.primitives.push_back({&primitive, numbers.front()});
+            covered.sets.push_back(std::move(numbers));
         }
     }
     return covered;
@@ -109,8 +126,9 @@ std::vector<std::string> add_map(json& document, const GltfAsset& asset, const S
                                  AddedData& added)
 {
     const std::string own = "TEXCOORD_" + std::to_string(map.uv_set);
-    const Covered covered = map.uvs ? with_new_places(document, asset, scene, *map.uvs, added)
-                                    : with_own_places(document, asset, map.uv_set);
+    const Covered covered =
+        map.uvs ? with_new_places(document, asset, scene, std::span(&*map.uvs, 1), added)
+                : with_own_places(document, asset, map.uv_set);
     if (covered.primitives.empty())
         fail_gltf(asset.path, "",
                   "has no primitive with " + (map.uvs ? "a place in the map" : own) +
@@ -121,11 +139,9 @@ std::vector<std::string> add_map(json& document, const GltfAsset& asset, const S
     else
         image["bufferView"] = added.add_bytes(map.png);
     // a file's own coordinates may lie beyond [0, 1]: that map repeats
-    json sampler = {{"magFilter", kLinearFilter},
-                    {"minFilter", map.uvs ? kLinearFilter : kLinearMipmapLinear}};
-    if (map.uvs)
-        sampler["wrapS"] = sampler["wrapT"] = kClampingWrap;
-    const std::size_t texture = add_occlusion_texture(document, image, sampler);
+    const json repeating = {{"magFilter", kLinearFilter}, {"minFilter", kLinearMipmapLinear}};
+    const std::size_t texture =
+        add_occlusion_texture(document, image, map.uvs ? clamping_sampler() : repeating);
     const std::size_t replaced = show_occlusion_texture(document, texture, covered.primitives);
 
     std::vector<std::string> notes;
@@ -136,6 +152,36 @@ std::vector<std::string> add_map(json& document, const GltfAsset& asset, const S
         notes.push_back(count_text(covered.without, "primitive") + " without " +
                         (map.uvs ? "a place in it" : own) +
                         " left as they are: no map lies over them");
+    return notes;
+}
+
+std::vector<std::string> add_blended_map(json& document, const GltfAsset& asset, const Scene& scene,
+                                         const BlendedMap& map, AddedData& added)
+{
+    const Covered covered = with_new_places(document, asset, scene, map.uvs, added);
+    if (covered.primitives.empty())
+        fail_gltf(asset.path, "", "has no primitive with a place in the map");
+    std::vector<std::size_t> textures;
+    for (const std::string& png : map.pngs)
+        textures.push_back(add_occlusion_texture(
+            document, {{"mimeType", "image/png"}, {"bufferView", added.add_bytes(png)}},
+            clamping_sampler()));
+    std::map<std::pair<json, std::vector<std::size_t>>, std::vector<json*>> primitives_of;
+    for (std::size_t p = 0; p < covered.primitives.size(); ++p) {
+        json* const primitive = covered.primitives[p].primitive;
+        primitives_of[{member(*primitive, "material"), covered.sets[p]}].push_back(primitive);
+    }
+    for (const auto& [material_and_sets, primitives] : primitives_of) {
+        json blended = json::array();
+        for (std::size_t page = 0; page < textures.size(); ++page)
+            blended.push_back(
+                {{"index", textures[page]}, {"texCoord", material_and_sets.second[page]}});
+        set_blended_material(document, material_and_sets.first, std::move(blended), primitives);
+    }
+    std::vector<std::string> notes;
+    if (covered.without > 0)
+        notes.push_back(count_text(covered.without, "primitive") +
+                        " without a place in it left as they are: no map lies over them");
     return notes;
 }
 

@@ -17,4 +17,9 @@ namespace surfelao {
                                                const Scene& scene, const OcclusionMap& map,
                                                const std::filesystem::path& path, AddedData& added);
 
+/// The same for a blended map, as gltf_contents_with_blended_map() says.
+[[nodiscard]] std::vector<std::string> add_blended_map(nlohmann::json& document,
+                                                       const GltfAsset& asset, const Scene& scene,
+                                                       const BlendedMap& map, AddedData& added);
+
 }  // namespace surfelao

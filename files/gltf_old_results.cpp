@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -84,11 +85,28 @@ void keep_first(json& list, std::size_t count)
     list.erase(list.begin() + static_cast<std::ptrdiff_t>(count), list.end());
 }
 
-json without_occlusion(json material)
+json without(const char* key, json material)
 {
     if (material.is_object())
-        material.erase("occlusionTexture");
+        material.erase(key);
     return material;
+}
+
+/// What of the material of a blended map stands for the primitives again; it loses the mark. None
+/// where another program has changed it.
+std::optional<json> take_blended(json& materials, std::size_t m)
+{
+    if (!member(member(materials[m], "extras"), kMarkKey).is_object())
+        return std::nullopt;
+    const json original = member(materials[m]["extras"][kMarkKey], "original");
+    materials[m]["extras"].erase(kMarkKey);
+    if (is_added(materials[m]))
+        return json();
+    if (original.is_number_unsigned() && original < m &&
+        without("extras", materials[m]) ==
+            without("extras", materials[original.get<std::size_t>()]))
+        return original;
+    return std::nullopt;
 }
 
 /// Takes occlusion textures of results off the materials, and primitives back to the materials that
@@ -102,6 +120,8 @@ void take_materials(json& document)
     for (std::size_t m = 0; m < materials.size(); ++m) {
         if (is_added(materials[m]))
             original_of[m] = nullptr;
+        if (const std::optional<json> original = take_blended(materials, m))
+            original_of[m] = *original;
         const json info = member(materials[m], "occlusionTexture");
         if (!is_added(entry(document, "textures", member(info, "index"))))
             continue;
@@ -109,7 +129,7 @@ void take_materials(json& document)
         const json& original = member(member(info, "extras"), kMarkKey);
         // another program may have moved the materials about
         if (original.is_number_unsigned() && original < m &&
-            materials[m] == without_occlusion(materials[original.get<std::size_t>()]))
+            materials[m] == without("occlusionTexture", materials[original.get<std::size_t>()]))
             original_of[m] = original;
     }
     for (json& mesh : document["meshes"]) {
@@ -158,7 +178,7 @@ void take_meshes(json& document)
     }
 }
 
-/// Drops the picture of results with its texture and sampler; returns its buffer view.
+/// Drops the pictures of results with their textures and samplers; returns their buffer views.
 Indices take_picture(json& document)
 {
     struct List {
@@ -172,12 +192,14 @@ Indices take_picture(json& document)
     Indices views;
     for (const List& list : kLists) {
         const json& entries = member(document, list.name);
-        if (!entries.is_array() || entries.empty() || !is_added(entries.back()) ||
-            uses(member(document, list.user), list.key, entries.size() - 1))
+        if (!entries.is_array())
             continue;
-        if (const json& view = member(entries.back(), "bufferView"); view.is_number_unsigned())
-            views.insert(view.get<std::size_t>());
-        keep_first(document[list.name], entries.size() - 1);
+        while (!entries.empty() && is_added(entries.back()) &&
+               !uses(member(document, list.user), list.key, entries.size() - 1)) {
+            if (const json& view = member(entries.back(), "bufferView"); view.is_number_unsigned())
+                views.insert(view.get<std::size_t>());
+            keep_first(document[list.name], entries.size() - 1);
+        }
         if (entries.empty())
             document.erase(list.name);
     }

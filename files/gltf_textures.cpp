@@ -81,6 +81,20 @@ std::size_t show_occlusion_texture(json& document, std::size_t texture,
     return replaced;
 }
 
+void set_blended_material(json& document, const json& material, json blended,
+                          std::span<json* const> primitives)
+{
+    json copy = material.is_null() ? plain_material() : entry(document, "materials", material);
+    if (!member(copy, "extras").is_object())
+        copy["extras"] = json::object();
+    copy["extras"][kMarkKey] = {{"blended", std::move(blended)}};
+    if (!material.is_null())
+        copy["extras"][kMarkKey]["original"] = material;
+    const std::size_t added = append(document, "materials", std::move(copy));
+    for (json* const primitive : primitives)
+        (*primitive)["material"] = added;
+}
+
 void set_plain_material(json& document, std::span<json* const> primitives)
 {
     const std::size_t plain = append(document, "materials", plain_material());

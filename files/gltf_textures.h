@@ -26,6 +26,11 @@ struct Occluded {
 [[nodiscard]] std::size_t show_occlusion_texture(nlohmann::json& document, std::size_t texture,
                                                  std::span<const Occluded> primitives);
 
+/// Gives the primitives a copy of this material (null: a plain one) that names the textures of a
+/// blended map in its extras: {"surfelao": {"blended": [...], "original": material}}.
+void set_blended_material(nlohmann::json& document, const nlohmann::json& material,
+                          nlohmann::json blended, std::span<nlohmann::json* const> primitives);
+
 /// Gives them all one material: white and no metal.
 void set_plain_material(nlohmann::json& document, std::span<nlohmann::json* const> primitives);
 

@@ -189,6 +189,15 @@ WrittenFile gltf_contents(const fs::path& path, const Scene& scene,
         });
 }
 
+WrittenFile gltf_contents_with_blended_map(const fs::path& path, const Scene& scene,
+                                           const BlendedMap& map, const WriteOptions& options)
+{
+    return contents_with(path, scene, options,
+                         [&](json& document, const GltfAsset& asset, AddedData& added) {
+                             return add_blended_map(document, asset, scene, map, added);
+                         });
+}
+
 WrittenFile gltf_contents_with_map(const fs::path& path, const Scene& scene,
                                    const OcclusionMap& map, const WriteOptions& options)
 {

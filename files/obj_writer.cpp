@@ -107,7 +107,7 @@ public:
     {
         const std::string_view old = own_.text;
         if (map_ && map_->uvs)
-            faces_.emplace(scene, *map_->uvs);
+            faces_.emplace(scene, *map_->uvs, FaceShape::polygons);
         text_.reserve(old.size() + mark.size() + occlusion.size() * 28);
         if (old.starts_with(kByteOrderMark))
             copy_to(kByteOrderMark.size());
@@ -172,7 +172,7 @@ private:
             for (const NamedFile& named : files_named(source_.folder, rest_of(cursor))) {
                 if (named.file.empty())
                     missing.emplace_back(named.name);
-                else
+                else if (std::ranges::find(map_->libraries, named.file) == map_->libraries.end())
                     map_->libraries.push_back(named.file);
             }
             drop_line(cursor, begin);
@@ -307,7 +307,7 @@ std::string new_obj(const Scene& scene, std::span<const Occlusion> occlusion, co
     }
     std::optional<FacePlaces> places;
     if (map)
-        places.emplace(scene, *map->uvs);
+        places.emplace(scene, *map->uvs, FaceShape::polygons);
     for_each_face(scene, [&](std::span<const std::uint32_t> corners) {
         if (places) {
             append_faces(text, corners, places->next());

@@ -128,6 +128,14 @@ std::size_t find_scalar(const Element& element, std::string_view name)
     return static_cast<std::size_t>(found - element.properties.begin());
 }
 
+std::size_t index_list_of(const Element& element)
+{
+    const auto found = std::ranges::find_if(element.properties, [](const Property& property) {
+        return property.name == "vertex_indices" || property.name == "vertex_index";
+    });
+    return static_cast<std::size_t>(found - element.properties.begin());
+}
+
 Header read_header(const std::string& file_name, std::string_view contents)
 {
     Header header;

@@ -68,6 +68,9 @@ struct Header {
 /// Which property of the element is the scalar of this name; none: past the last.
 [[nodiscard]] std::size_t find_scalar(const Element& element, std::string_view name);
 
+/// Which property of the element is the list of vertex indices; none: past the last.
+[[nodiscard]] std::size_t index_list_of(const Element& element);
+
 /// The byte behind the end of a line (LF, CRLF or CR) that stands at `offset`.
 [[nodiscard]] std::size_t line_after(std::string_view contents, std::size_t offset);
 

@@ -51,14 +51,14 @@ namespace surfelao {
                                        const WriteOptions& options = {});
 
 /// The scene as PLY with `comment TextureFile` of map_file_of(path), in place of other such
-/// comments, as MeshLab and Blender read it; of colours the file's own.
+/// comments, as MeshLab reads it; of colours the file's own.
 ///
 /// A scene that came from PLY gives its own file as above. Over its own coordinates its rows stay
 /// as they are. With new ones (map.uvs) each face has them in a last property `list uchar float
 /// texcoord`, u and v of each corner, v up, none for a face without; `texcoord` and `texnumber` of
-/// its own go. A polygon whose corners have several places becomes its triangles, each with all
-/// other properties. Where it has triangle strips, and for any other scene, a new file is made, of
-/// coordinates, colours and faces, over map.uvs or the scene's own set map.uv_set.
+/// its own go. Polygons become their triangles, each with all other properties: MeshLab loads no
+/// others with such a list. Where it has triangle strips, and for any other scene, a new file is
+/// made, of coordinates, colours and faces, over map.uvs or the scene's own set map.uv_set.
 [[nodiscard]] WrittenFile ply_contents_with_map(const std::filesystem::path& path,
                                                 const Scene& scene, const OcclusionMap& map,
                                                 const WriteOptions& options = {});

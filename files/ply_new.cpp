@@ -22,13 +22,12 @@ struct NewFaces {
     std::size_t count = 0;
 };
 
-NewFaces new_faces(const Scene& scene, Type length_type, const PlyTexture* texture,
-                   Type uv_length_type)
+NewFaces new_faces(const Scene& scene, Type length_type, const PlyTexture* texture)
 {
     NewFaces faces;
     std::optional<FacePlaces> places;
     if (texture)
-        places.emplace(scene, texture->uvs);
+        places.emplace(scene, texture->uvs, FaceShape::triangles);
     for_each_face(scene, [&](std::span<const std::uint32_t> vertices) {
         const auto append_vertices = [&](std::span<const std::uint32_t> corners) {
             ++faces.count;
@@ -44,7 +43,7 @@ NewFaces new_faces(const Scene& scene, Type length_type, const PlyTexture* textu
             for (const std::uint32_t corner : face.corners)
                 of_face.push_back(vertices[corner]);
             append_vertices(of_face);
-            append_places(faces.bytes, texture->uvs, face.places, uv_length_type, {});
+            append_places(faces.bytes, texture->uvs, face.places, {});
         }
     });
     return faces;
@@ -72,10 +71,9 @@ std::string new_ply(const Scene& scene, const PlyValues& values, std::string_vie
 {
     const bool wide = coordinates == PlyCoordinates::exact || needs_double(scene.positions);
     const bool many = scene.positions.size() > std::numeric_limits<std::int32_t>::max();
-    const std::size_t longest = longest_face(scene);
-    const Type length_type = length_type_for(longest),
-               uv_length_type = length_type_for(2 * longest);
-    const NewFaces faces = new_faces(scene, length_type, texture, uv_length_type);
+    // small lengths have a byte: not every reader knows others
+    const Type length_type = longest_face(scene) > 255 ? Type::uint32 : Type::uint8;
+    const NewFaces faces = new_faces(scene, length_type, texture);
     std::string text = "ply\nformat binary_little_endian 1.0\n";
     append_mark_line(text, mark, "\n");
     if (texture)
@@ -93,20 +91,20 @@ std::string new_ply(const Scene& scene, const PlyValues& values, std::string_vie
         .append(many ? " uint" : " int")
         .append(" vertex_indices\n");
     if (texture)
-        text.append("property list ").append(name_of(uv_length_type)).append(" float texcoord\n");
+        text.append("property ").append(kPlacesProperty).append("\n");
     text += "end_header\n";
 
     // of the values 19 bytes: what a bake has at a vertex
     text.reserve(text.size() + scene.positions.size() * (wide ? 43 : 31) + faces.bytes.size());
     for (std::size_t v = 0; v < scene.positions.size(); ++v) {
-        for (int axis = 0; axis < 3; ++axis) {
-            const double value = scene.positions[v][axis];
-            if (wide)
-                append_bytes(text, value);
-            else
-                append_bytes(text, static_cast<float>(value));
-        }
-        values.append(text, v);
+            for (int axis = 0; axis < 3; ++axis) {
+                const double value = scene.positions[v][axis];
+                if (wide)
+                    append_bytes(text, value);
+                else
+                    append_bytes(text, static_cast<float>(value));
+            }
+            values.append(text, v);
     }
     return text += faces.bytes;
 }

@@ -14,19 +14,16 @@ using namespace ply;
 /// Which property of the element is the list of vertex indices.
 std::size_t index_list(const std::string& file_name, const Element& element)
 {
-    for (std::size_t p = 0; p < element.properties.size(); ++p) {
-        const Property& property = element.properties[p];
-        if (property.name != "vertex_indices" && property.name != "vertex_index")
-            continue;
-        if (!property.count_type || !is_integer(property.type)) {
-            throw InputError(file_name + ": property " + surfelao::quoted(property.name) +
-                             " of element " + surfelao::quoted(element.name) +
-                             " is not a list of integers");
-        }
-        return p;
-    }
-    throw InputError(file_name + ": element " + surfelao::quoted(element.name) +
-                     " has no list \"vertex_indices\"");
+    const std::size_t list = index_list_of(element);
+    if (list == element.properties.size())
+        throw InputError(file_name + ": element " + surfelao::quoted(element.name) +
+                         " has no list \"vertex_indices\"");
+    const Property& property = element.properties[list];
+    if (!property.count_type || !is_integer(property.type))
+        throw InputError(file_name + ": property " + surfelao::quoted(property.name) +
+                         " of element " + surfelao::quoted(element.name) +
+                         " is not a list of integers");
+    return list;
 }
 
 /// Of an element that has no such list: past its last.

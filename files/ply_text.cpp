@@ -53,18 +53,13 @@ void append_number(std::string& text, Type type, double value, Notation notation
 }
 
 void append_places(std::string& text, const UvSet& uvs, std::span<const std::uint32_t> places,
-                   Type length_type, Notation notation)
+                   Notation notation)
 {
-    append_number(text, length_type, static_cast<double>(2 * places.size()), notation);
+    append_number(text, Type::uint8, static_cast<double>(2 * places.size()), notation);
     for (const std::uint32_t place : places) {
         append_number(text, Type::float32, uvs.values[place].x, notation);
         append_number(text, Type::float32, 1.0 - uvs.values[place].y, notation);  // v runs up
     }
-}
-
-Type length_type_for(std::size_t longest)
-{
-    return longest > 255 ? Type::uint32 : Type::uint8;
 }
 
 }  // namespace surfelao::ply

@@ -40,11 +40,9 @@ void append_channel(std::string& text, Type type, double value, Notation notatio
 /// The same, in ascii with a blank before it.
 void append_number(std::string& text, Type type, double value, Notation notation);
 
-/// The list `texcoord` of a face.
+/// The list of a triangle's texture coordinates.
+inline constexpr const char* kPlacesProperty = "list uchar float texcoord";
 void append_places(std::string& text, const UvSet& uvs, std::span<const std::uint32_t> places,
-                   Type length_type, Notation notation);
-
-/// The type of a list's length. Small ones have a byte for it: not every reader knows others.
-[[nodiscard]] Type length_type_for(std::size_t longest);
+                   Notation notation);
 
 }  // namespace surfelao::ply

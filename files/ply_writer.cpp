@@ -288,13 +288,12 @@ void append_vertex_rows(std::string& text, const PlySource& source,
 template <class Data>
 class FaceRows {
 public:
-    FaceRows(const PlySource& source, const Scene& scene, const UvSet& uvs, Type length_type)
+    FaceRows(const PlySource& source, const Scene& scene, const UvSet& uvs)
         : source_(source),
           faces_(*find_element(source.header, "face")),
           uvs_(uvs),
-          length_type_(length_type),
           notation_(notation_of(source.header)),
-          places_(scene, uvs),
+          places_(scene, uvs, FaceShape::triangles),
           data_(no_name_, source.face_rows(), source.header)
     {
     }
@@ -330,7 +329,7 @@ private:
         for (std::size_t p = 0; p < old_.size(); ++p) {
             const Property& property = faces_.properties[p];
             const std::size_t begin = data_.offset();
-            if (property.name != "vertex_indices" && property.name != "vertex_index") {
+            if (p != list_) {
                 skip_property(data_, property);
             } else {
                 corners_.resize(read_length(data_, property));
@@ -350,9 +349,7 @@ private:
         ++changes.count;
         for (std::size_t p = 0; p < old_.size(); ++p) {
             const Property& property = faces_.properties[p];
-            const bool is_list =
-                property.name == "vertex_indices" || property.name == "vertex_index";
-            if (is_list && face && face->corners.size() < corners_.size()) {
+            if (p == list_ && face && face->corners.size() < corners_.size()) {
                 append_number(text_, *property.count_type,
                               static_cast<double>(face->corners.size()), notation_);
                 for (const std::uint32_t corner : face->corners)
@@ -362,13 +359,13 @@ private:
             }
         }
         append_places(text_, uvs_, face ? face->places : std::span<const std::uint32_t>(),
-                      length_type_, notation_);
+                      notation_);
     }
 
     const PlySource& source_;
     const Element& faces_;
+    std::size_t list_ = index_list_of(faces_);
     const UvSet& uvs_;
-    Type length_type_;
     Notation notation_;
     FacePlaces places_;
     const std::string no_name_;
@@ -395,11 +392,9 @@ WrittenFile spliced(const PlySource& source, const Scene& scene,
                            occlusion.size() * (ascii ? 60 : 19));
     append_vertex_rows<Data>(pieces[0].text, source, occlusion, changes);
     if (faces.uvs) {
-        const std::size_t longest = 2 * longest_face(scene);
-        const Type length_type = length_type_for(longest);
-        faces.new_properties = {"list " + std::string(name_of(length_type)) + " float texcoord"};
+        faces.new_properties = {kPlacesProperty};
         pieces.push_back({source.faces_begin, source.faces_end,
-                          FaceRows<Data>(source, scene, *faces.uvs, length_type).write(faces)});
+                          FaceRows<Data>(source, scene, *faces.uvs).write(faces)});
         if (source.faces_begin < source.vertices_begin)
             std::swap(pieces[0], pieces[1]);
     }

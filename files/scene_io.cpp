@@ -221,4 +221,24 @@ std::vector<std::string> write_scene_with_map(const fs::path& path, const Scene&
     return std::move(written.notes);
 }
 
+void check_output_with_blended_map(const fs::path& input, const fs::path& output)
+{
+    if (!is_gltf(type_of(output)) || !is_gltf(type_of(input)))
+        throw InputError(output.string() +
+                         ": blended charts go from glTF into .glb and .gltf only");
+    check_output(input, output);
+}
+
+std::vector<std::string> write_scene_with_blended_map(const fs::path& path, const Scene& scene,
+                                                      const BlendedMap& map,
+                                                      const WriteOptions& options)
+{
+    check_output_with_blended_map(path, path);
+    for (const UvSet& uvs : map.uvs)
+        check_places(scene, uvs);
+    WrittenFile written = gltf_contents_with_blended_map(path, scene, map, options);
+    write_atomically(path, written.contents);
+    return std::move(written.notes);
+}
+
 }  // namespace surfelao

@@ -10,6 +10,7 @@
 #include "surfels/occlusion.h"
 #include "surfels/scene.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -80,5 +81,22 @@ void check_output_with_map(const std::filesystem::path& input, const std::filesy
 std::vector<std::string> write_scene_with_map(const std::filesystem::path& path, const Scene& scene,
                                               const OcclusionMap& map,
                                               const WriteOptions& options = {});
+
+/// A map of three pages that fade into each other (atlas/layout.h): a file's contents and new
+/// coordinates for each; UvSet::kNone for triangles that are not on a page.
+struct BlendedMap {
+    std::array<std::string, 3> pngs;  ///< as OcclusionMap::png
+    std::array<UvSet, 3> uvs;
+};
+
+/// check_output() for a result with a blended map: glTF from glTF only.
+void check_output_with_blended_map(const std::filesystem::path& input,
+                                   const std::filesystem::path& output);
+
+/// write_scene() with a blended map (gltf_io.h), which stands in the file. Throws InputError as
+/// check_output_with_blended_map() does, SettingsError where the coordinates do not fit the scene.
+std::vector<std::string> write_scene_with_blended_map(const std::filesystem::path& path,
+                                                      const Scene& scene, const BlendedMap& map,
+                                                      const WriteOptions& options = {});
 
 }  // namespace surfelao

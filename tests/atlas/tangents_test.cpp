@@ -108,6 +108,8 @@ TEST(Tangents, AreSharedBySmoothUnmirroredNeighbours)
         }
         ASSERT_FALSE(at_ridge[0].empty() || at_ridge[1].empty());
         EXPECT_EQ(at_ridge[0].front() == at_ridge[1].front(), !mirrored);
+        EXPECT_GT(at_ridge[0].front().x * (mirrored ? -1.0f : 1.0f), 0.9f);
+        EXPECT_GT(at_ridge[1].front().x, 0.9f);
         EXPECT_EQ(at_ridge[0].front().w, mirrored ? -1.0f : 1.0f);
         EXPECT_EQ(at_ridge[1].front().w, 1.0f);
     }

@@ -1,5 +1,6 @@
 #include "bake/compare.h"
 
+#include "bake/frontier.h"
 #include "files/scene_io.h"
 #include "scenes.h"
 #include "temporary_folder.h"
@@ -27,6 +28,15 @@ CompareSettings quick(const std::filesystem::path& input)
     settings.sample = 1000;
     settings.rounds = 1;
     settings.use_cache = false;
+    return settings;
+}
+
+/// The same with a map.
+CompareSettings quick_map(const std::filesystem::path& input)
+{
+    CompareSettings settings = quick(input);
+    settings.texels.emplace().size = 64;
+    settings.texels->uvs = UvChoice::made;
     return settings;
 }
 
@@ -201,6 +211,69 @@ TEST_F(Compare, ReportsHaveTheirKeysAndColumns)
         EXPECT_EQ(count, commas.front());
     EXPECT_NE(table_of(c).find("surface error (seen) over 1000 points, floor 0."),
               std::string::npos);
+}
+
+// What is judged is the map that a bake would write, and the floor's is of another seed.
+TEST_F(Compare, OfMapsJudgesWhatABakeWouldShow)
+{
+    const CompareSettings settings = quick_map(folder_ / "in.obj");
+    const Comparison c = compare(settings);
+    const MapLayout layout = layout_for(*c.mesh, *settings.texels, true).layout;
+    const MapBake bake = bake_map(*c.mesh, layout, {.depth = MapDepth::whole, .check = 1000},
+                                  c.rows[0].settings, {});
+    EXPECT_EQ(c.receivers, bake.receivers);
+    ASSERT_EQ(c.rows[0].errors.size(), 64u * 64u);
+    ASSERT_EQ(c.reference.size(), 64u * 64u);
+    for (std::size_t i = 0; i < c.reference.size(); ++i)
+        EXPECT_NEAR(c.reference[i] + c.rows[0].errors[i], 1.0f - bake.visibility[0].values[i],
+                    1e-6);
+    EXPECT_NEAR(c.rows[0].seen.rmse, bake.error->rmse, 0.1 * bake.error->rmse);
+
+    EXPECT_GT(c.floor.rmse, 0.0);
+    EXPECT_GT(c.floor_noise, 0.0);
+    for (const std::size_t i : {1u, 2u}) {  // 4, 16 and 64 rays
+        EXPECT_GT(c.rows[i].seen.rmse, c.rows[i + 1].seen.rmse);
+        EXPECT_GT(c.rows[i].beyond, c.rows[i + 1].beyond);
+    }
+    for (const CompareRow& row : c.rows) {
+        EXPECT_EQ(row.seen.count, c.points);
+        EXPECT_NEAR(std::hypot(c.floor.rmse, row.beyond), row.seen.rmse, 0.05 * row.seen.rmse);
+        EXPECT_GT(row.raster_s, 0.0);
+        EXPECT_GT(row.fill_s, 0.0);
+        EXPECT_EQ(row.fit_s, 0.0);
+        EXPECT_EQ(job_seconds(row, true), row.build_s + row.solve_s + row.fill_s);
+    }
+    EXPECT_TRUE(c.rows[0].ratio);
+}
+
+TEST_F(Compare, OfMapsLeavesOutWhatLiesInsideOfBodies)
+{
+    using scenes::operator+;
+    write_obj(folder_ / "sunk.obj", scenes::sheet({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 8) +
+                                        scenes::box({1.1, 1.1, -1.1}, {2.9, 2.9, 0.7}, 2));
+    const Comparison map = compare(quick_map(folder_ / "sunk.obj"));
+    EXPECT_NEAR(static_cast<double>(map.hidden), 1000.0 * 3.24 / 35.44, 5.0);  // of the sheet
+    EXPECT_EQ(map.points + map.hidden + map.ill_defined, 1000u);
+    EXPECT_EQ(compare(quick(folder_ / "sunk.obj")).hidden, 0u);
+    EXPECT_NE(table_of(map).find(std::to_string(map.hidden) + " hidden ones"), std::string::npos);
+}
+
+TEST_F(Compare, ReportsOfMapsSayWhatTheyHold)
+{
+    Comparison c = compare(quick_map(folder_ / "in.obj"));
+    const Json json = Json::parse(json_of(c));
+    EXPECT_EQ(json["target"]["texels"]["width"], 64);
+    EXPECT_TRUE(json["target"]["texels"]["uv_set"].is_null());
+    EXPECT_TRUE(json["rows"][0]["seen"]["bent_mean_deg"].is_null());
+    EXPECT_TRUE(json["rows"][0]["solve"]["bent_mean_deg"].is_number());
+    EXPECT_EQ(json["rows"][0]["fill_s"], c.rows[0].fill_s);
+    EXPECT_NE(table_of(c).find("64 x 64 texels (new texture coordinates)"), std::string::npos);
+    EXPECT_NE(table_of(c).find("fill s"), std::string::npos);
+    Frontier frontier;
+    frontier.engines = {Engine::disks};
+    frontier.scenes.push_back(frontier_scene(std::move(c)));
+    EXPECT_EQ(frontier.scenes[0].pictures.size(), 2u);  // what rays say, and the error of disks
+    EXPECT_NE(html_of(frontier).find("a map of 64 x 64 texels"), std::string::npos);
 }
 
 TEST_F(Compare, DifferenceFileIsTheSceneInColour)

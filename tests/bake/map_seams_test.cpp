@@ -35,7 +35,12 @@ Spot wall_near_and_far(glm::dvec3 p, glm::dvec3 middle)
 TEST(MapSeams, ShowTheProfileOfAWallOnBothSides)
 {
     const Mesh mesh = make_mesh(scenes::wall_and_floor(kWide, 40));
-    const MapLayout layout = laid_out(mesh.scene, {128, 128}, 1, wall_near_and_far);
+    // off the grid of texels by other amounts on each side
+    const MapLayout layout =
+        laid_out(mesh.scene, {128, 128}, 1, [](glm::dvec3 p, glm::dvec3 middle) {
+            const glm::dvec2 uv = wall_near_and_far(p, middle).uv;
+            return Spot{0, middle.x > 5.0 ? 1.07 * uv + 0.003 : uv + 0.0025};
+        });
     for (const auto& [engine, tolerance] :
          {std::pair(Engine::masks, 0.012), {Engine::rays, 0.004}}) {
         EngineSettings settings;
@@ -44,8 +49,8 @@ TEST(MapSeams, ShowTheProfileOfAWallOnBothSides)
         const MapBake bake = bake_map(mesh, layout, {.depth = MapDepth::whole}, settings, {});
         EXPECT_EQ(bake.smooth_seams, 80u);
         EXPECT_EQ(bake.seams, 160u);
-        EXPECT_LT(bake.jump.rms, 0.001);
-        EXPECT_LT(bake.jump.most, 0.004);
+        EXPECT_LT(bake.jump.rms, 0.0006);
+        EXPECT_LT(bake.jump.most, 0.002);
         for (std::uint32_t t = 0; t < mesh.geometry.triangles.size(); ++t) {
             const SurfacePoint point{t, {0.3f, 0.4f}};
             const glm::uvec3 corners = mesh.geometry.triangles[t];

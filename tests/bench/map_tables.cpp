@@ -103,6 +103,7 @@ std::string judgement_of(const World& world, const SurfaceTruth& truth,
 std::string judged(const World& world, int count, char** maps)
 {
     TruthSettings settings;
+    settings.leave_out_hidden = true;
     settings.measure = triangle_areas(world.mesh.geometry);
     for (std::uint32_t t = 0; t < settings.measure.size(); ++t) {
         if (places_of(world.mesh, world.layout, {t, {0.25f, 0.25f}}).count == 0)
@@ -110,7 +111,8 @@ std::string judged(const World& world, int count, char** maps)
     }
     const SurfaceTruth truth = trace_truth(world.mesh, settings);
     std::string text = "{\"points\": " + std::to_string(truth.points.size()) +
-                       ", \"ill_defined\": " + std::to_string(truth.ill_defined) + ", \"maps\": [";
+                       ", \"ill_defined\": " + std::to_string(truth.ill_defined) +
+                       ", \"hidden\": " + std::to_string(truth.hidden) + ", \"maps\": [";
     for (int i = 0; i < count; ++i)
         text += (i > 0 ? ", " : "") + judgement_of(world, truth, maps[i]);
     return text + "]}\n";

@@ -2,8 +2,8 @@
 """measure.py: what README.md and docs/ tell in figures, measured anew into docs/figures/*.json.
 
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
-                                    readers stated demo viewers atlas; default: all, about 30
-                                    minutes on two quiet cores
+                                    readers stated demo viewers atlas maps map_frontier;
+                                    default: all, about an hour on two quiet cores
 
 Every part is one file that says what command made it, of which version and commit, on what
 processor and how many threads; never a host name or a path. A part whose models are absent keeps
@@ -331,10 +331,48 @@ def part_atlas(build):
             **json.loads((out / "atlas.json").read_text())}
 
 
+MAP_SIZE = 128 if TRIAL else 1024
+NO_MAPS = ("pine", "pandora")  # leaves that are no sheets; a level that is closed but for its sky
+
+
+def map_models():
+    return [(path, name, group) for path, name, group in models()
+            if name not in NO_MAPS and (group != "data" or TRIAL or name == "data/room.obj")]
+
+
+def part_maps(build):
+    """Errors of an earlier run stay true with SURFELAO_KEEP=1, which takes no times."""
+    out = ROOT / "out/maps"
+    words = [f"{name}={path}" for path, name, _ in map_models()]
+    words += [f"{name}@file={path}" for path, name, _ in map_models() if name == "spot"]
+    keep = ["--keep"] if os.environ.get("SURFELAO_KEEP") else []
+    try:
+        run(ROOT / "tests/bench/maps/prove.py", build, out, "--size", MAP_SIZE, *keep, *words,
+            shown="tests/bench/maps/prove.py")
+    except subprocess.CalledProcessError as fault:
+        if fault.returncode == 77:
+            raise Absent("no Blender") from fault
+        raise
+    return {**provenance(build, "tests/bench/maps/prove.py"),
+            **json.loads((out / "maps.json").read_text())}
+
+
+def part_map_frontier(build):
+    """The same maps by all qualities and by Embree."""
+    scenes = []
+    for path, name, group in map_models():
+        result, command = compare(build, path, "--frontier", "--at", "texels", "--size", MAP_SIZE,
+                                  "--uv", "new", "--engines", "masks", "--sample", SAMPLE,
+                                  "--rounds", ROUNDS)
+        scenes.append(condensed(result["scenes"][0], name, group))
+    return {**provenance(build, command), "scenes": scenes}
+
+
 PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scaling": part_scaling,
          "stability": part_stability, "gpu": part_gpu, "drawing": part_drawing,
          "readers": part_readers, "stated": part_stated, "demo": part_demo,
-         "viewers": part_viewers, "atlas": part_atlas}
+         "viewers": part_viewers, "atlas": part_atlas, "maps": part_maps,
+         "map_frontier": part_map_frontier}
 
 
 def main(arguments):

@@ -214,6 +214,8 @@ Scene read_as_foreign(const std::string& glb)
             entry.erase("name");
     }
     document["asset"].erase("extras");
+    for (json& material : document["materials"])
+        material.erase("extras");
     for (json& mesh : document["meshes"]) {
         mesh.erase("extras");
         for (json& of : mesh["primitives"])
@@ -267,6 +269,38 @@ TEST(GltfCut, EveryCornerHasItsPlaceAndAllElseThatItHad)
                 EXPECT_EQ(again.positions[now.first_vertex + v],
                           scene.positions[before.first_vertex + v])
                     << made.name;
+        }
+    }
+}
+
+TEST(GltfCut, EveryCornerIsOnThePagesOfABlendedMap)
+{
+    for (const CutCase& made : cut_cases()) {
+        const Scene scene = read_gltf("in.glb", made.maker.glb());
+        const BlendedMap asked = test::blended_for(scene);
+        const std::string glb = baked("out.glb", made.maker.glb(), Way::blended);
+        const Scene again = read_as_foreign(glb);
+        ASSERT_EQ(again.triangles.size(), scene.triangles.size()) << made.name;
+        const json document = take_apart(glb).document;
+        for (const Part& part : again.parts) {
+            const auto& of = document["meshes"][static_cast<std::size_t>(part.mesh)]["primitives"]
+                                     [static_cast<std::size_t>(part.primitive)];
+            const json& blended = document["materials"][of["material"].get<std::size_t>()]["extras"]
+                                          ["surfelao"]["blended"];
+            ASSERT_EQ(blended.size(), 3u) << made.name;
+            const std::uint32_t first = part.first_triangle;
+            for (std::size_t page = 0; page < 3; ++page) {
+                const std::size_t set = blended[page]["texCoord"];
+                EXPECT_EQ(document["textures"][blended[page]["index"].get<std::size_t>()]["source"],
+                          document["images"].size() - 3 + page);
+                for (int k = 0; k < 3; ++k) {
+                    const std::uint32_t place = asked.uvs[page].corners[first][k];
+                    EXPECT_EQ(place_in(again, set, first, k), place == UvSet::kNone
+                                                                  ? glm::dvec2(0.0)
+                                                                  : asked.uvs[page].values[place])
+                        << made.name << page;
+                }
+            }
         }
     }
 }

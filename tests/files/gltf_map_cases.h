@@ -122,8 +122,24 @@ inline UvSet places_for(const Scene& scene)
 }
 
 /// What a bake makes.
-enum class Way { vertices, map, new_map };
-inline constexpr Way kWays[] = {Way::vertices, Way::map, Way::new_map};
+enum class Way { vertices, map, new_map, blended };
+inline constexpr Way kWays[] = {Way::vertices, Way::map, Way::new_map, Way::blended};
+
+/// Two of three triangles on each page.
+inline BlendedMap blended_for(const Scene& scene)
+{
+    BlendedMap map{{two_texels(), two_texels(), two_texels()}, {}};
+    for (std::size_t page = 0; page < 3; ++page) {
+        map.uvs[page] = places_for(scene);
+        for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+            if ((t + page) % 3 == 0)
+                map.uvs[page].corners[t] = glm::uvec3(UvSet::kNone);
+        }
+        for (glm::dvec2& uv : map.uvs[page].values)
+            uv.y += 0.0625 * static_cast<double>(page + 1);
+    }
+    return map;
+}
 
 /// A result at `path` of what stands there in `contents`.
 inline std::string baked(const char* path, const std::string& contents, Way way)
@@ -133,6 +149,8 @@ inline std::string baked(const char* path, const std::string& contents, Way way)
         .mark = make_mark("bake", way == Way::vertices ? "vertices" : "at=texels")};
     if (way == Way::vertices)
         return gltf_contents(path, scene, pattern(scene), options).contents;
+    if (way == Way::blended)
+        return gltf_contents_with_blended_map(path, scene, blended_for(scene), options).contents;
     OcclusionMap map = map_over(0);
     if (way == Way::new_map)
         map.uvs = places_for(scene);

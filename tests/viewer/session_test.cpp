@@ -293,6 +293,42 @@ TEST_F(SessionTest, SavesTheBytesThatBakeWrites)
     }
 }
 
+/// Two walls that meet at a right angle, each a half of the map.
+constexpr const char* kWalls =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\n"
+    "vt 0.5 0\nvt 1 0\nvt 1 1\nvt 0.5 1\nvt 0 0\nvt 0 1\n"
+    "f 1/1 2/2 3/3 4/4\nf 1/1 4/4 6/6 5/5\n";
+
+TEST_F(SessionTest, AMapIsSolvedComparedWithRaysAndSavedAsBakeWritesIt)
+{
+    SessionSettings settings;
+    settings.texels.emplace().size = 32;
+    Session session;
+    session.solve(settings);
+    session.want_reference(64);
+    session.open(folder_.file("walls.obj", kWalls), UpAxis::y);
+    const SessionState& state = session.state();
+    ASSERT_TRUE(wait_for_whole_answer(session)) << state.message;
+    ASSERT_TRUE(wait_for(session, [&] { return state.has_reference(); }));
+    ASSERT_TRUE(state.layout && state.map && state.map_reference && state.map_error);
+    EXPECT_EQ(state.layout->facts.chart_count, 1u);
+    EXPECT_LT(state.map_error->rmse, 0.03);
+    for (std::size_t i = 0; i < 32 * 32; ++i)
+        EXPECT_NEAR(state.map->visibility[0].values[i],
+                    state.map_reference->visibility[0].values[i], 0.1f);
+    session.save(folder_ / "saved.png");
+    BakeSettings same;
+    same.input = state.path;
+    same.output = folder_ / "baked.png";
+    same.texels = settings.texels;
+    (void)bake(same);
+    EXPECT_EQ(contents_of(folder_ / "saved.png"), contents_of(folder_ / "baked.png"));
+
+    session.solve({});  // and the vertices again, with their own rays
+    ASSERT_TRUE(wait_for(session, [&] { return !state.layout && state.error.has_value(); }));
+    EXPECT_FALSE(state.map || state.map_reference || state.map_error);
+}
+
 /// One facet of a box, 90 degrees from the next: without vertices of its own.
 std::filesystem::path stl_box(const TemporaryFolder& folder)
 {

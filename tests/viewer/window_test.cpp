@@ -460,6 +460,34 @@ TEST_F(Window, AnotherTargetInThePanelMakesTheModelAnewUnderTheSameCamera)
     EXPECT_NEAR(after, small, 0.1 * small);
 }
 
+// The borders of charts, and nothing else, are of that orange.
+TEST_F(Window, AMapIsShownOnTheModelAndFlat)
+{
+    const std::filesystem::path file =
+        std::filesystem::path(testing::TempDir()) / "surfelao_window_map.obj";
+    std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+                           "vt .2 .2\nvt .8 .2\nvt .8 .8\nvt .2 .8\nf 1/1 2/2 3/3 4/4\n";
+    const auto is_border = [](const glm::vec4& p) {
+        return p.r > 0.9f && p.g < 0.5f && p.b < 0.1f;
+    };
+    int frames = 0;
+    double on_model = 0.0, flat = 0.0;
+    WindowOptions options;
+    options.input = file;
+    options.panel.settings.texels.emplace().size = 64;
+    options.on_frame = [&](const Image& shown, const Session& session) {
+        frames += session.state().is_solved && !session.state().is_draft;
+        (frames <= 3 ? on_model : flat) = share(shown, is_border);
+        if (frames == 3)
+            press(GLFW_KEY_A);
+        return frames < 7;
+    };
+    (void)show_window(options);
+    EXPECT_EQ(on_model, 0.0);
+    EXPECT_GT(flat, 0.001);
+    EXPECT_LT(flat, 0.01);
+}
+
 TEST_F(Window, MayGetAsSmallAsItWill)
 {
     int frames = 0;
