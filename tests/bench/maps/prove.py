@@ -25,7 +25,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 SAMPLES, THREADS, LARGE = 64, 2, 4096
 STAGES = ("raster", "surfels", "tree", "solve", "fill")
-LARGE_ONES = 2  # models of which the large map is made, those with the most triangles
+LARGE_ONES = 1  # models of which the large map is made, those with the most triangles
 
 
 def run(*command):
