@@ -99,8 +99,10 @@ public:
     /// Charts of the triangles in the list, from the largest on. axis_for(triangle): of the chart
     /// that it begins. All keep facing their axis within the limit.
     void grow(std::vector<std::uint32_t> members,
-              const std::function<glm::dvec3(std::uint32_t)>& axis_for, double limit)
+              const std::function<glm::dvec3(std::uint32_t)>& axis_for, double limit,
+              bool over_hard_edges)
     {
+        over_hard_edges_ = over_hard_edges;
         const double least = cos_deg(limit);
         is_free_.assign(facets_.areas.size(), 0);
         for (const std::uint32_t t : members)
@@ -140,6 +142,22 @@ public:
             axis = mean;
         }
         return axis;
+    }
+
+    /// Takes narrow strips apart; their triangles.
+    [[nodiscard]] std::vector<std::uint32_t> release_strips(double texel)
+    {
+        (void)borders();
+        std::vector<std::uint32_t> released;
+        for (Draft& draft : drafts_) {
+            if (!is_strip(draft, texel))
+                continue;
+            released.insert(released.end(), draft.chart.triangles.begin(),
+                            draft.chart.triangles.end());
+            draft.chart.triangles.clear();
+        }
+        std::ranges::sort(released);
+        return released;
     }
 
     /// Makes one of charts with a common border, as long as any two can be.
@@ -224,7 +242,8 @@ private:
     [[nodiscard]] bool is_free_across(std::uint32_t t, std::size_t k) const
     {
         const std::uint32_t next = facets_.neighbours[t][k];
-        return next != kNoTriangle && facets_.is_smooth[t][k] && is_free_[next] != 0;
+        return next != kNoTriangle && (over_hard_edges_ || facets_.is_smooth[t][k]) &&
+               is_free_[next] != 0;
     }
 
     std::uint32_t owner(std::uint32_t chart)
@@ -275,6 +294,12 @@ private:
         return whole;
     }
 
+    [[nodiscard]] static bool is_strip(const Draft& draft, double texel)
+    {
+        return draft.chart.triangles.size() >= kFewChartTriangles &&
+               2.0 * draft.chart.area < kNarrowTexels * texel * draft.perimeter;
+    }
+
     bool join_two(std::uint32_t a, std::uint32_t b, bool has_smooth_border, double texel)
     {
         if (drafts_[a].chart.area < drafts_[b].chart.area)
@@ -284,9 +309,7 @@ private:
         const bool is_small =
             texels < kSmallChartTexels ||
             (smaller.triangles.size() < kFewChartTriangles && texels < kFewChartTexels);
-        const bool is_narrow = smaller.triangles.size() >= kFewChartTriangles &&
-                               2.0 * smaller.area < kNarrowTexels * texel * drafts_[b].perimeter;
-        if (!has_smooth_border && texels >= kSmallChartTexels && !is_narrow)
+        if (!has_smooth_border && texels >= kSmallChartTexels && !is_strip(drafts_[b], texel))
             return false;
         const double least = cos_deg(is_small ? kSteepest : kChartLimit);
         return absorb(a, b, least) || (!is_small && unite(a, b, least));
@@ -357,6 +380,7 @@ private:
     std::vector<std::uint32_t> root_;      ///< per draft, the one it has become part of
     std::vector<std::uint32_t> chart_of_;  ///< per triangle
     std::vector<std::uint8_t> is_free_;
+    bool over_hard_edges_ = false;
     std::vector<std::uint32_t> stamp_;  ///< of the last trial growth that saw a triangle
     std::uint32_t last_stamp_ = 0;
     std::vector<std::uint32_t> queue_;
@@ -461,9 +485,9 @@ std::vector<Chart> make_charts(const Mesh& mesh, const Facets& facets, double te
     ChartMaker maker(mesh, facets, progress);
     std::vector<std::uint32_t> all(facets.areas.size());
     std::iota(all.begin(), all.end(), 0u);
-    maker.grow(
-        std::move(all), [&](std::uint32_t seed) { return maker.fitted_axis(seed, kChartLimit); },
-        kChartLimit);
+    const auto fitted = [&](std::uint32_t seed) { return maker.fitted_axis(seed, kChartLimit); };
+    maker.grow(std::move(all), fitted, kChartLimit, /*over_hard_edges=*/false);
+    maker.grow(maker.release_strips(texel), fitted, kChartLimit, /*over_hard_edges=*/true);
     maker.join(texel);
     return maker.charts();
 }
@@ -508,7 +532,8 @@ std::vector<Chart> make_axis_charts(const Mesh& mesh, const Facets& facets, int 
         glm::dvec3 direction(0.0);
         direction[axis] = side;
         maker.grow(
-            std::move(members), [&](std::uint32_t) { return direction; }, 180.0);
+            std::move(members), [&](std::uint32_t) { return direction; }, 180.0,
+            /*over_hard_edges=*/false);
     }
     return maker.charts();
 }

@@ -149,6 +149,8 @@ void check_together(const TexelOptions& options, bool picture)
            "--texels-per-unit is for texture coordinates that are made: -o a mesh, --uv new.");
     refuse(options.charts == "blended" && (!own || picture),
            "--charts is for texture coordinates that are made: -o a mesh, --uv new.");
+    refuse(options.charts == "blended" && options.bent.value_or("none") != "none",
+           "--bent is for maps of one page: --charts planar.");
     refuse(options.green && options.bent != "tangent", "--green is for --bent tangent.");
     refuse(options.cage && options.high.empty(), "--cage is for --high.");
 }

@@ -63,7 +63,11 @@ inline void check_maps(const Scene& scene)
     }
     map.uvs->values = {{0.0, 0.0}, {0.25, 0.5}, {0.5, 1.0}};
     const Scene obj = read_obj("obj", obj_contents_with_map("x.obj", scene, map).contents);
-    check_same(obj, scene, false);
+    SURFELAO_CHECK(obj.triangles == scene.triangles);
+    for (const glm::uvec3& triangle : obj.triangles) {  // vertices without a place move on
+        for (int k = 0; k < 3; ++k)
+            SURFELAO_CHECK(obj.positions[triangle[k]] == scene.positions[triangle[k]]);
+    }
     const Scene ply = read_ply("ply", ply_contents_with_map("x.ply", scene, map).contents);
     SURFELAO_CHECK(ply.triangles.size() == scene.triangles.size());
     SURFELAO_CHECK(obj.uvs.size() == ply.uvs.size());

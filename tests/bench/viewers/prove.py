@@ -13,6 +13,8 @@ them. And:
     textured   the corner with a texture, before and after: is its colour its own unlit and under
                direct light, does its occlusion show under ambient light?
     bent       --colors bent, and whether three.js has the attribute _bent_normal
+    maps       --at texels, over new texture coordinates, in three.js under ambient light alone and
+               at Blender's Occlusion socket, against the visibility that a bake of vertices holds
 
 Writes OUT/viewers.json, the sheets OUT/*.png, all single pictures in OUT/pictures, and OUT/modules,
 what npm installs. A minute. Not part of the tests: needs blender, chromium, godot3, nodejs, npm,
@@ -236,6 +238,26 @@ def part_bent(proof, name, camera):
     return judge
 
 
+def part_maps(proof, name, camera):
+    """A map over charts of our own, as .glb and as .gltf with the picture beside it."""
+    drawn = {}
+    bare = proof.draw("three", proof.out / f"input/{name}.glb", "ambient", camera)  # 2 % is specular
+    for form in ("glb", "gltf"):
+        result = proof.bake(proof.out / f"input/{name}.{form}", proof.out / f"after/{name}-map.{form}",
+                            "--at", "texels", "--uv", "new")
+        for program, show in (("three", "ambient"), ("blender", "occlusion")):
+            drawn[program, form] = proof.draw(program, result, show, camera)
+
+    def judge():
+        truth = pictures.visibility(pictures.read_glb(proof.out / f"after/{name}.glb"), camera, SIZE)
+        pictures.sheet(proof.out / f"{name}-map.png", [("", [
+            (f"{program}, {form}", picture) for (program, form), picture in drawn.items()])])
+        return {"maps": [proof.row(picture, truth, bare if program == "three" else None, model=name,
+                                   format=form) for (program, form), picture in drawn.items()]}
+
+    return judge
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("binary", type=pathlib.Path)
@@ -255,7 +277,8 @@ def main():
     judge_corner, _ = part_formats(proof, "corner", corner[:2], at_corner, before)
     judges = [judge_bunny, judge_corner,
               part_others(proof, proof.out / "input/bunny.glb", result, at_bunny),
-              part_textured(proof, corner, at_corner), part_bent(proof, "bunny", at_bunny)]
+              part_textured(proof, corner, at_corner), part_bent(proof, "bunny", at_bunny),
+              part_maps(proof, "bunny", at_bunny), part_maps(proof, "corner", at_corner)]
     proof.draw_all()
     shown = {}
     for judge in judges:
@@ -263,8 +286,8 @@ def main():
             shown.setdefault(part, []).extend(rows)
     (proof.out / "viewers.json").write_text(json.dumps(shown, indent=1))
     print(json.dumps(shown, indent=1))
-    wrong = [row for row in shown["formats"]
-             if row["when"] == "after" and abs(row["difference"]) > TOLERANCE]
+    wrong = [row for row in shown["formats"] + shown["maps"]
+             if row.get("when") != "before" and abs(row["difference"]) > TOLERANCE]
     for row in wrong:
         print(f"prove.py: {row['model']}.{row['format']} in {row['program']}: {row['screen']:.3f} instead "
               f"of {row['truth']:.3f}", file=sys.stderr)
