@@ -316,18 +316,38 @@ double dot(const std::vector<double>& a, const std::vector<double>& b)
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-/// The change y of values x0 that minimises |S (x0 + y)|^2 + kStitchWeight |y|^2, S: the
-/// differences (Hestenes, Stiefel. Methods of Conjugate Gradients. 1952).
-std::vector<double> change_to_join(const SeamSamples& samples, const std::vector<double>& values)
+/// How much each sample counts: Cauchy's weights (seams.h: kStitchJump).
+std::vector<double> stitch_weights(const std::vector<double>& jumps)
 {
-    std::vector<double> rest = samples.spread(samples.differences(values));
+    std::vector<double> weights;
+    weights.reserve(jumps.size());
+    for (const double jump : jumps)
+        weights.push_back(1.0 / (1.0 + jump * jump / (kStitchJump * kStitchJump)));
+    return weights;
+}
+
+/// The change y of values x0 that minimises |W (S (x0 + y))|^2 + kStitchWeight |y|^2, S: the
+/// differences, W^2: the weights (Hestenes, Stiefel. Methods of Conjugate Gradients. 1952).
+std::vector<double> change_to_join(const SeamSamples& samples, const std::vector<double>& values,
+                                   const Progress& progress)
+{
+    const std::vector<double> weights = stitch_weights(samples.differences(values));
+    const auto normal_product = [&](const std::vector<double>& of) {
+        std::vector<double> differences = samples.differences(of);
+        for (std::size_t s = 0; s < weights.size(); ++s)
+            differences[s] *= weights[s];
+        return samples.spread(differences);
+    };
+    std::vector<double> rest = normal_product(values);
     for (double& value : rest)
         value = -value;
     std::vector<double> change(values.size(), 0.0), way = rest;
     const double first = dot(rest, rest);
     double length = first;
     for (int i = 0; i < kMostIterations && length > kResidual * kResidual * first; ++i) {
-        std::vector<double> image = samples.spread(samples.differences(way));
+        if (progress && !progress(static_cast<double>(i) / kMostIterations))
+            throw Cancelled();
+        std::vector<double> image = normal_product(way);
         for (std::size_t k = 0; k < image.size(); ++k)
             image[k] += kStitchWeight * way[k];
         const double step = length / dot(way, image);
@@ -414,14 +434,14 @@ void fill_across(const Mesh& mesh, const MapLayout& layout, const Seams& seams, 
     }
 }
 
-void stitch(const Seams& seams, std::span<Map> pages)
+void stitch(const Seams& seams, std::span<Map> pages, const Progress& progress)
 {
     const SeamSamples samples(seams, pages);
     if (samples.texels().empty())
         return;
     for (std::uint32_t channel = 0; channel < pages[0].channels; ++channel) {
         const std::vector<double> values = values_of(samples, pages, channel);
-        const std::vector<double> change = change_to_join(samples, values);
+        const std::vector<double> change = change_to_join(samples, values, progress);
         const auto [least, most] = std::ranges::minmax(values);
         for (std::size_t k = 0; k < values.size(); ++k)
             value_at(pages, samples.texels()[k], channel) =

@@ -17,6 +17,7 @@
 #include "atlas/layout.h"
 #include "image/map.h"
 #include "surfels/edges.h"
+#include "surfels/progress.h"
 #include "surfels/surface.h"
 
 #include <glm/vec2.hpp>
@@ -70,18 +71,26 @@ void fill_across(const Mesh& mesh, const MapLayout& layout, const Seams& seams, 
 
 /// Of each moved texel the squared change counts so much against the squared jumps.
 inline constexpr double kStitchWeight = 0.1;
+/// A sample whose sides differ by so much before counts half. Where they differ by more, the
+/// surface changes within a texel, as in creases and between charts of few texels: to join such
+/// sides moves texels that were right. RMSE displayed, counting all alike and with this:
+/// FlightHelmet .0353 and .0281, skull .0058 and .0048, stanford_bunny .0042 and .0041; jumps left
+/// at smooth seams of spot .0006 and .0007, of skull .006 and .024.
+inline constexpr double kStitchJump = 0.05;
 /// Samples of a seam per texel of its length, on the page where it is longer.
 inline constexpr double kSeamSamples = 2.0;
 
 /// Changes the texels from which smooth seams are fetched, all of which must have a value, to the
 /// minimum of
 ///
-///     sum_s (a_s - b_s)^2 + kStitchWeight sum_k (x_k - x0_k)^2
+///     sum_s w_s (a_s - b_s)^2 + kStitchWeight sum_k (x_k - x0_k)^2
 ///
-/// a_s and b_s: what both sides show at sample s; x_k and x0_k: texels after and before. No value
+/// a_s and b_s: what both sides show at sample s; x_k and x0_k: texels after and before; w_s: 1 /
+/// (1 + (j_s / kStitchJump)^2), j_s: the jump before. No value
 /// leaves the range of those before. A constant map stays the same to the bit. Each channel for
 /// itself, by conjugate gradients. Time and memory: O(samples). Equal input gives equal bytes.
-void stitch(const Seams& seams, std::span<Map> pages);
+/// Throws Cancelled.
+void stitch(const Seams& seams, std::span<Map> pages, const Progress& progress = {});
 
 /// By how much both sides of smooth seams differ as shown, at the samples of stitch(): channel 0.
 struct SeamJump {

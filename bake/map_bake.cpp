@@ -185,6 +185,11 @@ private:
             throw Cancelled();
     }
 
+    [[nodiscard]] Progress progress_in(std::string_view stage) const
+    {
+        return [this, stage](double done) { return !progress_ || progress_(stage, done); };
+    }
+
     const Prepared& prepared_for(const EngineSettings& engine)
     {
         const auto found = prepared_.find(engine.engine);
@@ -316,7 +321,7 @@ private:
             for (std::size_t page = 0; page < maps.size(); ++page)
                 fill_around(maps[page], filled[page], rings);
             if (joins)
-                stitch(seams, maps);
+                stitch(seams, maps, progress_in("fill"));
         };
         fill(bake.visibility, true);
         if (!bake.bent.empty())
@@ -341,9 +346,7 @@ private:
                 [&](std::span<const SurfacePoint> points) { return receivers_of(points); },
                 occluders(), count_);
             check_->leave_out_hidden();
-            check_->trace(
-                bake.engine.definition, shown,
-                [&](double done) { return !progress_ || progress_("check", done); }, asked_);
+            check_->trace(bake.engine.definition, shown, progress_in("check"), asked_);
         }
         return check_->error_of(shown);
     }
