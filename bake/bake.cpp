@@ -82,6 +82,20 @@ void bake_at_vertices(const std::shared_ptr<const Mesh>& mesh, BakeReport& repor
     report.seconds.write = stage.lap();
 }
 
+/// What a bake writes beside its output.
+std::vector<fs::path> files_beside(const BakeSettings& settings)
+{
+    std::vector<fs::path> files;
+    if (!settings.texels)
+        return files;
+    if (settings.texels->bent != BentSpace::none)
+        files.push_back(bent_path(settings.output));
+    for (const auto& file : {map_file_of(settings.output), map_materials_of(settings.output)})
+        if (file)
+            files.push_back(*file);
+    return files;
+}
+
 }  // namespace
 
 BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
@@ -175,6 +189,11 @@ bool is_finished(const BakeSettings& settings)
     const bool is_picture = type_of(settings.output) == FileType::unknown;
     if (error || (is_picture ? read_description(settings.output) : read_mark(settings.output)) !=
                      mark_of(settings))
+        return false;
+    if (!std::ranges::all_of(files_beside(settings), [](const fs::path& file) {
+            std::error_code ignored;
+            return fs::exists(file, ignored);
+        }))
         return false;
     std::vector<fs::path> sources;
     if (settings.texels)

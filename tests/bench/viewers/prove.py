@@ -6,7 +6,7 @@
 Bakes two meshes (the scan data/models/bunny.obj and a corner of a room) to .glb, .gltf, .ply and
 .obj with default options, opens each in three.js (in chromium) and in Blender, and compares the
 mean light of the picture with the mean visibility that the result holds for the same pixels: exit 1
-where they differ by more than .01. With --before also as another version of the program writes
+where they differ by more than .01, or where the Khronos validator finds an error. With --before also as another version of the program writes
 them. And:
 
     others     the scan's .glb in Godot and in <model-viewer>, which only lights
@@ -15,6 +15,8 @@ them. And:
     bent       --colors bent, and whether three.js has the attribute _bent_normal
     maps       --at texels, over new texture coordinates, in three.js under ambient light alone and
                at Blender's Occlusion socket, against the visibility that a bake of vertices holds
+
+    valid      the Khronos validator on every .glb and .gltf that was baked
 
 Writes OUT/viewers.json, the sheets OUT/*.png, all single pictures in OUT/pictures, and OUT/modules,
 what npm installs. A minute. Not part of the tests: needs blender, chromium, godot3, nodejs, npm,
@@ -41,7 +43,7 @@ ROOT = HERE.parent.parent.parent
 SIZE = 480
 FORMATS = ("glb", "gltf", "ply", "obj")
 TOLERANCE = 0.01  # of a mean visibility on the screen
-MODULES = ("three", "puppeteer-core", "@google/model-viewer")
+MODULES = ("three", "puppeteer-core", "@google/model-viewer", "gltf-validator")
 PROGRAMS = ("blender", "chromium", "godot3", "node", "npm", "xvfb-run")
 PAGES = {"three": "three.html", "model-viewer": "model_viewer.html"}
 
@@ -129,6 +131,14 @@ class Proof:
         run(*command, "--editor", "--quit", env=home, timeout=300)
         version = re.search(r"v([\d.]+)\.", run(*command, env=home, timeout=300)).group(1)
         return [{"picture": job["picture"], "program": f"Godot {version}"} for job in jobs]
+
+    def validated(self):
+        """[(file, number of errors, the first of them)] of all baked glTF files."""
+        files = sorted(file for file in (self.out / "after").iterdir() if file.suffix in (".glb", ".gltf"))
+        modules = self.out / "modules/node_modules"
+        answers = json.loads(run("node", HERE / "validate.mjs", modules, *files))
+        return [{"file": pathlib.Path(answer["file"]).name, "errors": answer["errors"],
+                 "first": answer["first"]} for answer in answers]
 
     def row(self, picture, truth, bare=None, **others):
         return {"program": self.said[picture]["program"], **others,
@@ -284,6 +294,7 @@ def main():
     for judge in judges:
         for part, rows in judge().items():
             shown.setdefault(part, []).extend(rows)
+    shown["valid"] = proof.validated()
     (proof.out / "viewers.json").write_text(json.dumps(shown, indent=1))
     print(json.dumps(shown, indent=1))
     wrong = [row for row in shown["formats"] + shown["maps"]
@@ -291,7 +302,10 @@ def main():
     for row in wrong:
         print(f"prove.py: {row['model']}.{row['format']} in {row['program']}: {row['screen']:.3f} instead "
               f"of {row['truth']:.3f}", file=sys.stderr)
-    return 1 if wrong else 0
+    invalid = [row for row in shown["valid"] if row["errors"]]
+    for row in invalid:
+        print(f"prove.py: {row['file']}: {row['errors']} errors, {row['first']}", file=sys.stderr)
+    return 1 if wrong or invalid else 0
 
 
 if __name__ == "__main__":
