@@ -2,6 +2,7 @@
 
 #include "atlas/bit_mask.h"
 #include "surfels/errors.h"
+#include "surfels/number_text.h"
 #include "surfels/texels.h"
 
 #include <tbb/parallel_for.h>
@@ -474,6 +475,8 @@ std::optional<Packing> largest_scale(const Packer& packer, const PackingSettings
                                      Search& search)
 {
     const double room = settings.size - 2.0 * std::max(1u, settings.padding);
+    if (!(room > 0.0))
+        return {};
     double scale =
         std::min(settings.size * std::sqrt(kMostUse / packer.area()), room / packer.longest());
     // down in larger and larger steps
@@ -552,14 +555,14 @@ Packing pack(std::span<const Shape> shapes, const PackingSettings& settings,
     std::optional<Packing> packing =
         settings.scale ? smallest_size(packer, *settings.scale, settings.padding, search)
                        : largest_scale(packer, settings, search);
-    const std::string count = std::to_string(shapes.size());
+    const std::string count = count_text(shapes.size(), "chart");
     const std::string padding = " with a padding of " + std::to_string(settings.padding);
     if (!packing && settings.scale)
-        throw SettingsError(count + " charts do not fit a map of " + std::to_string(kMostTexels) +
+        throw SettingsError("no room for " + count + " in a map of " + std::to_string(kMostTexels) +
                             " texels a side at that many texels per unit" + padding);
     if (!packing)
-        throw SettingsError(count + " charts do not fit a map of " + std::to_string(settings.size) +
-                            " texels a side" + padding);
+        throw SettingsError("no room for " + count + " in a map of " +
+                            std::to_string(settings.size) + " texels a side" + padding);
     search.finish();
     return std::move(*packing);
 }

@@ -85,8 +85,8 @@ struct GltfAsset : SourceAsset {
     /// Per mesh that the scene uses and primitive: the first primitive that shares all its vertices
     /// (Part::primitive), or -1 where it draws no triangles. Empty for other meshes.
     std::vector<std::vector<std::int32_t>> group_of_primitive;
-    std::vector<GltfUse> uses;       ///< in the order of the parts; each has one at least
-    std::vector<GltfPart> parts;     ///< as Scene::parts
+    std::vector<GltfUse> uses;    ///< in the order of the parts; each has one at least
+    std::vector<GltfPart> parts;  ///< as Scene::parts
 
     [[nodiscard]] BaseColors base_colors() const override;  // gltf_base_colors.cpp
 };

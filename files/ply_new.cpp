@@ -97,14 +97,14 @@ std::string new_ply(const Scene& scene, const PlyValues& values, std::string_vie
     // of the values 19 bytes: what a bake has at a vertex
     text.reserve(text.size() + scene.positions.size() * (wide ? 43 : 31) + faces.bytes.size());
     for (std::size_t v = 0; v < scene.positions.size(); ++v) {
-            for (int axis = 0; axis < 3; ++axis) {
-                const double value = scene.positions[v][axis];
-                if (wide)
-                    append_bytes(text, value);
-                else
-                    append_bytes(text, static_cast<float>(value));
-            }
-            values.append(text, v);
+        for (int axis = 0; axis < 3; ++axis) {
+            const double value = scene.positions[v][axis];
+            if (wide)
+                append_bytes(text, value);
+            else
+                append_bytes(text, static_cast<float>(value));
+        }
+        values.append(text, v);
     }
     return text += faces.bytes;
 }

@@ -19,8 +19,8 @@ namespace surfelao {
 /// What is solved.
 struct SolveWith {
     bool vertices = true;  ///< else they are open
-    bool ground = true;   ///< else it is open
-    bool points = false;  ///< Model::points
+    bool ground = true;    ///< else it is open
+    bool points = false;   ///< Model::points
 };
 
 struct ModelAnswer {

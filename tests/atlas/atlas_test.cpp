@@ -284,13 +284,22 @@ TEST(Atlas, ChartsThatDoNotFitAreRefusedInASentence)
     for (int i = 0; i < 400; ++i)
         leaves += scenes::sheet({2.0 * i, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
     const Mesh mesh = make_mesh(leaves);
-    try {
-        (void)make_atlas(mesh, {.size = 16});
-        FAIL() << "400 charts on 256 texels";
-    } catch (const SettingsError& error) {
-        EXPECT_STREQ(error.what(),
-                     "400 charts do not fit a map of 16 texels a side with a padding of 4");
-    }
+    const Mesh leaf = make_mesh(scenes::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1));
+    const auto fault_of = [](const Mesh& of, const AtlasSettings& settings) -> std::string {
+        try {
+            (void)make_atlas(of, settings);
+        } catch (const SettingsError& error) {
+            return error.what();
+        }
+        return "it fits";
+    };
+    EXPECT_EQ(fault_of(mesh, {.size = 16}),
+              "no room for 400 charts in a map of 16 texels a side with a padding of 4");
+    EXPECT_EQ(fault_of(leaf, {.size = 1}),
+              "no room for 1 chart in a map of 1 texels a side with a padding of 4");
+    EXPECT_EQ(fault_of(leaf, {.size = 16, .padding = 20}),
+              "no room for 1 chart in a map of 16 texels a side with a padding of 20");
+    EXPECT_EQ(fault_of(leaf, {.size = 16}), "it fits");
     expect_sound(mesh, {.size = 64}, "on 64 texels");
 }
 
