@@ -32,6 +32,20 @@ def viewers_worst(figures, when="after", key="difference"):
 
 
 @view
+def viewers_maps(figures):
+    """Mean visibility that three.js and Blender show of maps over new texture coordinates"""
+    rows = []
+    for model in ("bunny", "corner"):
+        for form in ("glb", "gltf"):
+            cells = [after(figures, "maps", program, model=model, format=form)
+                     for program in ("three.js", "Blender")]
+            rows.append([model, f".{form}", short(cells[0]["truth"], 3),
+                         *(short(cell["screen"], 3) for cell in cells)])
+    return table(["mesh", "file", "a bake of vertices holds", "three.js, ambient light alone",
+                  "Blender, the image at the socket Occlusion"], rows)
+
+
+@view
 def viewers_before(figures):
     """The commit of `before`"""
     return figures["viewers"]["before"]
