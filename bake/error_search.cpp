@@ -1,8 +1,49 @@
 #include "bake/error_search.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace surfelao {
+
+JudgedBaker::JudgedBaker(const Geometry& occluders, std::uint32_t check,
+                         const StageProgress& progress, std::optional<double> asked)
+    : occluders_(occluders), count_(check), progress_(progress), asked_(asked)
+{
+}
+
+void JudgedBaker::enter(std::string_view stage) const
+{
+    if (progress_ && !progress_(stage, 0.0))
+        throw Cancelled();
+}
+
+Progress JudgedBaker::progress_in(std::string_view stage) const
+{
+    return [this, stage](double done) { return !progress_ || progress_(stage, done); };
+}
+
+const Prepared& JudgedBaker::prepared_for(const EngineSettings& engine, double& surfels,
+                                          double& tree)
+{
+    const auto found = prepared_.find(engine.engine);
+    if (found != prepared_.end())
+        return found->second;
+    enter("build");
+    const Prepared& prepared =
+        prepared_.emplace(engine.engine, prepare(occluders_, engine)).first->second;
+    surfels += prepared.seconds().surfels;
+    tree += prepared.seconds().tree;
+    return prepared;
+}
+
+bool JudgedBaker::take_more_points()
+{
+    if (count_ >= kMostSearchPoints)
+        return false;
+    count_ = std::min(4 * count_, kMostSearchPoints);
+    check_.reset();
+    return true;
+}
 
 bool is_hopeless(std::span<const Trial> trials, double error)
 {

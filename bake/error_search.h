@@ -3,13 +3,21 @@
 
 #include "bake/stated_error.h"
 #include "engines/engine.h"
+#include "surfels/progress.h"
 
 #include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace surfelao {
+
+/// Told the stage at hand ("read", "solve", ...) and how much of it is done; false stops the job.
+using StageProgress = std::function<bool(std::string_view stage, double done)>;
 
 /// A setting that was tried on the way to an error.
 struct Trial {
@@ -34,6 +42,38 @@ inline constexpr Step kSteps[] = {
     {Engine::masks, 1.0f, 1.0f},    {Engine::masks, 2.0f, 1.8f},   {Engine::rays, 64.0f, 2.2f},
     {Engine::masks, 3.0f, 3.2f},    {Engine::masks, 4.0f, 6.0f},   {Engine::rays, 256.0f, 7.3f},
     {Engine::rays, 1024.0f, 23.0f}, {Engine::rays, 4096.0f, 81.0f}};
+
+/// What bakers of any target have in common: engines, each prepared once, and the points by which
+/// all that they bake is judged. Everything given must outlive it.
+class JudgedBaker {
+public:
+    [[nodiscard]] const ErrorCheck& check() const { return *check_; }
+
+protected:
+    /// check: points; 0: nothing is judged. asked: the error that shall be told of other bakes than
+    /// the first, which may be a coarse one.
+    JudgedBaker(const Geometry& occluders, std::uint32_t check, const StageProgress& progress,
+                std::optional<double> asked);
+
+    /// Says which stage begins; the moment at which a job between two stages can be stopped.
+    void enter(std::string_view stage) const;
+    [[nodiscard]] Progress progress_in(std::string_view stage) const;
+
+    /// Adds what it takes to `surfels` and `tree`, in seconds.
+    const Prepared& prepared_for(const EngineSettings& engine, double& surfels, double& tree);
+
+    /// Takes four times as many points from now on; false where they are enough.
+    [[nodiscard]] bool take_more_points();
+
+    const Geometry& occluders_;
+    std::uint32_t count_;
+    const StageProgress& progress_;
+    std::optional<double> asked_;
+    std::optional<ErrorCheck> check_;  ///< once the first bake is judged
+
+private:
+    std::map<Engine, Prepared> prepared_;
+};
 
 /// Whether nothing can bring the interval below `error`: the best values would have one that is as
 /// wide in proportion. That is told by the floor alone, by what more exactness brought last, or,

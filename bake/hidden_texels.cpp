@@ -7,21 +7,6 @@
 #include <algorithm>
 
 namespace surfelao {
-namespace {
-
-/// Calls visit(index) for the texels around one.
-template <class Visit>
-void for_each_around(const Map& map, std::size_t texel, const Visit& visit)
-{
-    const auto x = static_cast<std::uint32_t>(texel % map.width);
-    const auto y = static_cast<std::uint32_t>(texel / map.width);
-    for (std::uint32_t row = y > 0 ? y - 1 : 0; row <= std::min(y + 1, map.height - 1); ++row)
-        for (std::uint32_t column = x > 0 ? x - 1 : 0; column <= std::min(x + 1, map.width - 1);
-             ++column)
-            visit(std::size_t{row} * map.width + column);
-}
-
-}  // namespace
 
 std::vector<std::uint8_t> texels_maybe_hidden(const Map& visibility,
                                               std::span<const std::uint8_t> known)

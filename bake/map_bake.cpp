@@ -115,20 +115,18 @@ Shown shown_by(const Mesh& mesh, const MapLayout& layout, const std::vector<Map>
     };
 }
 
-/// One mesh and its layout, prepared engines, and the points by which all maps are judged.
-class MapBaker {
+class MapBaker : public JudgedBaker {
 public:
     MapBaker(const Mesh& mesh, const MapLayout& layout, const MapSettings& settings,
              const Offset& offset, const HighDetail* high, const StageProgress& progress,
              std::optional<double> error = {})
-        : mesh_(mesh),
+        : JudgedBaker(high ? high->mesh().geometry : mesh.geometry, settings.check, progress,
+                      error),
+          mesh_(mesh),
           layout_(layout),
           settings_(settings),
           offset_(offset),
-          high_(high),
-          progress_(progress),
-          asked_(error),
-          count_(settings.check)
+          high_(high)
     {
     }
 
@@ -141,7 +139,7 @@ public:
         bake.visibility.assign(layout_.pages.size(), Map(size.width, size.height, 1));
         if (settings_.bent)
             bake.bent.assign(layout_.pages.size(), Map(size.width, size.height, 3));
-        const Prepared& prepared = prepared_for(engine);
+        const Prepared& prepared = prepared_for(engine, seconds_.surfels, seconds_.tree);
         bake.surfels = prepared.surfel_count();
         Known known(layout_.pages.size(), std::vector<std::uint8_t>(size.count(), 0));
         solve_texels(prepared, engine, bake, known);
@@ -166,50 +164,20 @@ public:
     /// Measures what has been baked last at four times as many points; false where they are enough.
     bool refine(MapBake& bake)
     {
-        if (count_ >= kMostSearchPoints)
+        if (!take_more_points())
             return false;
-        count_ = std::min(4 * count_, kMostSearchPoints);
-        check_.reset();
         Stopwatch watch;
         bake.error = error_of(bake);
         bake.seconds.check = seconds_.check += watch.lap();
         return true;
     }
 
-    [[nodiscard]] const ErrorCheck& check() const { return *check_; }
-
 private:
-    void enter(std::string_view stage) const
-    {
-        if (progress_ && !progress_(stage, 0.0))
-            throw Cancelled();
-    }
-
-    [[nodiscard]] Progress progress_in(std::string_view stage) const
-    {
-        return [this, stage](double done) { return !progress_ || progress_(stage, done); };
-    }
-
-    const Prepared& prepared_for(const EngineSettings& engine)
-    {
-        const auto found = prepared_.find(engine.engine);
-        if (found != prepared_.end())
-            return found->second;
-        enter("build");
-        const Prepared& prepared =
-            prepared_.emplace(engine.engine, prepare(occluders(), engine)).first->second;
-        seconds_.surfels += prepared.seconds().surfels;
-        seconds_.tree += prepared.seconds().tree;
-        return prepared;
-    }
-
     [[nodiscard]] std::uint32_t band_rows() const
     {
         return static_cast<std::uint32_t>(
             std::clamp<std::uint64_t>(kBandTexels / layout_.size.width, 1, layout_.size.height));
     }
-
-    const Geometry& occluders() const { return high_ ? high_->mesh().geometry : mesh_.geometry; }
 
     std::vector<Receiver> receivers_of(std::span<const SurfacePoint> points,
                                        std::uint64_t* misses = nullptr) const
@@ -271,9 +239,9 @@ private:
             for (const Texel& texel : texels)
                 points.push_back(texel.point);
             if (!scene)
-                scene.emplace(occluders(), RayScene::Build::quick);
+                scene.emplace(occluders_, RayScene::Build::quick);
             const std::vector<std::uint8_t> inside =
-                inside_bodies(occluders(), *scene, receivers_of(points), definition.max_distance);
+                inside_bodies(occluders_, *scene, receivers_of(points), definition.max_distance);
             for (std::size_t i = 0; i < texels.size(); ++i)
                 if (inside[i] == 0)  // one sheet of a texel that is seen is enough
                     hidden[index_of(texels[i])] = 0;
@@ -344,7 +312,7 @@ private:
             check_.emplace(
                 mesh_.geometry, density,
                 [&](std::span<const SurfacePoint> points) { return receivers_of(points); },
-                occluders(), count_);
+                occluders_, count_);
             check_->leave_out_hidden();
             check_->trace(bake.engine.definition, shown, progress_in("check"), asked_);
         }
@@ -356,11 +324,6 @@ private:
     const MapSettings& settings_;
     const Offset& offset_;
     const HighDetail* high_;
-    const StageProgress& progress_;
-    std::optional<double> asked_;
-    std::uint32_t count_;
-    std::map<Engine, Prepared> prepared_;
-    std::optional<ErrorCheck> check_;
     MapSeconds seconds_;
 };
 

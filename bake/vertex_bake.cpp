@@ -12,47 +12,30 @@
 namespace surfelao {
 namespace {
 
-/// Says which stage begins; the moment at which a job between two stages can be stopped.
-void enter_stage(const StageProgress& progress, std::string_view stage)
-{
-    if (progress && !progress(stage, 0.0))
-        throw Cancelled();
-}
-
-Progress progress_in(const StageProgress& progress, std::string_view stage)
-{
-    return [&progress, stage](double done) { return !progress || progress(stage, done); };
-}
-
-/// One mesh, prepared engines, and the points by which all answers are judged.
-class Baker {
+class Baker : public JudgedBaker {
 public:
-    /// error: what shall be told of other bakes than the first, which may be a coarse one.
     Baker(const Mesh& mesh, const VertexTarget& target, const Offset& offset, std::uint32_t check,
           const StageProgress& progress, std::optional<double> error = {})
-        : mesh_(mesh),
+        : JudgedBaker(mesh.geometry, check, progress, error),
+          mesh_(mesh),
           target_(target),
-          offset_(offset),
-          count_(check),
-          progress_(progress),
-          asked_(error)
+          offset_(offset)
     {
     }
 
     /// The seconds are those of all calls so far.
     VertexBake bake(const EngineSettings& engine)
     {
-        const Prepared& prepared = prepared_for(engine);
+        const Prepared& prepared = prepared_for(engine, seconds_.surfels, seconds_.tree);
         VertexBake bake;
         bake.engine = engine;
         bake.surfels = prepared.surfel_count();
-        enter_stage(progress_, "solve");
-        Solution solution =
-            solve(prepared, target_.receivers(), engine, progress_in(progress_, "solve"));
+        enter("solve");
+        Solution solution = solve(prepared, target_.receivers(), engine, progress_in("solve"));
         seconds_.solve += solution.seconds;
         bake.residual = solution.residual;
 
-        enter_stage(progress_, "fit");
+        enter("fit");
         Stopwatch watch;
         bake.values = target_.values(solution.occlusion);
         seconds_.fit += watch.lap();
@@ -67,35 +50,18 @@ public:
     /// Measures what has been baked last at four times as many points; false where they are enough.
     bool refine(VertexBake& bake)
     {
-        if (count_ >= kMostSearchPoints)
+        if (!take_more_points())
             return false;
-        count_ = std::min(4 * count_, kMostSearchPoints);
-        check_.reset();
         Stopwatch watch;
         bake.error = error_of(bake);
         bake.seconds.check = seconds_.check += watch.lap();
         return true;
     }
 
-    [[nodiscard]] const ErrorCheck& check() const { return *check_; }
-
 private:
-    const Prepared& prepared_for(const EngineSettings& engine)
-    {
-        const auto found = prepared_.find(engine.engine);
-        if (found != prepared_.end())
-            return found->second;
-        enter_stage(progress_, "build");
-        const Prepared& prepared =
-            prepared_.emplace(engine.engine, prepare(mesh_.geometry, engine)).first->second;
-        seconds_.surfels += prepared.seconds().surfels;
-        seconds_.tree += prepared.seconds().tree;
-        return prepared;
-    }
-
     StatedError error_of(const VertexBake& bake)
     {
-        enter_stage(progress_, "check");
+        enter("check");
         const Geometry& geometry = mesh_.geometry;
         const Shown shown = [&](const SurfacePoint& point) {
             return displayed(geometry, bake.values, point);
@@ -105,7 +71,7 @@ private:
                 density_for(geometry, target_, bake.answers, bake.values);
             check_.emplace(mesh_, density, offset_, count_);
             check_->add_floor(target_, density);
-            check_->trace(bake.engine.definition, shown, progress_in(progress_, "check"), asked_);
+            check_->trace(bake.engine.definition, shown, progress_in("check"), asked_);
         }
         return check_->error_of(shown, bake.answers);
     }
@@ -113,11 +79,6 @@ private:
     const Mesh& mesh_;
     const VertexTarget& target_;
     const Offset& offset_;
-    std::uint32_t count_;
-    const StageProgress& progress_;
-    std::optional<double> asked_;
-    std::map<Engine, Prepared> prepared_;
-    std::optional<ErrorCheck> check_;
     VertexBakeSeconds seconds_;
 };
 

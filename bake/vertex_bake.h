@@ -16,9 +16,6 @@
 
 namespace surfelao {
 
-/// Told the stage at hand ("read", "solve", ...) and how much of it is done; false stops the job.
-using StageProgress = std::function<bool(std::string_view stage, double done)>;
-
 /// Wall-clock seconds of each stage; of several trials the sums.
 struct VertexBakeSeconds {
     double surfels = 0.0;  ///< what the engine makes of the mesh first

@@ -15,25 +15,13 @@ std::uint32_t repeated(double texel, std::uint32_t side)
     return place < side ? place : 0;
 }
 
-/// Calls visit(index) for the neighbours of a texel.
-template <class Visit>
-void for_each_neighbour(const Map& map, std::size_t texel, const Visit& visit)
-{
-    const auto x = static_cast<std::uint32_t>(texel % map.width);
-    const auto y = static_cast<std::uint32_t>(texel / map.width);
-    for (std::uint32_t row = y > 0 ? y - 1 : 0; row <= std::min(y + 1, map.height - 1); ++row)
-        for (std::uint32_t column = x > 0 ? x - 1 : 0; column <= std::min(x + 1, map.width - 1);
-             ++column)
-            visit(std::size_t{row} * map.width + column);
-}
-
 /// Texels without a value beside one of `front`, each once, rising.
 std::vector<std::size_t> ring_around(const Map& map, const std::vector<std::uint8_t>& known,
                                      const std::vector<std::size_t>& front)
 {
     std::vector<std::size_t> ring;
     for (const std::size_t texel : front)
-        for_each_neighbour(map, texel, [&](std::size_t neighbour) {
+        for_each_around(map, texel, [&](std::size_t neighbour) {
             if (known[neighbour] == 0)
                 ring.push_back(neighbour);
         });
@@ -91,7 +79,7 @@ void fill_around(Map& map, std::vector<std::uint8_t>& known, std::uint32_t rings
         for (std::uint32_t c = 0; c < map.channels; ++c)
             mean[c] += map.values[texel * map.channels + c];
         bool is_rim = false;
-        for_each_neighbour(map, texel, [&](std::size_t other) { is_rim |= known[other] == 0; });
+        for_each_around(map, texel, [&](std::size_t other) { is_rim |= known[other] == 0; });
         if (is_rim)
             front.push_back(texel);
     }
@@ -102,7 +90,7 @@ void fill_around(Map& map, std::vector<std::uint8_t>& known, std::uint32_t rings
         for (const std::size_t texel : front) {
             double neighbours = 0.0;
             std::vector<double> sums(map.channels, 0.0);
-            for_each_neighbour(map, texel, [&](std::size_t other) {
+            for_each_around(map, texel, [&](std::size_t other) {
                 if (known[other] == 0)
                     return;
                 ++neighbours;

@@ -3,6 +3,7 @@
 
 #include <glm/vec2.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -30,6 +31,19 @@ struct Map {
         return (std::size_t{y} * width + x) * channels;
     }
 };
+
+/// Calls visit(texel) for the texels around one and for itself, by index over the channels, row by
+/// row. Neighbours do not repeat beyond the rim.
+template <class Visit>
+void for_each_around(const Map& map, std::size_t texel, const Visit& visit)
+{
+    const auto x = static_cast<std::uint32_t>(texel % map.width);
+    const auto y = static_cast<std::uint32_t>(texel / map.width);
+    for (std::uint32_t row = y > 0 ? y - 1 : 0; row <= std::min(y + 1, map.height - 1); ++row)
+        for (std::uint32_t column = x > 0 ? x - 1 : 0; column <= std::min(x + 1, map.width - 1);
+             ++column)
+            visit(std::size_t{row} * map.width + column);
+}
 
 /// How numbers from 0 to 1 stand in a file.
 enum class MapDepth {
