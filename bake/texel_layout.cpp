@@ -72,9 +72,13 @@ std::string lack_of(const Mesh& mesh, std::uint32_t set, std::uint32_t size)
     return {};
 }
 
-/// The first set that has something; empty where none has.
+/// The set of the map that the file has already, else the first that has something; empty where
+/// none has.
 std::optional<std::uint32_t> first_set(const Scene& scene)
 {
+    if (const auto set = scene.asset ? scene.asset->occlusion_uvs() : std::nullopt;
+        set && *set < scene.uvs.size() && !scene.uvs[*set].empty())
+        return set;
     for (std::uint32_t set = 0; set < scene.uvs.size(); ++set)
         if (!scene.uvs[set].empty())
             return set;

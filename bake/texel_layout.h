@@ -16,7 +16,8 @@ namespace surfelao {
 
 /// Whose texture coordinates.
 enum class UvChoice {
-    automatic,  ///< the file's where they can hold a map, else new ones where the output can
+    automatic,  ///< the file's where they can hold a map (those of a map that it has, else the
+                ///< first), else new ones where the output can
     file,       ///< set number `uv_set` of the file, whatever it looks like
     made,       ///< charts of our own
 };
@@ -27,7 +28,7 @@ enum class BentSpace { none, object, world, tangent };
 struct TexelSettings {
     std::uint32_t size = 1024;  ///< of both sides, 1 to kMostTexels
     /// Charts of our own at this density, in texels per unit of the file, > 0: the size follows.
-    std::optional<double> texels_per_unit;
+    std::optional<double> texels_per_unit = {};
     UvChoice uvs = UvChoice::automatic;
     std::uint32_t uv_set = 0;  ///< UvChoice::file: of Scene::uvs
     bool udim = false;         ///< the file's coordinates go over several tiles, a picture each
@@ -36,8 +37,8 @@ struct TexelSettings {
     MapDepth depth = MapDepth::byte;
     BentSpace bent = BentSpace::none;  ///< bent normals too, as STEM.bent.png beside STEM.png
     bool green_down = false;           ///< tangent space: green grows down, as DirectX has it
-    std::vector<std::filesystem::path> high;  ///< what is asked in place of the mesh itself
-    std::optional<Length> cage;               ///< high_to_low.h; empty: kCageShare
+    std::vector<std::filesystem::path> high = {};  ///< what is asked in place of the mesh itself
+    std::optional<Length> cage = {};               ///< high_to_low.h; empty: kCageShare
     bool operator==(const TexelSettings&) const = default;
 };
 

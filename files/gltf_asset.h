@@ -89,6 +89,7 @@ struct GltfAsset : SourceAsset {
     std::vector<GltfPart> parts;  ///< as Scene::parts
 
     [[nodiscard]] BaseColors base_colors() const override;  // gltf_base_colors.cpp
+    [[nodiscard]] std::optional<std::uint32_t> occlusion_uvs() const override;  // the same
 };
 
 /// Takes the container apart, parses the document and loads all buffers into `asset`. A buffer

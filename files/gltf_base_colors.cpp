@@ -115,4 +115,20 @@ BaseColors GltfAsset::base_colors() const
     return painter.finish(std::move(triangles));
 }
 
+std::optional<std::uint32_t> GltfAsset::occlusion_uvs() const
+{
+    for (const GltfPart& part : parts) {
+        const json& primitives =
+            member(entry(*document, "meshes", uses[part.use].mesh), "primitives");
+        for (const GltfTriangles& of_primitive : part.primitives) {
+            const json& material = member(primitives.at(of_primitive.primitive), "material");
+            const json& texture =
+                member(entry(*document, "materials", material), "occlusionTexture");
+            if (texture.is_object())
+                return static_cast<std::uint32_t>(whole_number(member(texture, "texCoord"), 0));
+        }
+    }
+    return {};
+}
+
 }  // namespace surfelao

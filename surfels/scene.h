@@ -19,6 +19,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -74,6 +75,9 @@ public:
     /// What the file paints its surfaces with, vertex colours apart; no materials where it says
     /// nothing of it. What is malformed in it is white. O(bytes).
     [[nodiscard]] virtual BaseColors base_colors() const { return {}; }
+    /// The number of the texture coordinates (Scene::uvs) over which the file has a map of
+    /// occlusion already; of several the first. O(primitives).
+    [[nodiscard]] virtual std::optional<std::uint32_t> occlusion_uvs() const { return {}; }
 };
 
 struct Scene {

@@ -99,6 +99,19 @@ TEST(BaseColors, OfGltfComeFromBufferViewsDataAndFiles)
     }
 }
 
+TEST(BaseColors, NamesTheCoordinatesOfAMapThatIsThere)
+{
+    const TemporaryFolder folder;
+    const std::pair<nlohmann::json, std::optional<std::uint32_t>> rows[] = {
+        {{{"index", 0}, {"texCoord", 1}}, 1}, {{{"index", 0}}, 0}, {5, {}}, {nullptr, {}}};
+    for (const auto& [texture, set] : rows) {
+        GltfMaker maker = painted_squares();
+        maker.document["materials"][0]["occlusionTexture"] = texture;
+        const Scene scene = read_scene(folder.file("in.glb", maker.glb()));
+        EXPECT_EQ(scene.asset->occlusion_uvs(), set) << texture;
+    }
+}
+
 // What is malformed is white, and nothing is thrown.
 TEST(BaseColors, OfMalformedGltfAreWhite)
 {
