@@ -24,7 +24,8 @@ must(${CMAKE_COMMAND} --install ${BUILD} --prefix ${scratch}/prefix)
 # no header but the public ones
 file(GLOB_RECURSE headers RELATIVE ${scratch}/prefix/include ${scratch}/prefix/include/*)
 set(public engines/engine.h engines/threads.h files/scene_io.h files/vertex_colors.h
-    surfelao.h surfels/errors.h surfels/geometry.h surfels/occlusion.h surfels/progress.h
+    surfelao.h surfels/base_colors.h
+    surfels/errors.h surfels/geometry.h surfels/occlusion.h surfels/progress.h
     surfels/receiver.h surfels/scene.h surfels/surface.h)
 list(TRANSFORM public PREPEND surfelao/)
 list(SORT headers)
