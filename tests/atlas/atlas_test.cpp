@@ -137,7 +137,7 @@ Scene scene_of(std::vector<glm::dvec3> positions, std::vector<glm::uvec3> triang
     return make_scene(positions, triangles);
 }
 
-TEST(Atlas, IsSoundOnEveryKindOfScene)
+TEST(Atlas, IsSoundOnEveryKindOfSceneSlow)
 {
     for (std::uint32_t i = 0; i < scenes::kFamilyKindCount; ++i) {
         const Mesh mesh = make_mesh(scenes::family_scene(i));
@@ -145,7 +145,7 @@ TEST(Atlas, IsSoundOnEveryKindOfScene)
     }
 }
 
-TEST(Atlas, BlendedIsSoundOnEveryKindOfScene)
+TEST(Atlas, BlendedIsSoundOnEveryKindOfSceneSlow)
 {
     for (std::uint32_t i = 0; i < scenes::kFamilyKindCount; i += 4) {
         const Mesh mesh = make_mesh(scenes::family_scene(i));
@@ -305,7 +305,7 @@ TEST(Atlas, ChartsThatDoNotFitAreRefusedInASentence)
 
 TEST(Atlas, HasTheSameBytesOnAnyNumberOfThreads)
 {
-    const Mesh mesh = make_mesh(scenes::bumpy_sphere(32));
+    const Mesh mesh = make_mesh(scenes::bumpy_sphere(16));
     std::vector<Atlas> atlases;
     for (const std::size_t threads : {1, 2, 3}) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);

@@ -120,7 +120,7 @@ TEST(Blended, NothingStepsOnTheSphere)
     EXPECT_GT(planar.largest, 2.0 * blended.largest);
 }
 
-TEST(Blended, NothingStepsOnTheTeapot)
+TEST(Blended, NothingStepsOnTheTeapotSlow)
 {
     const Mesh mesh = make_mesh(teapot());
     const Steps blended = steps_over_edges(mesh, make_atlas(mesh, {.size = 512, .blended = true}));

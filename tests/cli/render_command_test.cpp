@@ -83,7 +83,7 @@ TEST_F(RenderCommand, EveryModeAndSurfaceIsAnotherPicture)
 }
 
 // Two walls in an arch, in two charts.
-TEST_F(RenderCommand, MapsAreShownOnTheModelAndFlat)
+TEST_F(RenderCommand, MapsAreShownOnTheModelAndFlatSlow)
 {
     folder_.file("red.mtl", "newmtl red\nKd 1 0 0\n");
     folder_.file("walls.obj",
