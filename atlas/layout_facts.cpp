@@ -1,12 +1,13 @@
 #include "atlas/layout_facts.h"
 
+#include "surfels/union_find.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <compare>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -42,30 +43,6 @@ struct PlacedCorner {
     }
 };
 
-/// Sets that are joined, each known by its least member.
-class JoinedSets {
-public:
-    explicit JoinedSets(std::size_t count) : parent_(count)
-    {
-        std::iota(parent_.begin(), parent_.end(), 0u);
-    }
-    std::uint32_t least(std::uint32_t member)
-    {
-        while (parent_[member] != member)
-            member = parent_[member] = parent_[parent_[member]];
-        return member;
-    }
-    void join(std::uint32_t a, std::uint32_t b)
-    {
-        a = least(a);
-        b = least(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-private:
-    std::vector<std::uint32_t> parent_;
-};
-
 /// The charts of one page, numbered from `count` on.
 std::vector<std::uint32_t> charts_of(const Geometry& geometry, const UvSet& uvs,
                                      std::uint32_t& count)
@@ -81,7 +58,7 @@ std::vector<std::uint32_t> charts_of(const Geometry& geometry, const UvSet& uvs,
     }
     std::ranges::sort(
         corners, [](const PlacedCorner& a, const PlacedCorner& b) { return std::is_lt(a <=> b); });
-    JoinedSets joined(triangles);
+    UnionFind joined(triangles);
     std::vector<std::uint32_t> charts(triangles, LayoutFacts::kNone);
     for (std::size_t i = 0; i < corners.size(); ++i) {
         charts[corners[i].triangle] = 0;
@@ -90,7 +67,7 @@ std::vector<std::uint32_t> charts_of(const Geometry& geometry, const UvSet& uvs,
     }
     for (std::uint32_t t = 0; t < triangles; ++t) {
         if (charts[t] != LayoutFacts::kNone)
-            charts[t] = joined.least(t) == t ? count++ : charts[joined.least(t)];
+            charts[t] = joined.root(t) == t ? count++ : charts[joined.root(t)];
     }
     return charts;
 }
