@@ -5,10 +5,12 @@
 
 namespace surfelao {
 
-JudgedBaker::JudgedBaker(const Geometry& occluders, std::uint32_t check,
+JudgedBaker::JudgedBaker(const Geometry& geometry, Occluders* occluders, std::uint32_t check,
                          const StageProgress& progress, std::optional<double> asked)
-    : occluders_(occluders), count_(check), progress_(progress), asked_(asked)
+    : count_(check), progress_(progress), asked_(asked), occluders_(occluders)
 {
+    if (occluders_ == nullptr)
+        occluders_ = &own_.emplace(geometry);
 }
 
 void JudgedBaker::enter(std::string_view stage) const
@@ -25,12 +27,10 @@ Progress JudgedBaker::progress_in(std::string_view stage) const
 const Prepared& JudgedBaker::prepared_for(const EngineSettings& engine, double& surfels,
                                           double& tree)
 {
-    const auto found = prepared_.find(engine.engine);
-    if (found != prepared_.end())
-        return found->second;
+    if (occluders_->has(engine.engine))
+        return occluders_->prepared_for(engine);
     enter("build");
-    const Prepared& prepared =
-        prepared_.emplace(engine.engine, prepare(occluders_, engine)).first->second;
+    const Prepared& prepared = occluders_->prepared_for(engine);
     surfels += prepared.seconds().surfels;
     tree += prepared.seconds().tree;
     return prepared;

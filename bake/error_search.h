@@ -1,13 +1,13 @@
 /// error_search.h: the cheapest setting that is exact enough.
 #pragma once
 
+#include "bake/occluders.h"
 #include "bake/stated_error.h"
 #include "engines/engine.h"
 #include "surfels/progress.h"
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -43,17 +43,18 @@ inline constexpr Step kSteps[] = {
     {Engine::masks, 3.0f, 3.2f},    {Engine::masks, 4.0f, 6.0f},   {Engine::rays, 256.0f, 7.3f},
     {Engine::rays, 1024.0f, 23.0f}, {Engine::rays, 4096.0f, 81.0f}};
 
-/// What bakers of any target have in common: engines, each prepared once, and the points by which
-/// all that they bake is judged. Everything given must outlive it.
+/// What bakers of any target have in common: engines, and the points by which all that they bake is
+/// judged. Everything given must outlive it.
 class JudgedBaker {
 public:
     [[nodiscard]] const ErrorCheck& check() const { return *check_; }
 
 protected:
-    /// check: points; 0: nothing is judged. asked: the error that shall be told of other bakes than
-    /// the first, which may be a coarse one.
-    JudgedBaker(const Geometry& occluders, std::uint32_t check, const StageProgress& progress,
-                std::optional<double> asked);
+    /// geometry: what occludes where `occluders` is null. check: points; 0: nothing is judged.
+    /// asked: the error that shall be told of other bakes than the first, which may be a coarse
+    /// one.
+    JudgedBaker(const Geometry& geometry, Occluders* occluders, std::uint32_t check,
+                const StageProgress& progress, std::optional<double> asked);
 
     /// Says which stage begins; the moment at which a job between two stages can be stopped.
     void enter(std::string_view stage) const;
@@ -65,14 +66,16 @@ protected:
     /// Takes four times as many points from now on; false where they are enough.
     [[nodiscard]] bool take_more_points();
 
-    const Geometry& occluders_;
+    [[nodiscard]] const Geometry& occluding() const { return occluders_->geometry(); }
+
     std::uint32_t count_;
     const StageProgress& progress_;
     std::optional<double> asked_;
     std::optional<ErrorCheck> check_;  ///< once the first bake is judged
 
 private:
-    std::map<Engine, Prepared> prepared_;
+    std::optional<Occluders> own_;
+    Occluders* occluders_;
 };
 
 /// Whether nothing can bring the interval below `error`: the best values would have one that is as

@@ -118,10 +118,10 @@ Shown shown_by(const Mesh& mesh, const MapLayout& layout, const std::vector<Map>
 class MapBaker : public JudgedBaker {
 public:
     MapBaker(const Mesh& mesh, const MapLayout& layout, const MapSettings& settings,
-             const Offset& offset, const HighDetail* high, const StageProgress& progress,
-             std::optional<double> error = {})
-        : JudgedBaker(high ? high->mesh().geometry : mesh.geometry, settings.check, progress,
-                      error),
+             const Offset& offset, const HighDetail* high, Occluders* occluders,
+             const StageProgress& progress, std::optional<double> error = {})
+        : JudgedBaker(high ? high->mesh().geometry : mesh.geometry, occluders, settings.check,
+                      progress, error),
           mesh_(mesh),
           layout_(layout),
           settings_(settings),
@@ -239,9 +239,9 @@ private:
             for (const Texel& texel : texels)
                 points.push_back(texel.point);
             if (!scene)
-                scene.emplace(occluders_, RayScene::Build::quick);
+                scene.emplace(occluding(), RayScene::Build::quick);
             const std::vector<std::uint8_t> inside =
-                inside_bodies(occluders_, *scene, receivers_of(points), definition.max_distance);
+                inside_bodies(occluding(), *scene, receivers_of(points), definition.max_distance);
             for (std::size_t i = 0; i < texels.size(); ++i)
                 if (inside[i] == 0)  // one sheet of a texel that is seen is enough
                     hidden[index_of(texels[i])] = 0;
@@ -312,7 +312,7 @@ private:
             check_.emplace(
                 mesh_.geometry, density,
                 [&](std::span<const SurfacePoint> points) { return receivers_of(points); },
-                occluders_, count_);
+                occluding(), count_);
             check_->leave_out_hidden();
             check_->trace(bake.engine.definition, shown, progress_in("check"), asked_);
         }
@@ -331,16 +331,17 @@ private:
 
 MapBake bake_map(const Mesh& mesh, const MapLayout& layout, const MapSettings& settings,
                  const EngineSettings& engine, const Offset& offset, const StageProgress& progress,
-                 const HighDetail* high)
+                 const HighDetail* high, Occluders* occluders)
 {
-    return MapBaker(mesh, layout, settings, offset, high, progress).bake(engine);
+    return MapBaker(mesh, layout, settings, offset, high, occluders, progress).bake(engine);
 }
 
 MapBake bake_map_to_error(const Mesh& mesh, const MapLayout& layout, const MapSettings& settings,
                           const EngineSettings& engine, const Offset& offset, double error,
-                          const StageProgress& progress, const HighDetail* high)
+                          const StageProgress& progress, const HighDetail* high,
+                          Occluders* occluders)
 {
-    MapBaker baker(mesh, layout, settings, offset, high, progress, error / 2.0);
+    MapBaker baker(mesh, layout, settings, offset, high, occluders, progress, error / 2.0);
     // fetching between four texels leaves two thirds of independent noise (2/3 in each direction
     // of its variance)
     constexpr double kKept = 2.0 / 3.0;

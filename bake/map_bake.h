@@ -76,12 +76,13 @@ struct MapBake {
 };
 
 /// high: what lies over the mesh is asked in place of the mesh, and what occludes is it alone
-/// (high_to_low.h); `engine.definition` and `offset` are then in its frame. Throws as MapRaster,
+/// (high_to_low.h); `engine.definition` and `offset` are then in its frame. occluders: in that
+/// frame; null: the high detail, else the mesh itself. Throws as MapRaster,
 /// prepare() and solve(), and Cancelled where progress says so.
 [[nodiscard]] MapBake bake_map(const Mesh& mesh, const MapLayout& layout,
                                const MapSettings& settings, const EngineSettings& engine,
                                const Offset& offset, const StageProgress& progress = {},
-                               const HighDetail* high = nullptr);
+                               const HighDetail* high = nullptr, Occluders* occluders = nullptr);
 
 /// By the cheapest setting whose displayed error is below `error` with its whole interval, as
 /// bake_to_error() does at vertices; engine: definition and instructions are taken. Where more
@@ -91,6 +92,7 @@ struct MapBake {
                                         const MapSettings& settings, const EngineSettings& engine,
                                         const Offset& offset, double error,
                                         const StageProgress& progress = {},
-                                        const HighDetail* high = nullptr);
+                                        const HighDetail* high = nullptr,
+                                        Occluders* occluders = nullptr);
 
 }  // namespace surfelao

@@ -15,8 +15,8 @@ namespace {
 class Baker : public JudgedBaker {
 public:
     Baker(const Mesh& mesh, const VertexTarget& target, const Offset& offset, std::uint32_t check,
-          const StageProgress& progress, std::optional<double> error = {})
-        : JudgedBaker(mesh.geometry, check, progress, error),
+          const StageProgress& progress, Occluders* occluders, std::optional<double> error = {})
+        : JudgedBaker(mesh.geometry, occluders, check, progress, error),
           mesh_(mesh),
           target_(target),
           offset_(offset)
@@ -69,7 +69,12 @@ private:
         if (!check_) {
             const std::vector<double> density =
                 density_for(geometry, target_, bake.answers, bake.values);
-            check_.emplace(mesh_, density, offset_, count_);
+            check_.emplace(
+                geometry, density,
+                [&](std::span<const SurfacePoint> points) {
+                    return receivers_at(geometry, mesh_.surface, points, offset_);
+                },
+                occluding(), count_);
             check_->add_floor(target_, density);
             check_->trace(bake.engine.definition, shown, progress_in("check"), asked_);
         }
@@ -85,16 +90,17 @@ private:
 }  // namespace
 
 VertexBake bake_vertices(const Mesh& mesh, const VertexTarget& target, const EngineSettings& engine,
-                         const Offset& offset, std::uint32_t check, const StageProgress& progress)
+                         const Offset& offset, std::uint32_t check, const StageProgress& progress,
+                         Occluders* occluders)
 {
-    return Baker(mesh, target, offset, check, progress).bake(engine);
+    return Baker(mesh, target, offset, check, progress, occluders).bake(engine);
 }
 
 VertexBake bake_to_error(const Mesh& mesh, const VertexTarget& target, const EngineSettings& engine,
                          const Offset& offset, double error, std::uint32_t check,
-                         const StageProgress& progress)
+                         const StageProgress& progress, Occluders* occluders)
 {
-    Baker baker(mesh, target, offset, check, progress, error / 2.0);
+    Baker baker(mesh, target, offset, check, progress, occluders, error / 2.0);
     // what the fit leaves of independent noise
     const double kept = std::min(1.0, std::sqrt(static_cast<double>(mesh.scene.positions.size()) /
                                                 static_cast<double>(target.receivers().size())));

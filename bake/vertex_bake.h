@@ -37,11 +37,13 @@ struct VertexBake {
     VertexBakeSeconds seconds;
 };
 
+/// occluders: in the mesh's frame; null: the mesh itself.
 /// check: points of the statement of error; 0: none. The values are the same whatever it is.
 /// Throws as prepare() and solve(), and Cancelled where progress says so.
 [[nodiscard]] VertexBake bake_vertices(const Mesh& mesh, const VertexTarget& target,
                                        const EngineSettings& engine, const Offset& offset,
-                                       std::uint32_t check, const StageProgress& progress = {});
+                                       std::uint32_t check, const StageProgress& progress = {},
+                                       Occluders* occluders = nullptr);
 
 /// By the cheapest of masks at any quality and rays at any number whose error is below `error` with
 /// its whole interval. Costs are those that settings have on the median model, so that equal input
@@ -51,6 +53,7 @@ struct VertexBake {
 [[nodiscard]] VertexBake bake_to_error(const Mesh& mesh, const VertexTarget& target,
                                        const EngineSettings& engine, const Offset& offset,
                                        double error, std::uint32_t check,
-                                       const StageProgress& progress = {});
+                                       const StageProgress& progress = {},
+                                       Occluders* occluders = nullptr);
 
 }  // namespace surfelao

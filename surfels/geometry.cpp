@@ -23,23 +23,8 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 /// rounding noise of the file's floats.
 constexpr double kCancelled = 1e-5;
 
-Frame frame_of(const Scene& scene)
-{
-    if (scene.triangles.empty())
-        return {};
-    glm::dvec3 low(std::numeric_limits<double>::max());
-    glm::dvec3 high(-std::numeric_limits<double>::max());
-    for (const glm::uvec3 triangle : scene.triangles) {
-        for (int corner = 0; corner < 3; ++corner) {
-            low = glm::min(low, scene.positions[triangle[corner]]);
-            high = glm::max(high, scene.positions[triangle[corner]]);
-        }
-    }
-    // hypot: the squares of the file's extremes (1e-30, 1e38) stay inside a double either way
-    const glm::dvec3 size = high - low;
-    const double diagonal = std::hypot(size.x, size.y, size.z);
-    return {low + 0.5 * size, diagonal > 0.0 ? diagonal : 1.0};
-}
+/// In the unit frame: no farther off stand vertices of what is left out, so that they are finite.
+constexpr double kOutside = 1e6;
 
 /// Calls again(triangle) for each triangle whose three positions an earlier one has.
 ///
@@ -143,14 +128,27 @@ struct UnitPositions {
 };
 
 /// Keeps the triangles with area and sums their vector areas, per position and per vertex. Returns
-/// the others.
+/// those without.
 std::vector<glm::uvec3> keep_triangles(const std::vector<glm::uvec3>& triangles,
+                                       const std::vector<bool>& left_out,
                                        const UnitPositions& positions, Geometry& geometry,
                                        Sums& sums)
 {
     std::vector<glm::uvec3> dropped;
     geometry.triangles.reserve(triangles.size());
+    bool all_kept = true;
+    const auto pass_over = [&](std::size_t t) {
+        if (all_kept) {
+            geometry.kept.resize(t);
+            std::iota(geometry.kept.begin(), geometry.kept.end(), 0u);
+        }
+        all_kept = false;
+    };
     for (std::size_t t = 0; t < triangles.size(); ++t) {
+        if (!left_out.empty() && left_out[t]) {
+            pass_over(t);
+            continue;
+        }
         const glm::uvec3 triangle = triangles[t];
         const glm::dvec3 a = positions[triangle[0]];
         const glm::dvec3 b = positions[triangle[1]];
@@ -162,14 +160,11 @@ std::vector<glm::uvec3> keep_triangles(const std::vector<glm::uvec3>& triangles,
         const glm::vec3 rounded = glm::cross(fb - fa, fc - fa);
         if (!(glm::length(doubled) > kZeroAreaRatio * longest2) ||
             !(glm::dot(rounded, rounded) > 0.0f)) {
-            if (dropped.empty()) {
-                geometry.kept.resize(t);
-                std::iota(geometry.kept.begin(), geometry.kept.end(), 0u);
-            }
+            pass_over(t);
             dropped.push_back(triangle);
             continue;
         }
-        if (!dropped.empty())
+        if (!all_kept)
             geometry.kept.push_back(static_cast<std::uint32_t>(t));
         const std::uint32_t index = static_cast<std::uint32_t>(geometry.triangles.size());
         geometry.triangles.push_back(triangle);
@@ -226,12 +221,34 @@ void set_areas_and_normals(const UnitPositions& positions, const Sums& sums, Geo
 
 }  // namespace
 
-Geometry make_geometry(const Scene& scene)
+Box box_of(const Scene& scene, const std::vector<bool>& left_out)
+{
+    Box box;
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+        if (!left_out.empty() && left_out[t])
+            continue;
+        for (int corner = 0; corner < 3; ++corner)
+            box.include(scene.positions[scene.triangles[t][corner]]);
+    }
+    return box;
+}
+
+Frame frame_of(const Box& box)
+{
+    if (!(box.low.x <= box.high.x))
+        return {};
+    // hypot: the squares of the file's extremes (1e-30, 1e38) stay inside a double either way
+    const glm::dvec3 size = box.high - box.low;
+    const double diagonal = std::hypot(size.x, size.y, size.z);
+    return {box.low + 0.5 * size, diagonal > 0.0 ? diagonal : 1.0};
+}
+
+Geometry make_geometry(const Scene& scene, const GeometryScope& scope)
 {
     check_scene(scene);
     Geometry geometry;
     const std::size_t vertex_count = scene.positions.size();
-    geometry.frame = frame_of(scene);
+    geometry.frame = scope.frame ? *scope.frame : frame_of(box_of(scene, scope.left_out));
     geometry.welded = weld(scene, geometry.frame.diagonal);
     geometry.positions.resize(vertex_count);
     geometry.normals.assign(vertex_count, glm::vec3(0.0f));
@@ -239,10 +256,10 @@ Geometry make_geometry(const Scene& scene)
 
     const UnitPositions positions{scene, geometry.frame};
     for (std::uint32_t v = 0; v < vertex_count; ++v)
-        geometry.positions[v] = glm::vec3(positions[v]);
+        geometry.positions[v] = glm::vec3(glm::clamp(positions[v], -kOutside, kOutside));
     Sums sums(vertex_count);
     const std::vector<glm::uvec3> dropped =
-        keep_triangles(scene.triangles, positions, geometry, sums);
+        keep_triangles(scene.triangles, scope.left_out, positions, geometry, sums);
     geometry.dropped_triangles = dropped.size();
     set_areas_and_normals(positions, sums, geometry);
     borrow_normals(dropped, geometry);

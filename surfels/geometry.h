@@ -7,9 +7,12 @@
 
 #include "surfels/scene.h"
 
+#include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <vector>
 
 namespace surfelao {
@@ -18,6 +21,30 @@ namespace surfelao {
 struct Frame {
     glm::dvec3 centre{0.0};
     double diagonal = 1.0;  ///< > 0; 1 where all triangles lie in one point
+};
+
+/// World space. Empty where low is above high.
+struct Box {
+    glm::dvec3 low{std::numeric_limits<double>::max()};
+    glm::dvec3 high{-std::numeric_limits<double>::max()};
+
+    void include(glm::dvec3 place)
+    {
+        low = glm::min(low, place);
+        high = glm::max(high, place);
+    }
+};
+
+/// Of an empty box the frame is the world itself.
+[[nodiscard]] Frame frame_of(const Box& box);
+
+/// Of all triangles but those left out (GeometryScope).
+[[nodiscard]] Box box_of(const Scene& scene, const std::vector<bool>& left_out = {});
+
+/// How much of a scene is looked at, and within what.
+struct GeometryScope {
+    std::optional<Frame> frame = {};  ///< of a larger world; empty: of the scene by itself
+    std::vector<bool> left_out = {};  ///< scene triangles that are not there; empty: all are
 };
 
 /// Invariants: all values finite; every triangle has an area > 0 in float arithmetic; |normal| is 1
@@ -35,7 +62,7 @@ struct Geometry {
                                         ///< doubled faces occlude no more than single ones
     std::uint64_t dropped_triangles = 0;  ///< scene triangles without area
     std::vector<std::uint32_t> kept;      ///< per triangle, its index in the scene; empty where
-                                          ///< none is dropped
+                                          ///< none is dropped or left out
 
     /// The index in the scene of a triangle.
     [[nodiscard]] std::size_t scene_triangle(std::size_t triangle) const
@@ -58,7 +85,7 @@ inline constexpr double kZeroAreaRatio = 1e-12;
 ///
 /// O(n) expected; equal input gives equal bytes. A scene without triangles is allowed; throws
 /// InputError as check_scene does.
-[[nodiscard]] Geometry make_geometry(const Scene& scene);
+[[nodiscard]] Geometry make_geometry(const Scene& scene, const GeometryScope& scope = {});
 
 /// Of each triangle, in the unit frame.
 [[nodiscard]] std::vector<double> triangle_areas(const Geometry& geometry);

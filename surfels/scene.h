@@ -3,9 +3,11 @@
 /// A scene is everything in the file: all nodes and instances occlude each other. It is flat: a
 /// mesh used by three nodes stands here three times, because each use gets occlusion of its own.
 ///
+/// A scene without triangles is a cloud of points (point_cloud.h).
+///
 /// Invariants (read_scene and make_scene guarantee them): every coordinate is finite, every index
 /// is in range, the parts cover all vertices and triangles in order and without overlap, and there
-/// is at least one triangle. Of the normals only the indices are in range: values may be anything.
+/// is at least one vertex. Of the normals only the indices are in range: values may be anything.
 /// A vertex whose place is no finite one in the file, and which no triangle uses, stands where a
 /// vertex with a triangle stands: it changes no box.
 #pragma once
@@ -39,6 +41,21 @@ struct Part {
     /// Directions from the part's own space (object space) to the world; the identity where they
     /// are one, and for what joints move.
     glm::dmat3 to_world{1.0};
+};
+
+/// What a user may call triangles by.
+enum class LabelKind { node, mesh, object, group, material };
+
+/// Triangles that have a name in the file in common. Those of different kinds overlap: a triangle
+/// has a node, a mesh and a material. Labels of one kind and name are one.
+struct Label {
+    struct Range {
+        std::uint32_t first = 0, count = 0;
+        bool operator==(const Range&) const = default;
+    };
+    LabelKind kind = LabelKind::object;
+    std::string name;           ///< as in the file, never empty
+    std::vector<Range> ranges;  ///< of scene triangles, rising, apart from each other, not empty
 };
 
 /// The normals that a file gives, one per corner of a triangle: many corners may share one.
@@ -92,6 +109,9 @@ struct Scene {
     /// Zero where a part has none; empty where all parts do. They belong to the texture coordinates
     /// of the material's normalTexture, which are mostly set 0.
     std::vector<glm::vec4> tangents;
+    std::vector<Label> labels;  ///< in the order in which their first triangles stand
+    /// Clouds: where the scanner stood, in the coordinates of the points.
+    std::optional<glm::dvec3> viewpoint;
     bool free_vertices = false;  ///< the file has none of its own (STL): they may be split
     /// What the file holds and nobody honours, and what in it was let pass: a sentence each.
     std::vector<std::string> notes;
@@ -104,8 +124,8 @@ struct Scene {
                                std::span<const glm::uvec3> triangles);
 
 /// All of them as one, one behind the other, with their normals; parts without a name get their
-/// scene's. Texture coordinates, tangents and assets are left out. Throws SettingsError for more
-/// elements than kMostElements.
+/// scene's. Texture coordinates, tangents, labels and assets are left out. Throws SettingsError for
+/// more elements than kMostElements.
 [[nodiscard]] Scene join(std::span<const Scene> scenes);
 
 /// Throws InputError as make_scene does, but takes a scene without triangles.

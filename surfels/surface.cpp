@@ -492,11 +492,13 @@ Scene split_at_creases(const Scene& scene, const Geometry& geometry, const Surfa
     return split;
 }
 
-Mesh make_mesh(Scene scene, const NormalSettings& settings)
+Mesh make_mesh(Scene scene, const NormalSettings& settings, const GeometryScope& scope)
 {
+    if (scene.triangles.empty())
+        throw InputError(scene.name + ": has points only, no faces");
     Mesh mesh{std::move(scene), {}, {}};
     const auto look = [&] {
-        mesh.geometry = make_geometry(mesh.scene);
+        mesh.geometry = make_geometry(mesh.scene, scope);
         mesh.surface = make_surface(mesh.scene, mesh.geometry, settings);
     };
     look();
@@ -505,6 +507,30 @@ Mesh make_mesh(Scene scene, const NormalSettings& settings)
         look();
     }
     return mesh;
+}
+
+void keep_triangles(Mesh& mesh, const std::function<bool(std::size_t triangle)>& wanted)
+{
+    Geometry& geometry = mesh.geometry;
+    std::vector<std::uint32_t> kept;
+    std::vector<bool> in_use(mesh.surface.normals.size(), false);
+    for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
+        const std::size_t in_scene = geometry.scene_triangle(t);
+        if (!wanted(in_scene))
+            continue;
+        geometry.triangles[kept.size()] = geometry.triangles[t];
+        mesh.surface.corners[kept.size()] = mesh.surface.corners[t];
+        kept.push_back(static_cast<std::uint32_t>(in_scene));
+        for (int corner = 0; corner < 3; ++corner)
+            in_use[mesh.surface.corners[t][corner]] = true;
+    }
+    for (std::size_t wedge = 0; wedge < in_use.size(); ++wedge) {
+        if (!in_use[wedge])
+            mesh.surface.normals[wedge] = glm::vec3(0.0f);
+    }
+    geometry.triangles.resize(kept.size());
+    mesh.surface.corners.resize(kept.size());
+    geometry.kept = std::move(kept);
 }
 
 }  // namespace surfelao

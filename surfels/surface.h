@@ -15,6 +15,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -129,8 +130,14 @@ struct Mesh {
     Surface surface;
 };
 
-/// Throws as make_geometry and make_surface.
-[[nodiscard]] Mesh make_mesh(Scene scene, const NormalSettings& settings = {});
+/// Throws as make_geometry and make_surface, and InputError for a scene without triangles.
+[[nodiscard]] Mesh make_mesh(Scene scene, const NormalSettings& settings = {},
+                             const GeometryScope& scope = {});
+
+/// Takes from the mesh's geometry and surface all triangles but those for which `wanted` says so,
+/// by their number in the scene. What is kept has the normals that it had among the others; wedges
+/// that no kept triangle uses have none any more, so that nothing is asked there. O(n).
+void keep_triangles(Mesh& mesh, const std::function<bool(std::size_t triangle)>& wanted);
 
 /// Whether two normals at one place count as one smooth surface: within half the crease angle.
 [[nodiscard]] bool are_smooth(glm::vec3 a, glm::vec3 b, const NormalSettings& settings);

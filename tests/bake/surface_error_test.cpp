@@ -67,9 +67,7 @@ TEST(SurfacePoints, AreUniformByArea)
 
 TEST(SurfacePoints, ThereAreNoneWithoutTriangles)
 {
-    Scene scene;
-    scene.positions = {{0, 0, 0}, {1, 0, 0}};
-    const Mesh mesh = make_mesh(scene);
+    const Mesh mesh;
     EXPECT_TRUE(surface_points(mesh.geometry, 100).empty());
     const SurfaceTruth truth = trace_truth(mesh, quick(2, 100));
     EXPECT_EQ(seen_error(mesh.geometry, all(mesh, 0.5f), truth).count, 0u);

@@ -429,5 +429,53 @@ TEST(MakeMesh, LeavesSmoothFreeVerticesWhole)
     EXPECT_EQ(make_mesh(scene).scene.positions, scene.positions);
 }
 
+TEST(MakeMesh, RefusesPointsWithoutFaces)
+{
+    Scene points;
+    points.positions = {{0, 0, 0}};
+    EXPECT_THROW(static_cast<void>(make_mesh(points)), InputError);
+}
+
+// A far shell that is left out changes neither the frame nor any place or normal.
+TEST(MakeMesh, DoesNotSeeWhatIsLeftOut)
+{
+    const Scene body = scenes::sphere({0, 0, 0}, 1.0, 6);
+    const Scene whole = body + scenes::sphere({0, 0, 0}, 1e9, 4);
+    GeometryScope scope;
+    scope.left_out.resize(whole.triangles.size());
+    std::fill(scope.left_out.begin() + static_cast<std::ptrdiff_t>(body.triangles.size()),
+              scope.left_out.end(), true);
+    const Mesh alone = make_mesh(body), among = make_mesh(whole, {}, scope);
+    EXPECT_EQ(among.geometry.frame.diagonal, alone.geometry.frame.diagonal);
+    EXPECT_EQ(among.geometry.triangles, alone.geometry.triangles);
+    EXPECT_EQ(among.geometry.dropped_triangles, 0u);
+    const std::size_t vertices = body.positions.size();
+    for (std::size_t v = 0; v < among.geometry.positions.size(); ++v) {
+        EXPECT_LE(glm::length(among.geometry.positions[v]), 2e6f);
+        EXPECT_EQ(among.surface.normals[v], v < vertices ? alone.surface.normals[v] : glm::vec3(0));
+    }
+}
+
+// Half of a sphere keeps the normals that it has among the whole, and asks nothing elsewhere.
+TEST(KeepTriangles, KeepsNormalsOfTheWholeSurface)
+{
+    const Mesh whole = make_mesh(scenes::sphere({0, 0, 0}, 1.0, 6));
+    Mesh half = whole;
+    const auto wanted = [](std::size_t triangle) { return triangle % 2 == 1 && triangle < 100; };
+    keep_triangles(half, wanted);
+    ASSERT_EQ(half.geometry.triangles.size(), 50u);
+    std::vector<bool> in_use(whole.surface.normals.size());
+    for (std::size_t t = 0; t < 50; ++t) {
+        EXPECT_EQ(half.geometry.scene_triangle(t), 2 * t + 1);
+        EXPECT_EQ(half.geometry.triangles[t], whole.geometry.triangles[2 * t + 1]);
+        EXPECT_EQ(half.surface.corners[t], whole.surface.corners[2 * t + 1]);
+        for (int corner = 0; corner < 3; ++corner)
+            in_use[half.surface.corners[t][corner]] = true;
+    }
+    for (std::size_t wedge = 0; wedge < in_use.size(); ++wedge)
+        EXPECT_EQ(half.surface.normals[wedge],
+                  in_use[wedge] ? whole.surface.normals[wedge] : glm::vec3(0));
+}
+
 }  // namespace
 }  // namespace surfelao
