@@ -254,7 +254,8 @@ bool is_finished(const BakeSettings& settings)
         std::ranges::copy(settings.texels->high, std::back_inserter(sources));
     sources.push_back(settings.input);
     for (std::size_t i = 0, count = sources.size(); i < count; ++i) {
-        if (type_of(sources[i]) == FileType::gltf)
+        const FileType type = type_of(sources[i]);
+        if (type == FileType::gltf || type == FileType::obj)  // whose alpha counts too
             std::ranges::copy(sidecars_of(sources[i]), std::back_inserter(sources));
     }
     return std::ranges::all_of(sources, [&](const fs::path& source) {

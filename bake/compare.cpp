@@ -2,7 +2,6 @@
 
 #include "bake/compare_target.h"
 #include "engines/threads.h"
-#include "files/scene_io.h"
 #include "gpu/context.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
@@ -262,7 +261,7 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     static_cast<void>(stage("read"));
     Stopwatch watch;
     comparison.mesh = std::make_shared<const Mesh>(
-        make_mesh(read_scene(settings.input), settings.target.normals));
+        read_mesh(settings.input, settings.target.normals, settings.parts));
     std::unique_ptr<const CompareTarget> target = target_of(settings, comparison);
     comparison.read_s = watch.lap();
     comparison.vertices = comparison.mesh->scene.positions.size();

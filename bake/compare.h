@@ -38,6 +38,7 @@ struct CompareSettings {
     DistanceLimit max_distance;
     Kernel kernel = Kernel::cosine;
     TargetSettings target;
+    PartChoice parts = {};                          ///< who occludes, who is asked
     std::optional<TexelSettings> texels;            ///< a map; empty: values at the vertices
     std::uint32_t reference_rays = 4096;            ///< an even number
     std::uint64_t sample = 0;                       ///< points of the surface; 0 = kSurfacePoints

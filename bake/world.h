@@ -1,7 +1,9 @@
 /// world.h: from files to what is asked and what occludes it: several meshes in one frame.
 ///
 /// Of every file a user may say which parts occlude and which are baked, by the names that they
-/// have there (surfels/labels.h). By default all do both, and one file is its own world.
+/// have there (surfels/labels.h). By default all do both, and one file is its own world. Holes that
+/// a texture's alpha cuts do not occlude (cut_out.h): that is always so, and for what is asked it
+/// changes nothing: values are those of the whole surface.
 ///
 /// The frame is that of the files that are baked, without what is left out of them: files that only
 /// occlude (PartChoice::occluders) do not enter it, however large they are, so that neither offsets
@@ -17,6 +19,12 @@
 
 namespace surfelao {
 
+/// What surfaces are to rays that let light through all over (Opacity::clear).
+enum class ClearSurfaces {
+    solid,  ///< they occlude as any other
+    open,   ///< they do not occlude; they are baked all the same
+};
+
 /// What takes part, and how.
 struct PartChoice {
     /// Patterns of names (is_called): these parts of any of the files take no part: they neither
@@ -27,14 +35,17 @@ struct PartChoice {
     std::vector<std::string> receivers = {};
     /// Files in the same coordinates that occlude, but are not baked.
     std::vector<std::filesystem::path> occluders = {};
+    ClearSurfaces clear = ClearSurfaces::solid;
     bool operator==(const PartChoice&) const = default;
 };
 
-/// " exclude=... receivers=... occluders=...", each where it is not the default: for marks.
+/// " exclude=... receivers=... occluders=... transparent=open", each where it is not the default:
+/// for marks.
 [[nodiscard]] std::string text_of(const PartChoice& choice);
 
 struct World {
-    /// One per input, in one frame: the geometry of what is baked, and what occludes it.
+    /// One per input, in one frame: the geometry of what is baked, and what occludes it. Notes of
+    /// the scenes say what was cut, and what lets light through, but occludes.
     std::vector<Mesh> meshes;
 };
 

@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/output.h"
+#include "cli/part_options.h"
 #include "cli/progress_bar.h"
 #include "cli/texel_options.h"
 #include "engines/threads.h"
@@ -35,6 +36,7 @@ struct CompareOptions {
     MeasureOptions measure;
     SurfaceOptions surface;
     TexelOptions texels;
+    PartOptions parts;
     std::uint32_t reference_rays = 4096;
     std::uint64_t sample = kSurfacePoints;
     int rounds = 3;
@@ -51,6 +53,7 @@ CompareSettings common_settings(const CompareOptions& options)
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
     settings.target = target_settings_of(options.surface);
+    settings.parts = part_choice_of(options.parts);
     settings.texels = shown_texels_of(options.texels);
     settings.reference_rays = options.reference_rays;
     settings.sample = options.sample;
@@ -216,8 +219,9 @@ void check(const CompareOptions& options)
     for (const EngineSettings& candidate : settings.candidates)
         check_kernel(candidate.engine, settings.kernel);
     FilePlan files;
-    for (const std::string& input : options.inputs)
-        files.reads(input);
+    for (const auto* inputs : {&options.inputs, &options.parts.occluders})
+        for (const std::string& input : *inputs)
+            files.reads(input);
     for (const fs::path& file : own_names(options))
         files.writes(file, file.filename().string());
     files.writes_report(options.json, "--json");
@@ -273,6 +277,7 @@ void add_compare_command(CLI::App& app, Work& work)
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
     add_layout_options(*command, options->texels, kShownMaps);
+    add_part_options(*command, options->parts);
     command
         ->add_option("--reference-rays", options->reference_rays,
                      "Rays per surface point of the reference, an even number")

@@ -26,6 +26,14 @@ void add_part_options(CLI::App& command, PartOptions& options)
                     "a terrain; any size")
         ->type_name("FILE...")
         ->group(kGroup);
+    command
+        .add_option("--transparent", options.transparent,
+                    "What light goes through (alphaMode BLEND, transmission, d below 1 in .mtl) "
+                    "occludes as solid or not at all; holes by alpha (MASK, map_d) never occlude")
+        ->check(CLI::IsMember({"solid", "open"}))
+        ->type_name("solid|open")
+        ->capture_default_str()
+        ->group(kGroup);
 }
 
 PartChoice part_choice_of(const PartOptions& options)
@@ -34,6 +42,7 @@ PartChoice part_choice_of(const PartOptions& options)
     choice.exclude = options.exclude;
     choice.receivers = options.receivers;
     choice.occluders.assign(options.occluders.begin(), options.occluders.end());
+    choice.clear = options.transparent == "open" ? ClearSurfaces::open : ClearSurfaces::solid;
     return choice;
 }
 

@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/interrupt.h"
+#include "cli/part_options.h"
 #include "cli/texel_options.h"
 #include "cli/view_options.h"
 #include "engines/threads.h"
@@ -26,6 +27,7 @@ struct ViewCommandOptions {
     MeasureOptions measure;
     SurfaceOptions surface;
     TexelOptions texels;
+    PartOptions parts;
     bool atlas = false;
     std::optional<int> threads;
 };
@@ -49,7 +51,10 @@ int run(const ViewCommandOptions& options)
         throw InputError(options.input + ": no such file");
 
     window.panel.settings = {settings_of(options.engine), distance_limit_of(options.measure),
-                             target_settings_of(options.surface), shown_texels_of(options.texels)};
+                             target_settings_of(options.surface), shown_texels_of(options.texels),
+                             part_choice_of(options.parts)};
+    window.other_inputs.insert(window.other_inputs.end(), options.parts.occluders.begin(),
+                               options.parts.occluders.end());
     window.panel.shows_atlas = options.atlas;
     window.keep_open = [] { return caught_signal() == 0; };
     for (const std::filesystem::path& file : show_window(window))
@@ -77,6 +82,7 @@ void add_view_command(CLI::App& app, Work& work)
         ->type_name("WHERE");
     add_show_options(*command, options->show);
     add_layout_options(*command, options->texels, kShownMaps);
+    add_part_options(*command, options->parts);
     add_atlas_option(*command, options->atlas);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);

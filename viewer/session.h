@@ -2,6 +2,7 @@
 /// answer first, and tracing the reference. Knows no window.
 #pragma once
 
+#include "bake/world.h"
 #include "engines/engine.h"
 #include "surfels/occlusion.h"
 #include "surfels/scene.h"
@@ -30,6 +31,7 @@ struct SessionSettings {
     TargetSettings target;
     /// A map in place of values at vertices: its charts, size and padding count.
     std::optional<TexelSettings> texels = {};
+    PartChoice parts = {};  ///< who occludes, who is baked and shown
     bool operator==(const SessionSettings&) const = default;
 };
 
@@ -37,6 +39,7 @@ struct SessionSettings {
 struct SessionState {
     std::filesystem::path path;          ///< of the model shown
     std::shared_ptr<const Model> model;  ///< null until a file was read
+    PartChoice parts;                    ///< that it was made with
     bool is_solved = false;              ///< there is an answer: Session::occlusion()
     bool is_draft = false;               ///< it is the rough one
     std::vector<Occlusion> reference;    ///< empty until it was traced for the same definition
@@ -71,10 +74,12 @@ public:
     /// Reads a file in the background, then solves it with the last settings. What is shown stays
     /// until the file turns out to be readable.
     void open(const std::filesystem::path& path, UpAxis up);
+    /// The same with these settings.
+    void open(const std::filesystem::path& path, UpAxis up, const SessionSettings& settings);
 
     /// Solves the model with these settings: a draft first where the engine has one, then the
-    /// whole. What is running is given up. Other targets need another model: it is made first, of
-    /// the scene that was read. Does nothing when they are the last settings.
+    /// whole. What is running is given up. Other targets and parts need another model: it is made
+    /// first, of the scene that was read. Does nothing when they are the last settings.
     void solve(const SessionSettings& settings);
 
     /// An even number of rays: the reference is traced now and whenever the definition changes.
@@ -122,6 +127,7 @@ private:
         UpAxis up = UpAxis::y;
         std::shared_ptr<const Scene> scene;  ///< null: the file is read
         TargetSettings target;
+        PartChoice parts;
     };
     struct Made;
     struct Answer;
