@@ -169,7 +169,7 @@ std::vector<BakeReport> bake_together(const std::vector<BakeSettings>& settings,
         inputs.push_back(of_file.input);
     }
     enter(progress, "read");
-    World world = read_world(inputs, settings.front().target.normals, settings.front().parts);
+    BakeWorld world = read_world(inputs, settings.front().target.normals, settings.front().parts);
     double read_seconds = watch.lap();
     const std::shared_ptr<const Geometry> occluding = world.meshes.front().occluders;
     std::optional<Occluders> occluders;

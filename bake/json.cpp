@@ -130,7 +130,7 @@ Json json_of(const PartChoice& parts)
     return {{"exclude", parts.exclude},
             {"receivers", parts.receivers},
             {"occluders", occluders},
-            {"transparent", parts.clear == ClearSurfaces::open ? "open" : "solid"}};
+            {"transparent", name_of(parts.clear)}};
 }
 
 Json json_of(const BatchEntry& entry)

@@ -114,7 +114,11 @@ void open_materials(const Scene& scene, ClearSurfaces clear, Roles& roles,
 {
     if (!scene.asset || !scene.asset->has_openings())
         return;
-    const BaseColors colors = scene.asset->base_colors();
+    BaseColors colors = scene.asset->base_colors();
+    for (BaseColor& material : colors.materials) {
+        if (material.opacity == Opacity::clear && clear == ClearSurfaces::cut)
+            material.opacity = Opacity::cut;
+    }
     if (colors.triangles.size() != scene.triangles.size())
         return;
     std::vector<bool> clears(colors.materials.size(), false), cuts(colors.materials.size(), false);
@@ -137,7 +141,8 @@ void open_materials(const Scene& scene, ClearSurfaces clear, Roles& roles,
                         (clear == ClearSurfaces::open
                              ? ", which light goes through, occludes nothing"
                              : ", which light goes through, occludes as if it were solid "
-                               "(--transparent open: not at all)"));
+                               "(--transparent open: not at all; cut: where its alpha is at "
+                               "least half)"));
     if (std::ranges::find(cuts, true) == cuts.end())
         return;
     roles.cut = cut_out(scene, colors, roles.occlude);
@@ -216,6 +221,12 @@ bool has(const std::vector<bool>& list, bool value)
 
 }  // namespace
 
+std::string name_of(ClearSurfaces clear)
+{
+    constexpr const char* kNames[] = {"solid", "open", "cut"};
+    return kNames[static_cast<int>(clear)];
+}
+
 std::string text_of(const PartChoice& choice)
 {
     std::string text;
@@ -228,12 +239,12 @@ std::string text_of(const PartChoice& choice)
         add("receivers", pattern);
     for (const std::filesystem::path& file : choice.occluders)
         add("occluders", file.filename().string());
-    if (choice.clear == ClearSurfaces::open)
-        add("transparent", "open");
+    if (choice.clear != ClearSurfaces::solid)
+        add("transparent", name_of(choice.clear));
     return text;
 }
 
-World make_world(std::vector<Scene> inputs, std::span<const Scene> others,
+BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
                  const NormalSettings& normals, const PartChoice& choice)
 {
     std::vector<Roles> roles = roles_of(inputs, others, choice);
@@ -269,7 +280,7 @@ World make_world(std::vector<Scene> inputs, std::span<const Scene> others,
     }
     const Frame frame = common_frame(inputs, left_out);
 
-    World world;
+    BakeWorld world;
     OccluderScene occluders;
     world.meshes.reserve(inputs.size());
     for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -301,7 +312,7 @@ World make_world(std::vector<Scene> inputs, std::span<const Scene> others,
     return world;
 }
 
-World read_world(std::span<const std::filesystem::path> inputs, const NormalSettings& normals,
+BakeWorld read_world(std::span<const std::filesystem::path> inputs, const NormalSettings& normals,
                  const PartChoice& choice)
 {
     const auto read_all = [](std::span<const std::filesystem::path> paths) {

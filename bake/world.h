@@ -23,7 +23,11 @@ namespace surfelao {
 enum class ClearSurfaces {
     solid,  ///< they occlude as any other
     open,   ///< they do not occlude; they are baked all the same
+    cut,    ///< they occlude where their alpha is at least half: leaves painted on BLEND cards
 };
+
+/// "solid", "open", "cut"
+[[nodiscard]] std::string name_of(ClearSurfaces clear);
 
 /// What takes part, and how.
 struct PartChoice {
@@ -43,7 +47,7 @@ struct PartChoice {
 /// for marks.
 [[nodiscard]] std::string text_of(const PartChoice& choice);
 
-struct World {
+struct BakeWorld {
     /// One per input, in one frame: the geometry of what is baked, and what occludes it. Notes of
     /// the scenes say what was cut, and what lets light through, but occludes.
     std::vector<Mesh> meshes;
@@ -51,11 +55,11 @@ struct World {
 
 /// inputs: baked. others: PartChoice::occluders, read. Throws InputError for a pattern that means
 /// no name, where nothing of an input is left to be baked, and as make_mesh().
-[[nodiscard]] World make_world(std::vector<Scene> inputs, std::span<const Scene> others,
+[[nodiscard]] BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
                                const NormalSettings& normals, const PartChoice& choice);
 
 /// Reads the files and makes the world of them. Throws as read_scene() too.
-[[nodiscard]] World read_world(std::span<const std::filesystem::path> inputs,
+[[nodiscard]] BakeWorld read_world(std::span<const std::filesystem::path> inputs,
                                const NormalSettings& normals, const PartChoice& choice);
 
 /// Of a single input.

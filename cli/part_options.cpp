@@ -29,9 +29,10 @@ void add_part_options(CLI::App& command, PartOptions& options)
     command
         .add_option("--transparent", options.transparent,
                     "What light goes through (alphaMode BLEND, transmission, d below 1 in .mtl) "
-                    "occludes as solid or not at all; holes by alpha (MASK, map_d) never occlude")
-        ->check(CLI::IsMember({"solid", "open"}))
-        ->type_name("solid|open")
+                    "occludes as solid, not at all, or where its alpha is at least half (leaves on "
+                    "BLEND cards); holes by alpha (MASK, map_d) never occlude")
+        ->check(CLI::IsMember({"solid", "open", "cut"}))
+        ->type_name("solid|open|cut")
         ->capture_default_str()
         ->group(kGroup);
 }
@@ -42,7 +43,9 @@ PartChoice part_choice_of(const PartOptions& options)
     choice.exclude = options.exclude;
     choice.receivers = options.receivers;
     choice.occluders.assign(options.occluders.begin(), options.occluders.end());
-    choice.clear = options.transparent == "open" ? ClearSurfaces::open : ClearSurfaces::solid;
+    for (const ClearSurfaces clear : {ClearSurfaces::open, ClearSurfaces::cut})
+        if (options.transparent == name_of(clear))
+            choice.clear = clear;
     return choice;
 }
 

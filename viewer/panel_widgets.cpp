@@ -150,9 +150,9 @@ bool edit_texels(std::optional<TexelSettings>& texels, TexelSettings& chosen)
 
 void edit_parts(const Scene& scene, PartChoice& parts)
 {
-    bool is_open = parts.clear == ClearSurfaces::open;
-    ImGui::Checkbox("light goes through glass", &is_open);
-    parts.clear = is_open ? ClearSurfaces::open : ClearSurfaces::solid;
+    int clear = static_cast<int>(parts.clear);
+    if (ImGui::Combo("glass", &clear, "solid\0open\0cut by alpha\0"))
+        parts.clear = static_cast<ClearSurfaces>(clear);
     std::vector<PartTick> ticks = part_ticks(scene, parts);
     if (ticks.empty()) {
         ImGui::TextDisabled("no part of it has a name");
