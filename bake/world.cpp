@@ -245,7 +245,7 @@ std::string text_of(const PartChoice& choice)
 }
 
 BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
-                 const NormalSettings& normals, const PartChoice& choice)
+                     const NormalSettings& normals, const PartChoice& choice)
 {
     std::vector<Roles> roles = roles_of(inputs, others, choice);
     std::vector<std::vector<bool>> left_out(inputs.size());
@@ -276,7 +276,8 @@ BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
             is_joined = is_joined || (own.is_baked(t) && !own.occludes(t));
         }
         if (!is_any_baked)
-            throw InputError(inputs[i].name + ": nothing of it is left to be baked");
+            throw InputError(inputs[i].name + ": nothing of it is left to be baked" +
+                             (inputs.size() > 1 ? ", --occluders is for what only occludes" : ""));
     }
     const Frame frame = common_frame(inputs, left_out);
 
@@ -313,7 +314,7 @@ BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
 }
 
 BakeWorld read_world(std::span<const std::filesystem::path> inputs, const NormalSettings& normals,
-                 const PartChoice& choice)
+                     const PartChoice& choice)
 {
     const auto read_all = [](std::span<const std::filesystem::path> paths) {
         std::vector<Scene> scenes;
