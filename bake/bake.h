@@ -54,6 +54,7 @@ struct TexelReport {
     MapSize size;
     std::optional<std::uint32_t> uv_set;        ///< of the file; empty: charts of our own
     std::vector<std::uint32_t> tiles;           ///< UDIM
+    std::vector<std::string> materials;         ///< that have a map each
     std::optional<ChartReport> charts;          ///< of our own
     std::uint64_t covered = 0;                  ///< texels
     std::uint64_t overlapping = 0;              ///< texels of several sheets: they hold the mean

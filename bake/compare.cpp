@@ -181,7 +181,7 @@ std::unique_ptr<const CompareTarget> target_of(const CompareSettings& settings,
 {
     if (!settings.texels)
         return vertices_to_compare(comparison.mesh, settings.target);
-    TexelLayout found = layout_for(*comparison.mesh, *settings.texels, /*can_hold_new=*/true);
+    TexelLayout found = layout_for(*comparison.mesh, *settings.texels);
     comparison.page = found.layout.size;
     comparison.pages = found.layout.pages.size();
     comparison.uv_set = found.uv_set;

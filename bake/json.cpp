@@ -103,6 +103,7 @@ Json json_of(const BakeReport& report, const TexelReport& texels)
             {"padding", report.settings.texels->padding},
             {"uv_set", texels.uv_set ? Json(*texels.uv_set) : Json()},
             {"tiles", texels.tiles},
+            {"materials", texels.materials},
             {"charts", texels.charts ? json_of(*texels.charts) : Json()},
             {"misses", texels.misses},
             {"high_triangles", texels.high_triangles},

@@ -1,6 +1,7 @@
 #include "viewer/session.h"
 
 #include "bake/bake.h"
+#include "bake/texel_layout.h"
 #include "files/file_type.h"
 #include "files/scene_io.h"
 #include "gpu/context.h"
@@ -380,17 +381,17 @@ void Session::save(const std::filesystem::path& path) const
 
 void Session::save_map(const std::filesystem::path& path, const std::string& mark) const
 {
-    if (state_.map->visibility.size() > 1)
+    const std::vector<Map>& pages = state_.map->visibility;
+    const bool is_picture = type_of(path) == FileType::unknown;
+    if (pages.size() > 1 && (is_picture || state_.layout->layout.materials.empty()))
         throw InputError(path.string() + ": holds a map of one page");
-    const Map& map = state_.map->visibility[0];
-    if (type_of(path) == FileType::unknown) {
-        write_map(path, map, MapDepth::byte, mark);
+    if (is_picture) {
+        write_map(path, pages[0], MapDepth::byte, mark);
         return;
     }
     check_output_with_map(state_.path, path);
-    OcclusionMap picture{map_bytes(map, MapDepth::byte), state_.layout->uv_set.value_or(0), {}};
-    if (!state_.layout->uv_set)
-        picture.uvs = state_.layout->layout.pages[0];
+    const OcclusionMap picture =
+        occlusion_map_of(state_.layout->layout, state_.layout->uv_set, pages, MapDepth::byte);
     static_cast<void>(
         write_scene_with_map(path, state_.model->mesh->scene, picture, {.mark = mark}));
 }
