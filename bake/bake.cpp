@@ -111,11 +111,13 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
 
     enter(progress, "read");
     const auto mesh = std::make_shared<const Mesh>(
-        make_mesh(read_scene(settings.input), settings.target.normals));
+        make_mesh(read_scene(settings.input, settings.reading), settings.target.normals));
     const Scene& scene = mesh->scene;
     const Geometry& geometry = mesh->geometry;
     EngineSettings& engine = report.settings.engine;
     engine.definition = definition_of(settings.max_distance, settings.kernel, geometry.frame);
+    if (!settings.texels)
+        check_output(scene, settings.output);
     report.seconds.read = stage.lap();
     if (settings.texels)
         bake_texels(*mesh, report, progress);
@@ -176,6 +178,11 @@ std::string mark_of(const BakeSettings& settings)
     if (const auto& texels = settings.texels) {
         text += " " + text_of(*texels);
         return make_mark("bake", text);
+    }
+    if (!settings.reading.columns.empty()) {
+        std::string columns = settings.reading.columns;
+        std::ranges::replace(columns, ' ', ',');
+        text += " columns=" + columns;
     }
     text += " colors=" + name_of(settings.colors);
     text += " encoding=" + name_of(settings.encoding);

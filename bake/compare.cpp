@@ -262,7 +262,7 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     static_cast<void>(stage("read"));
     Stopwatch watch;
     comparison.mesh = std::make_shared<const Mesh>(
-        make_mesh(read_scene(settings.input), settings.target.normals));
+        make_mesh(read_scene(settings.input, settings.reading), settings.target.normals));
     std::unique_ptr<const CompareTarget> target = target_of(settings, comparison);
     comparison.read_s = watch.lap();
     comparison.vertices = comparison.mesh->scene.positions.size();

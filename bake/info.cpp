@@ -183,9 +183,10 @@ std::string uvs_text(const UvReport& uvs)
 
 }  // namespace
 
-Info inspect(const std::filesystem::path& input, const Progress& progress)
+Info inspect(const std::filesystem::path& input, const Progress& progress,
+             const ReadOptions& reading)
 {
-    const auto mesh = std::make_shared<const Mesh>(make_mesh(read_scene(input)));
+    const auto mesh = std::make_shared<const Mesh>(make_mesh(read_scene(input, reading)));
     const VertexTarget target(mesh, {});
     Info info;
     info.input = input;
