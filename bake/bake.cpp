@@ -130,6 +130,8 @@ BakeReport bake_one(const Job& job, const BakeSettings& settings, double read_se
     Stopwatch whole;
     const Mesh& mesh = *job.mesh;
     const Geometry& geometry = mesh.geometry;
+    if (!settings.texels)
+        check_output(mesh.scene, settings.output);
     report.settings.engine.definition =
         definition_of(report.settings.max_distance, report.settings.kernel, geometry.frame);
     if (report.settings.texels)
@@ -169,7 +171,8 @@ std::vector<BakeReport> bake_together(const std::vector<BakeSettings>& settings,
         inputs.push_back(of_file.input);
     }
     enter(progress, "read");
-    BakeWorld world = read_world(inputs, settings.front().target.normals, settings.front().parts);
+    BakeWorld world = read_world(inputs, settings.front().target.normals, settings.front().parts,
+                                 settings.front().reading);
     double read_seconds = watch.lap();
     const std::shared_ptr<const Geometry> occluding = world.meshes.front().occluders;
     std::optional<Occluders> occluders;
@@ -229,6 +232,11 @@ std::string mark_of(const BakeSettings& settings)
     if (const auto& texels = settings.texels) {
         text += " " + text_of(*texels);
         return make_mark("bake", text);
+    }
+    if (!settings.reading.columns.empty()) {
+        std::string columns = settings.reading.columns;
+        std::ranges::replace(columns, ' ', ',');
+        text += " columns=" + columns;
     }
     text += " colors=" + name_of(settings.colors);
     text += " encoding=" + name_of(settings.encoding);

@@ -8,7 +8,7 @@
 #include "bake/vertex_target.h"
 #include "bake/world.h"
 #include "engines/engine.h"
-#include "files/vertex_colors.h"
+#include "files/scene_io.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -38,6 +38,7 @@ struct BakeSettings {
     std::optional<TexelSettings> texels = {};  ///< a map instead of values at vertices
     VertexColors colors = VertexColors::automatic;
     Encoding encoding = Encoding::automatic;
+    ReadOptions reading = {};  ///< of the input
 };
 
 /// Wall-clock seconds of each stage.

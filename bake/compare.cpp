@@ -261,7 +261,7 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     static_cast<void>(stage("read"));
     Stopwatch watch;
     comparison.mesh = std::make_shared<const Mesh>(
-        read_mesh(settings.input, settings.target.normals, settings.parts));
+        read_mesh(settings.input, settings.target.normals, settings.parts, settings.reading));
     std::unique_ptr<const CompareTarget> target = target_of(settings, comparison);
     comparison.read_s = watch.lap();
     comparison.vertices = comparison.mesh->scene.positions.size();

@@ -4,6 +4,7 @@
 #include "cli/output.h"
 #include "cli/part_options.h"
 #include "cli/progress_bar.h"
+#include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "cli/view_options.h"
 #include "engines/threads.h"
@@ -30,6 +31,7 @@ constexpr int kMostSamples = 4096;
 struct RenderCommandOptions {
     std::string input;
     std::string output;
+    ReadOptions reading;
     int width = 1280, height = 720;
     int samples = 16;
     std::string camera;
@@ -154,7 +156,8 @@ int run(const RenderCommandOptions& options)
 
     Stopwatch watch;
     const TargetSettings target = target_settings_of(options.surface);
-    Mesh mesh = read_mesh(options.input, target.normals, part_choice_of(options.parts));
+    Mesh mesh =
+        read_mesh(options.input, target.normals, part_choice_of(options.parts), options.reading);
     EngineSettings engine = settings_of(options.engine);
     engine.definition = definition_of(distance_limit_of(options.measure),
                                       kernel_of(options.measure), mesh.geometry.frame);
@@ -212,12 +215,11 @@ void add_render_command(CLI::App& app, Work& work)
     const auto options = std::make_shared<RenderCommandOptions>();
     CLI::App* command =
         app.add_subcommand("render", "A picture of a mesh with its occlusion, without a window");
-    command->add_option("IN", options->input, "Mesh file: .obj .ply .off .stl .gltf .glb")
-        ->required()
-        ->type_name("");
+    command->add_option("IN", options->input, kMeshOrCloud)->required()->type_name("");
     command->add_option("-o,--output", options->output, "Picture: .png .jpg .exr")
         ->required()
         ->type_name("OUT");
+    add_read_options(*command, options->reading);
     command->add_option("--width", options->width, "Pixels")
         ->check(CLI::Range(1, kMostPixels))
         ->type_name("N")

@@ -4,6 +4,7 @@
 
 #include "bake/world.h"
 #include "engines/engine.h"
+#include "files/scene_io.h"
 #include "surfels/occlusion.h"
 #include "surfels/scene.h"
 #include "viewer/background_worker.h"
@@ -73,9 +74,10 @@ public:
 
     /// Reads a file in the background, then solves it with the last settings. What is shown stays
     /// until the file turns out to be readable.
-    void open(const std::filesystem::path& path, UpAxis up);
+    void open(const std::filesystem::path& path, UpAxis up, const ReadOptions& reading = {});
     /// The same with these settings.
-    void open(const std::filesystem::path& path, UpAxis up, const SessionSettings& settings);
+    void open(const std::filesystem::path& path, UpAxis up, const SessionSettings& settings,
+              const ReadOptions& reading = {});
 
     /// Solves the model with these settings: a draft first where the engine has one, then the
     /// whole. What is running is given up. Other targets and parts need another model: it is made
@@ -128,6 +130,7 @@ private:
         std::shared_ptr<const Scene> scene;  ///< null: the file is read
         TargetSettings target;
         PartChoice parts;
+        ReadOptions reading = {};
     };
     struct Made;
     struct Answer;
