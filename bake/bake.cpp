@@ -116,6 +116,10 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     const Geometry& geometry = mesh->geometry;
     EngineSettings& engine = report.settings.engine;
     engine.definition = definition_of(settings.max_distance, settings.kernel, geometry.frame);
+    engine.definition.ground =
+        ground_of(settings.ground, {geometry}, largest_offset_of(settings.target, geometry.frame));
+    if (engine.definition.ground)
+        report.ground = text_of(*engine.definition.ground, geometry.frame);
     report.seconds.read = stage.lap();
     if (settings.texels)
         bake_texels(*mesh, report, progress);
@@ -172,6 +176,8 @@ std::string mark_of(const BakeSettings& settings)
         text += " max_distance=none";
     text += std::isfinite(limit.value) && limit.percent ? "%" : "";
     text += limit.falloff == Falloff::smooth ? " falloff=smooth" : " falloff=none";
+    if (const auto& ground = settings.ground)
+        text += " ground=" + text_of(*ground);
     text += " " + text_of(settings.target);
     if (const auto& texels = settings.texels) {
         text += " " + text_of(*texels);

@@ -87,7 +87,7 @@ std::vector<std::string> notes_of(const Baked& baked)
     if (mean_occlusion_of(surface, baked.values) > kInteriorMean) {
         if (baked.definition.max_distance > kInteriorDistance)
             add("an interior: try --max-distance 10%");
-    } else {
+    } else if (!baked.definition.ground) {  // it closes undersides too, rightly
         add(closed_note(baked.values, baked.topology));
     }
     return notes;

@@ -224,6 +224,11 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
     const Frame& frame = high ? high->mesh.geometry.frame : mesh.geometry.frame;
     EngineSettings engine = settings.engine;
     engine.definition = definition_of(settings.max_distance, settings.kernel, frame);
+    engine.definition.ground =
+        ground_of(settings.ground, {high ? high->mesh.geometry : mesh.geometry},
+                  largest_offset_of(settings.target, frame));
+    if (engine.definition.ground)
+        report.ground = text_of(*engine.definition.ground, frame);
     const Offset offset = offset_of(settings.target, frame);
     const HighDetail* detail = high ? &high->detail : nullptr;
     const MapBake map =

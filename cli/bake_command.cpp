@@ -26,6 +26,7 @@ struct BakeOptions {
     std::string output;
     EngineOptions engine;
     MeasureOptions measure;
+    std::string up = "y";
     SurfaceOptions surface;
     ColorOptions colors;
     TexelOptions texels;
@@ -90,6 +91,7 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.engine = settings_of(options.engine);
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
+    settings.ground = ground_plane_of(options.measure, options.up);
     settings.target = target_settings_of(options.surface);
     settings.check = options.check;
     settings.error = options.error;
@@ -174,6 +176,7 @@ void check_options(const BakeOptions& options)
 {
     const EngineSettings engine = settings_of(options.engine);
     static_cast<void>(distance_limit_of(options.measure));
+    static_cast<void>(ground_plane_of(options.measure, options.up));
     static_cast<void>(target_settings_of(options.surface));
     check_kernel(engine.engine, kernel_of(options.measure));
     if (options.error && options.check == 0)
@@ -208,6 +211,7 @@ void add_bake_command(CLI::App& app, Work& work)
         ->type_name("OUT|DIR");
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
+    add_up_option(*command, options->up, "What is measured");
     add_surface_options(*command, options->surface);
     add_color_options(*command, options->colors);
     add_texel_options(*command, options->texels);

@@ -49,7 +49,8 @@ int run(const ViewCommandOptions& options)
         throw InputError(options.input + ": no such file");
 
     window.panel.settings = {settings_of(options.engine), distance_limit_of(options.measure),
-                             target_settings_of(options.surface), shown_texels_of(options.texels)};
+                             target_settings_of(options.surface), shown_texels_of(options.texels),
+                             ground_plane_of(options.measure, options.show.up)};
     window.panel.shows_atlas = options.atlas;
     window.keep_open = [] { return caught_signal() == 0; };
     for (const std::filesystem::path& file : show_window(window))
@@ -87,6 +88,7 @@ void add_view_command(CLI::App& app, Work& work)
         check_shown_map(view_options_of(options->show),
                         shown_texels_of(options->texels).has_value(), options->atlas);
         static_cast<void>(target_settings_of(options->surface));
+        static_cast<void>(ground_plane_of(options->measure, options->show.up));
         const DistanceLimit distance = distance_limit_of(options->measure);
         if (std::isfinite(distance.value) && !distance.percent)
             throw UsageError("--max-distance of a window is in % of the diagonal (10%).");

@@ -30,6 +30,8 @@ struct SessionSettings {
     TargetSettings target;
     /// A map in place of values at vertices: its charts, size and padding count.
     std::optional<TexelSettings> texels = {};
+    /// That occludes; its up is the model's.
+    std::optional<GroundPlane> ground = {};
     bool operator==(const SessionSettings&) const = default;
 };
 
@@ -73,8 +75,8 @@ public:
     void open(const std::filesystem::path& path, UpAxis up);
 
     /// Solves the model with these settings: a draft first where the engine has one, then the
-    /// whole. What is running is given up. Other targets need another model: it is made first, of
-    /// the scene that was read. Does nothing when they are the last settings.
+    /// whole. What is running is given up. Other targets or another ground need another model: it
+    /// is made first, of the scene that was read. Does nothing when they are the last settings.
     void solve(const SessionSettings& settings);
 
     /// An even number of rays: the reference is traced now and whenever the definition changes.
@@ -122,6 +124,7 @@ private:
         UpAxis up = UpAxis::y;
         std::shared_ptr<const Scene> scene;  ///< null: the file is read
         TargetSettings target;
+        std::optional<GroundPlane> ground;
     };
     struct Made;
     struct Answer;
@@ -129,6 +132,7 @@ private:
     struct Engines;
     void start_making(Making making);
     void solve_or_make();
+    [[nodiscard]] Definition definition() const;
     void start_solve();
     void start_reference();
     void save_map(const std::filesystem::path& path, const std::string& mark) const;
