@@ -1,6 +1,7 @@
 #include "viewer/session.h"
 
 #include "bake/bake.h"
+#include "differences.h"
 #include "scenes.h"
 #include "temporary_folder.h"
 #include "viewer/solve_model.h"
