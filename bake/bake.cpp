@@ -119,6 +119,18 @@ void check_before_work(const BakeSettings& settings, bool is_alone)
                          ": with a high mesh nothing but it occludes, no other files");
 }
 
+/// As the settings ask, below all of these.
+void set_ground(std::initializer_list<std::reference_wrapper<const Geometry>> geometries,
+                BakeReport& report)
+{
+    const Frame& frame = geometries.begin()->get().frame;
+    std::optional<Ground>& ground = report.settings.engine.definition.ground;
+    ground = ground_of(report.settings.ground, geometries,
+                       largest_offset_of(report.settings.target, frame));
+    if (ground)
+        report.ground = text_of(*ground, frame);
+}
+
 /// One file of the world.
 BakeReport bake_one(const Job& job, const BakeSettings& settings, double read_seconds,
                     const StageProgress& progress)
@@ -134,6 +146,7 @@ BakeReport bake_one(const Job& job, const BakeSettings& settings, double read_se
         check_output(mesh.scene, settings.output);
     report.settings.engine.definition =
         definition_of(report.settings.max_distance, report.settings.kernel, geometry.frame);
+    set_ground({geometry, mesh.occluding()}, report);
     if (report.settings.texels)
         bake_texels(mesh, job.occluders, report, progress);
     else
@@ -226,6 +239,8 @@ std::string mark_of(const BakeSettings& settings)
         text += " max_distance=none";
     text += std::isfinite(limit.value) && limit.percent ? "%" : "";
     text += limit.falloff == Falloff::smooth ? " falloff=smooth" : " falloff=none";
+    if (const auto& ground = settings.ground)
+        text += " ground=" + text_of(*ground);
     text += " " + text_of(settings.target) + text_of(settings.parts);
     for (const fs::path& other : settings.beside)
         text += " beside=" + other.filename().string();

@@ -27,6 +27,7 @@ struct BakeSettings {
     EngineSettings engine;  ///< its definition is made from the members below
     DistanceLimit max_distance;
     Kernel kernel = Kernel::cosine;
+    std::optional<GroundPlane> ground = {};
     TargetSettings target;
     PartChoice parts = {};  ///< who occludes, who is baked
     /// The other files that are baked together with it (bake_together): for marks.
@@ -84,6 +85,7 @@ struct BakeReport {
     std::uint64_t peak_rss_bytes = 0;
     std::optional<double> residual;       ///< of the disk engine's correction
     double mean_occlusion = 0.0;          ///< over vertices with a normal
+    std::string ground;                   ///< where it lies, "y = -0.25"; empty: there is none
     std::uint64_t receivers = 0;          ///< where occlusion was asked
     std::uint64_t corners_from_file = 0;  ///< corners shaded with the file's normals
     std::uint64_t replaced_corners = 0;   ///< the file's were not usable there

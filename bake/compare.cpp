@@ -268,8 +268,12 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     comparison.triangles = comparison.mesh->scene.triangles.size();
     comparison.dropped_triangles = comparison.mesh->geometry.dropped_triangles;
     comparison.receivers = target->receivers();
-    const Definition definition =
-        definition_of(settings.max_distance, settings.kernel, comparison.mesh->geometry.frame);
+    const Geometry& geometry = comparison.mesh->geometry;
+    Definition definition = definition_of(settings.max_distance, settings.kernel, geometry.frame);
+    definition.ground =
+        ground_of(settings.ground, {geometry}, largest_offset_of(settings.target, geometry.frame));
+    if (definition.ground)
+        comparison.ground = text_of(*definition.ground, geometry.frame);
     const TruthSettings truth_settings =
         truth_settings_of(settings, definition, *comparison.mesh, *target);
     SurfaceTruth truth = trace_truth(*comparison.mesh, truth_settings, stage("reference"));

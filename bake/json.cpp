@@ -41,6 +41,9 @@ Json json_of(const EngineSettings& settings)
     json["max_distance"] =
         std::isfinite(definition.max_distance) ? Json(definition.max_distance) : Json();
     json["falloff"] = definition.falloff == Falloff::none ? "none" : "smooth";
+    if (const auto& ground = definition.ground)
+        json["ground"] = {{"up", {ground->up.x, ground->up.y, ground->up.z}},
+                          {"height", ground->height}};
     return json;
 }
 

@@ -36,6 +36,7 @@ struct CompareOptions {
     std::vector<std::string> devices = {"cpu"};
     std::optional<std::vector<std::string>> qualities;
     MeasureOptions measure;
+    std::string up = "y";
     SurfaceOptions surface;
     TexelOptions texels;
     PartOptions parts;
@@ -54,6 +55,7 @@ CompareSettings common_settings(const CompareOptions& options)
     CompareSettings settings;
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
+    settings.ground = ground_plane_of(options.measure, options.up);
     settings.target = target_settings_of(options.surface);
     settings.parts = part_choice_of(options.parts);
     settings.texels = shown_texels_of(options.texels);
@@ -277,6 +279,7 @@ void add_compare_command(CLI::App& app, Work& work)
         ->type_name("Q,...")
         ->default_str("draft,good,best");
     add_measure_options(*command, options->measure);
+    add_up_option(*command, options->up, "What is measured");
     add_surface_options(*command, options->surface);
     add_layout_options(*command, options->texels, kShownMaps);
     add_part_options(*command, options->parts);

@@ -162,7 +162,9 @@ int run(const RenderCommandOptions& options)
     engine.definition = definition_of(distance_limit_of(options.measure),
                                       kernel_of(options.measure), mesh.geometry.frame);
     const UpAxis up = up_axis_of(options.show);
-    const Model model = make_model(std::move(mesh), up, target);
+    const Model model = make_model(std::move(mesh), up, target, kLargestSplat,
+                                   ground_plane_of(options.measure, options.show.up));
+    engine.definition.ground = model.occluding_ground;
     const Frame& frame = model.geometry().frame;
     const Camera camera = parse_camera(
         options.camera,
@@ -194,7 +196,10 @@ int run(const RenderCommandOptions& options)
     std::cout << options.input << " -> " << options.output << ", " << image.width << " x "
               << image.height << "\n  " << model.geometry().positions.size() << " vertices, "
               << model.geometry().triangles.size() << " triangles, " << name_of(engine.engine)
-              << ", " << setting_of(engine) << '\n';
+              << ", " << setting_of(engine);
+    if (engine.definition.ground)
+        std::cout << ", over a ground at " << text_of(*engine.definition.ground, frame);
+    std::cout << '\n';
     if (shown.layout)
         std::cout << "  " << text_of(*shown.layout) << '\n';
     std::cout << "  read " << time(read_s) << ", solve " << time(shown.solve_s) << ", reference "
@@ -255,6 +260,7 @@ void add_render_command(CLI::App& app, Work& work)
     command->callback([options, &work] {
         check_kernel(settings_of(options->engine).engine, kernel_of(options->measure));
         static_cast<void>(distance_limit_of(options->measure));
+        static_cast<void>(ground_plane_of(options->measure, options->show.up));
         static_cast<void>(target_settings_of(options->surface));
         const bool has_map = shown_texels_of(options->texels).has_value();
         check_shown_map(view_options_of(options->show), has_map, options->atlas);
