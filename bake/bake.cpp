@@ -136,6 +136,18 @@ std::uint64_t vertices_without_normal(const Mesh& mesh)
     return count;
 }
 
+/// As the settings ask, below all of these.
+void set_ground(std::initializer_list<std::reference_wrapper<const Geometry>> geometries,
+                BakeReport& report)
+{
+    const Frame& frame = geometries.begin()->get().frame;
+    std::optional<Ground>& ground = report.settings.engine.definition.ground;
+    ground = ground_of(report.settings.ground, geometries,
+                       largest_offset_of(report.settings.target, frame));
+    if (ground)
+        report.ground = text_of(*ground, frame);
+}
+
 /// One file of the world.
 BakeReport bake_one(const Job& job, const BakeSettings& settings, double read_seconds,
                     const StageProgress& progress)
@@ -147,8 +159,11 @@ BakeReport bake_one(const Job& job, const BakeSettings& settings, double read_se
     Stopwatch whole;
     const Mesh& mesh = *job.mesh;
     const Geometry& geometry = mesh.geometry;
+    if (!settings.texels)
+        check_output(mesh.scene, settings.output);
     report.settings.engine.definition =
         definition_of(report.settings.max_distance, report.settings.kernel, geometry.frame);
+    set_ground({geometry, mesh.occluding()}, report);
     if (report.settings.texels)
         bake_texels(mesh, job.occluders, report, progress);
     else
@@ -185,7 +200,8 @@ std::vector<BakeReport> bake_together(const std::vector<BakeSettings>& settings,
         inputs.push_back(of_file.input);
     }
     enter(progress, "read");
-    BakeWorld world = read_world(inputs, settings.front().target.normals, settings.front().parts);
+    BakeWorld world = read_world(inputs, settings.front().target.normals, settings.front().parts,
+                                 settings.front().reading);
     double read_seconds = watch.lap();
     const std::shared_ptr<const Geometry> occluding = world.meshes.front().occluders;
     std::optional<Occluders> occluders;
@@ -239,12 +255,19 @@ std::string mark_of(const BakeSettings& settings)
         text += " max_distance=none";
     text += std::isfinite(limit.value) && limit.percent ? "%" : "";
     text += limit.falloff == Falloff::smooth ? " falloff=smooth" : " falloff=none";
+    if (const auto& ground = settings.ground)
+        text += " ground=" + text_of(*ground);
     text += " " + text_of(settings.target) + text_of(settings.parts);
     for (const fs::path& other : settings.beside)
         text += " beside=" + other.filename().string();
     if (const auto& texels = settings.texels) {
         text += " " + text_of(*texels);
         return make_mark("bake", text);
+    }
+    if (!settings.reading.columns.empty()) {
+        std::string columns = settings.reading.columns;
+        std::ranges::replace(columns, ' ', ',');
+        text += " columns=" + columns;
     }
     text += " colors=" + name_of(settings.colors);
     text += " encoding=" + name_of(settings.encoding);

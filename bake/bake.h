@@ -8,7 +8,7 @@
 #include "bake/vertex_target.h"
 #include "bake/world.h"
 #include "engines/engine.h"
-#include "files/vertex_colors.h"
+#include "files/scene_io.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -27,6 +27,7 @@ struct BakeSettings {
     EngineSettings engine;  ///< its definition is made from the members below
     DistanceLimit max_distance;
     Kernel kernel = Kernel::cosine;
+    std::optional<GroundPlane> ground = {};
     TargetSettings target;
     PartChoice parts = {};  ///< who occludes, who is baked
     /// The other files that are baked together with it (bake_together): for marks.
@@ -38,6 +39,7 @@ struct BakeSettings {
     std::optional<TexelSettings> texels = {};  ///< a map instead of values at vertices
     VertexColors colors = VertexColors::automatic;
     Encoding encoding = Encoding::automatic;
+    ReadOptions reading = {};  ///< of the input
 };
 
 /// Wall-clock seconds of each stage.
@@ -54,6 +56,7 @@ struct TexelReport {
     MapSize size;
     std::optional<std::uint32_t> uv_set;        ///< of the file; empty: charts of our own
     std::vector<std::uint32_t> tiles;           ///< UDIM
+    std::vector<std::string> materials;         ///< that have a map each
     std::optional<ChartReport> charts;          ///< of our own
     std::uint64_t covered = 0;                  ///< texels
     std::uint64_t overlapping = 0;              ///< texels of several sheets: they hold the mean
@@ -83,6 +86,7 @@ struct BakeReport {
     std::uint64_t peak_rss_bytes = 0;
     std::optional<double> residual;       ///< of the disk engine's correction
     double mean_occlusion = 0.0;          ///< over vertices with a normal
+    std::string ground;                   ///< where it lies, "y = -0.25"; empty: there is none
     std::uint64_t receivers = 0;          ///< where occlusion was asked
     std::uint64_t corners_from_file = 0;  ///< corners shaded with the file's normals
     std::uint64_t replaced_corners = 0;   ///< the file's were not usable there

@@ -214,9 +214,10 @@ std::string labels_text(const Info& info)
 
 }  // namespace
 
-Info inspect(const std::filesystem::path& input, const Progress& progress)
+Info inspect(const std::filesystem::path& input, const Progress& progress,
+             const ReadOptions& reading)
 {
-    const auto mesh = std::make_shared<const Mesh>(read_mesh(input, {}, {}));
+    const auto mesh = std::make_shared<const Mesh>(read_mesh(input, {}, {}, reading));
     const VertexTarget target(mesh, {});
     Info info;
     info.input = input;

@@ -41,6 +41,9 @@ Json json_of(const EngineSettings& settings)
     json["max_distance"] =
         std::isfinite(definition.max_distance) ? Json(definition.max_distance) : Json();
     json["falloff"] = definition.falloff == Falloff::none ? "none" : "smooth";
+    if (const auto& ground = definition.ground)
+        json["ground"] = {{"up", {ground->up.x, ground->up.y, ground->up.z}},
+                          {"height", ground->height}};
     return json;
 }
 
@@ -104,6 +107,7 @@ Json json_of(const BakeReport& report, const TexelReport& texels)
             {"padding", report.settings.texels->padding},
             {"uv_set", texels.uv_set ? Json(*texels.uv_set) : Json()},
             {"tiles", texels.tiles},
+            {"materials", texels.materials},
             {"charts", texels.charts ? json_of(*texels.charts) : Json()},
             {"misses", texels.misses},
             {"high_triangles", texels.high_triangles},

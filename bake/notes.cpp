@@ -97,7 +97,7 @@ std::vector<std::string> notes_of(const Baked& baked)
                 (is_far ? ", --max-distance 10% is for interiors" : ""));
         else if (is_far)
             add("an interior: try --max-distance 10%");
-    } else {
+    } else if (!baked.definition.ground) {  // it closes undersides too, rightly
         add(closed_note(baked.values, baked.topology));
     }
     return notes;

@@ -314,21 +314,21 @@ BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
 }
 
 BakeWorld read_world(std::span<const std::filesystem::path> inputs, const NormalSettings& normals,
-                     const PartChoice& choice)
+                     const PartChoice& choice, const ReadOptions& reading)
 {
-    const auto read_all = [](std::span<const std::filesystem::path> paths) {
+    const auto read_all = [&](std::span<const std::filesystem::path> paths) {
         std::vector<Scene> scenes;
         for (const std::filesystem::path& path : paths)
-            scenes.push_back(read_scene(path));
+            scenes.push_back(read_scene(path, reading));
         return scenes;
     };
     return make_world(read_all(inputs), read_all(choice.occluders), normals, choice);
 }
 
 Mesh read_mesh(const std::filesystem::path& input, const NormalSettings& normals,
-               const PartChoice& choice)
+               const PartChoice& choice, const ReadOptions& reading)
 {
-    return std::move(read_world({&input, 1}, normals, choice).meshes.front());
+    return std::move(read_world({&input, 1}, normals, choice, reading).meshes.front());
 }
 
 }  // namespace surfelao

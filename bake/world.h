@@ -10,6 +10,7 @@
 /// nor distances in percent of the diagonal change because of them.
 #pragma once
 
+#include "files/scene_io.h"
 #include "surfels/surface.h"
 
 #include <filesystem>
@@ -56,14 +57,15 @@ struct BakeWorld {
 /// inputs: baked. others: PartChoice::occluders, read. Throws InputError for a pattern that means
 /// no name, where nothing of an input is left to be baked, and as make_mesh().
 [[nodiscard]] BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
-                               const NormalSettings& normals, const PartChoice& choice);
+                                   const NormalSettings& normals, const PartChoice& choice);
 
 /// Reads the files and makes the world of them. Throws as read_scene() too.
 [[nodiscard]] BakeWorld read_world(std::span<const std::filesystem::path> inputs,
-                               const NormalSettings& normals, const PartChoice& choice);
+                                   const NormalSettings& normals, const PartChoice& choice,
+                                   const ReadOptions& reading = {});
 
 /// Of a single input.
 [[nodiscard]] Mesh read_mesh(const std::filesystem::path& input, const NormalSettings& normals,
-                             const PartChoice& choice);
+                             const PartChoice& choice, const ReadOptions& reading = {});
 
 }  // namespace surfelao

@@ -5,6 +5,7 @@
 #include "cli/output.h"
 #include "cli/part_options.h"
 #include "cli/progress_bar.h"
+#include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "engines/threads.h"
 #include "files/file_type.h"
@@ -27,8 +28,10 @@ namespace fs = std::filesystem;
 struct BakeOptions {
     std::vector<std::string> inputs;
     std::string output;
+    ReadOptions reading;
     EngineOptions engine;
     MeasureOptions measure;
+    std::string up = "y";
     SurfaceOptions surface;
     ColorOptions colors;
     TexelOptions texels;
@@ -96,6 +99,7 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.engine = settings_of(options.engine);
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
+    settings.ground = ground_plane_of(options.measure, options.up);
     settings.target = target_settings_of(options.surface);
     settings.parts = part_choice_of(options.parts);
     if (options.together) {
@@ -109,6 +113,7 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.texels = texel_settings_of(options.texels, job.output);
     settings.colors = colors_of(options.colors);
     settings.encoding = encoding_of(options.colors);
+    settings.reading = options.reading;
     return settings;
 }
 
@@ -205,6 +210,7 @@ void check_options(const BakeOptions& options)
 {
     const EngineSettings engine = settings_of(options.engine);
     static_cast<void>(distance_limit_of(options.measure));
+    static_cast<void>(ground_plane_of(options.measure, options.up));
     static_cast<void>(target_settings_of(options.surface));
     check_kernel(engine.engine, kernel_of(options.measure));
     if (options.error && options.check == 0)
@@ -229,21 +235,22 @@ void add_bake_command(CLI::App& app, Work& work)
                                            "Occlusion and bent normals at every vertex, or as a "
                                            "map: a mesh file in, the same mesh or a "
                                            "picture out");
-    command->add_option("IN", options->inputs, "Mesh files: .obj .ply .off .stl .gltf .glb")
-        ->required()
-        ->type_name("");
+    command->add_option("IN", options->inputs, kMeshOrCloud)->required()->type_name("");
     command
         ->add_option(
             "-o,--output", options->output,
-            "Mesh file (.ply .obj .off, .gltf/.glb from glTF), a map over the file's texture "
+            "Mesh or cloud file (.ply .obj .off, .gltf/.glb from glTF, .pcd .xyz .pts .txt .asc "
+            "from clouds), a map over the file's texture "
             "coordinates (.png .tif .exr), or a folder (made where it is "
             "missing, for several files and behind a /): there every "
             "result has its input's name, .ply for .stl, and only files that bake made are "
             "replaced")
         ->required()
         ->type_name("OUT|DIR");
+    add_read_options(*command, options->reading);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
+    add_up_option(*command, options->up, "What is measured");
     add_surface_options(*command, options->surface);
     add_color_options(*command, options->colors);
     add_texel_options(*command, options->texels);
@@ -271,10 +278,9 @@ void add_bake_command(CLI::App& app, Work& work)
             ->group("Error");
     for (const char* other : {"--engine", "--quality", "--rays", "--passes", "--strength"})
         error->excludes(command->get_option(other));
-    command->add_flag(
-        "--resume", options->resume,
-        "Skip files whose result is not older than they are and says that it was "
-        "made with these settings (a comment in .ply .obj .off, asset.extras in glTF)");
+    command->add_flag("--resume", options->resume,
+                      "Skip files whose result is not older than they are and says that it was "
+                      "made with these settings (a comment in the file, asset.extras in glTF)");
     add_overwrite_option(*command, options->overwrite);
     command
         ->add_option("--json", options->json,

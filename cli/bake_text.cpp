@@ -29,6 +29,8 @@ std::string question_of(const BakeReport& report)
             ")";
     else if (settings.target.values == VertexValues::fit)
         text += " fitted to the vertices";
+    if (!report.ground.empty())
+        text += ", over a ground at " + report.ground;
     if (report.corners_from_file > 0)
         text += ", normals of the file at " + std::to_string(report.corners_from_file) + " corners";
     return text;

@@ -6,6 +6,7 @@
 #include "cli/output.h"
 #include "cli/part_options.h"
 #include "cli/progress_bar.h"
+#include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "engines/threads.h"
 #include "reference/rays.h"
@@ -28,12 +29,14 @@ constexpr std::uint64_t kMostSample = 10'000'000;
 struct CompareOptions {
     std::vector<std::string> inputs;
     std::optional<std::string> output;
+    ReadOptions reading;
     bool overwrite = false;
     bool frontier = false;
     std::vector<std::string> engines = {"masks", "disks"};
     std::vector<std::string> devices = {"cpu"};
     std::optional<std::vector<std::string>> qualities;
     MeasureOptions measure;
+    std::string up = "y";
     SurfaceOptions surface;
     TexelOptions texels;
     PartOptions parts;
@@ -52,6 +55,7 @@ CompareSettings common_settings(const CompareOptions& options)
     CompareSettings settings;
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
+    settings.ground = ground_plane_of(options.measure, options.up);
     settings.target = target_settings_of(options.surface);
     settings.parts = part_choice_of(options.parts);
     settings.texels = shown_texels_of(options.texels);
@@ -59,6 +63,7 @@ CompareSettings common_settings(const CompareOptions& options)
     settings.sample = options.sample;
     settings.rounds = options.rounds;
     settings.use_cache = !options.no_cache;
+    settings.reading = options.reading;
     settings.instructions = options.avx2 ? Instructions::avx2 : Instructions::all;
     return settings;
 }
@@ -237,9 +242,7 @@ void add_compare_command(CLI::App& app, Work& work)
         "compare",
         "One scene by our engines and by ray tracing, the same job: how long, how wrong");
     command
-        ->add_option("IN", options->inputs,
-                     "Mesh file: .obj .ply .off .stl .gltf .glb; several with "
-                     "--frontier")
+        ->add_option("IN", options->inputs, std::string(kMeshOrCloud) + "; several with --frontier")
         ->required()
         ->type_name("");
     command
@@ -248,6 +251,7 @@ void add_compare_command(CLI::App& app, Work& work)
                      "--frontier or --at texels), and report.html; without it no file is "
                      "written")
         ->type_name("DIR");
+    add_read_options(*command, options->reading);
     add_overwrite_option(*command, options->overwrite);
     command->add_flag(
         "--frontier", options->frontier,
@@ -275,6 +279,7 @@ void add_compare_command(CLI::App& app, Work& work)
         ->type_name("Q,...")
         ->default_str("draft,good,best");
     add_measure_options(*command, options->measure);
+    add_up_option(*command, options->up, "What is measured");
     add_surface_options(*command, options->surface);
     add_layout_options(*command, options->texels, kShownMaps);
     add_part_options(*command, options->parts);

@@ -4,6 +4,7 @@
 #include "cli/output.h"
 #include "cli/part_options.h"
 #include "cli/progress_bar.h"
+#include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "cli/view_options.h"
 #include "engines/threads.h"
@@ -30,6 +31,7 @@ constexpr int kMostSamples = 4096;
 struct RenderCommandOptions {
     std::string input;
     std::string output;
+    ReadOptions reading;
     int width = 1280, height = 720;
     int samples = 16;
     std::string camera;
@@ -154,12 +156,15 @@ int run(const RenderCommandOptions& options)
 
     Stopwatch watch;
     const TargetSettings target = target_settings_of(options.surface);
-    Mesh mesh = read_mesh(options.input, target.normals, part_choice_of(options.parts));
+    Mesh mesh =
+        read_mesh(options.input, target.normals, part_choice_of(options.parts), options.reading);
     EngineSettings engine = settings_of(options.engine);
     engine.definition = definition_of(distance_limit_of(options.measure),
                                       kernel_of(options.measure), mesh.geometry.frame);
     const UpAxis up = up_axis_of(options.show);
-    const Model model = make_model(std::move(mesh), up, target);
+    const Model model = make_model(std::move(mesh), up, target, kLargestSplat,
+                                   ground_plane_of(options.measure, options.show.up));
+    engine.definition.ground = model.occluding_ground;
     const Frame& frame = model.geometry().frame;
     const Camera camera = parse_camera(
         options.camera,
@@ -191,7 +196,10 @@ int run(const RenderCommandOptions& options)
     std::cout << options.input << " -> " << options.output << ", " << image.width << " x "
               << image.height << "\n  " << model.geometry().positions.size() << " vertices, "
               << model.geometry().triangles.size() << " triangles, " << name_of(engine.engine)
-              << ", " << setting_of(engine) << '\n';
+              << ", " << setting_of(engine);
+    if (engine.definition.ground)
+        std::cout << ", over a ground at " << text_of(*engine.definition.ground, frame);
+    std::cout << '\n';
     if (shown.layout)
         std::cout << "  " << text_of(*shown.layout) << '\n';
     std::cout << "  read " << time(read_s) << ", solve " << time(shown.solve_s) << ", reference "
@@ -212,12 +220,11 @@ void add_render_command(CLI::App& app, Work& work)
     const auto options = std::make_shared<RenderCommandOptions>();
     CLI::App* command =
         app.add_subcommand("render", "A picture of a mesh with its occlusion, without a window");
-    command->add_option("IN", options->input, "Mesh file: .obj .ply .off .stl .gltf .glb")
-        ->required()
-        ->type_name("");
+    command->add_option("IN", options->input, kMeshOrCloud)->required()->type_name("");
     command->add_option("-o,--output", options->output, "Picture: .png .jpg .exr")
         ->required()
         ->type_name("OUT");
+    add_read_options(*command, options->reading);
     command->add_option("--width", options->width, "Pixels")
         ->check(CLI::Range(1, kMostPixels))
         ->type_name("N")
@@ -253,6 +260,7 @@ void add_render_command(CLI::App& app, Work& work)
     command->callback([options, &work] {
         check_kernel(settings_of(options->engine).engine, kernel_of(options->measure));
         static_cast<void>(distance_limit_of(options->measure));
+        static_cast<void>(ground_plane_of(options->measure, options->show.up));
         static_cast<void>(target_settings_of(options->surface));
         const bool has_map = shown_texels_of(options->texels).has_value();
         check_shown_map(view_options_of(options->show), has_map, options->atlas);

@@ -92,6 +92,8 @@ private:
     BaseColor color_of(const json& material)
     {
         BaseColor color;
+        if (const json& name = member(material, "name"); name.is_string())
+            color.name = name.get<std::string>();
         const json& looks = member(material, "pbrMetallicRoughness");
         const json& factor = member(looks, "baseColorFactor");
         for (int k = 0; k < 3 && factor.is_array() && factor.size() == 4; ++k) {
@@ -107,8 +109,6 @@ private:
             color.picture = picture_of(image.get<std::size_t>());
         if (texture.is_object())
             set_transform(texture, color);
-        const json& name = member(material, "name");
-        color.name = name.is_string() ? name.get<std::string>() : std::string();
         color.opacity = opacity_of(material);
         color.alpha_picture = color.picture;
         if (factor.is_array() && factor.size() == 4)

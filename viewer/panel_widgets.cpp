@@ -32,7 +32,7 @@ constexpr const char* kHelp[][2] = {
     {"R", "ray reference on or off"},
     {"W", "wipe to the reference on or off; drag the line"},
     {"S", "reference side by side on or off"},
-    {"G", "ground on or off"},
+    {"G", "shadow on the ground on or off"},
     {"Esc", "cancel what runs in the background"},
     {"Tab", "hide or show the panel"},
     {"P", "save the picture"},
@@ -91,6 +91,32 @@ bool edit_distance(DistanceLimit& limit, Falloff& falloff)
     bool smooth = falloff == Falloff::smooth;
     if (percent > 0.0f && ImGui::Checkbox("smooth falloff", &smooth)) {
         limit.falloff = smooth ? Falloff::smooth : Falloff::none;
+        apply = true;
+    }
+    return apply;
+}
+
+bool edit_ground(std::optional<GroundPlane>& ground, const Model* model)
+{
+    bool occludes = ground.has_value();
+    bool apply = false;
+    if (ImGui::Checkbox("ground occludes", &occludes)) {
+        ground.reset();
+        if (occludes)
+            ground = GroundPlane{model ? up_direction(model->up) : GroundPlane{}.up};
+        apply = true;
+    }
+    if (!ground || !model || !model->occluding_ground)
+        return apply;
+    const Frame& frame = model->geometry().frame;
+    double height = ground->height.value_or(*plane_of(*model->occluding_ground, frame).height);
+    constexpr double kPerPixel = 1e-3;  // diagonals
+    if (ImGui::DragScalar("height", ImGuiDataType_Double, &height,
+                          static_cast<float>(kPerPixel * frame.diagonal), nullptr, nullptr, "%.6g"))
+        ground->height = height;
+    apply |= was_set();
+    if (ground->height && ImGui::Button("below the lowest point")) {
+        ground->height.reset();
         apply = true;
     }
     return apply;
@@ -222,7 +248,7 @@ bool view_widgets(PanelState& state)
     if (view.colors == Colors::difference)
         changed |= ImGui::SliderFloat("full scale", &view.difference_scale, 0.001f, 1.0f, "%.3f",
                                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    changed |= ImGui::Checkbox("ground", &view.ground);
+    changed |= ImGui::Checkbox("shadow on the ground", &view.ground);
     return changed;
 }
 

@@ -15,6 +15,9 @@ bool edit_settings(EngineSettings& engine);
 /// The same for the limit, in % of the diagonal. falloff: what a limit has, once there is one.
 bool edit_distance(DistanceLimit& limit, Falloff& falloff);
 
+/// The same for a ground that occludes. model: as it is shown, or null.
+bool edit_ground(std::optional<GroundPlane>& ground, const Model* model);
+
 /// The same for the surface's normals and what the values at vertices are.
 bool edit_target(TargetSettings& target);
 

@@ -111,6 +111,37 @@ TEST_F(BakeCommand, OptionsReachTheReport)
         EXPECT_TRUE(json.contains(key)) << key;
 }
 
+TEST_F(BakeCommand, AGroundIsToldEverywhereAndRefusedWhereItIsNone)
+{
+    write_obj(folder_ / "box.obj", scenes::box({0, 0, 0}, {1, 1, 1}, 1));
+    std::vector<std::string> arguments = {"bake",     folder_ / "box.obj",
+                                          "-o",       folder_ / "x.ply",
+                                          "--values", "point",
+                                          "--up",     "z",
+                                          "--json",   folder_ / "report.json",
+                                          "--ground"};
+    const Outcome outcome = run(arguments);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find(", over a ground at z = -0.000346407"), outcome.out.npos)
+        << outcome.out;
+    EXPECT_NE(contents_of(folder_ / "x.ply").find(" ground=z:lowest "), std::string::npos);
+    const Json ground = Json::parse(contents_of(folder_ / "report.json"))["settings"]["ground"];
+    EXPECT_EQ(ground["up"], (std::vector<double>{0, 0, 1}));
+    EXPECT_NEAR(ground["height"].get<double>(), -0.5 / std::sqrt(3.0) - 2e-4, 1e-6);
+    // by faces 0, 1/2 and 1: the mean over the corners of a box
+    EXPECT_NE(outcome.out.find("mean occlusion 0.5000"), outcome.out.npos) << outcome.out;
+    for (const std::vector<std::string>& wrong :
+         {std::vector<std::string>{"--ground=high"},
+          {"--ground", "nan"},
+          {"--ground", "--engine", "disks", "--kernel", "bunnell"},
+          {"--up", "w"}}) {
+        std::vector<std::string> asked = {"bake", folder_ / "box.obj", "-o", folder_ / "y.ply"};
+        asked.insert(asked.end(), wrong.begin(), wrong.end());
+        EXPECT_EQ(run(asked).code, 2) << wrong[0];
+        EXPECT_FALSE(fs::exists(folder_ / "y.ply"));
+    }
+}
+
 TEST_F(BakeCommand, EveryResultStatesItsErrorAndTheStatementChangesNoByte)
 {
     std::vector<std::string> bytes;
