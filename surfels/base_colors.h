@@ -35,7 +35,6 @@ struct BaseColor {
     glm::dmat2 uv_matrix{
         1.0};  ///< times the coordinates, and the offset, gives those of the picture
     glm::dvec2 uv_offset{0.0};
-    std::string name = {};
     Opacity opacity = Opacity::solid;
     float alpha = 1.0f;   ///< multiplies that of the picture
     float cutoff = 0.5f;  ///< Opacity::cut
