@@ -107,6 +107,8 @@ private:
             color.picture = picture_of(image.get<std::size_t>());
         if (texture.is_object())
             set_transform(texture, color);
+        if (const json& name = member(material, "name"); name.is_string())
+            color.name = name.get<std::string>();
         color.opacity = opacity_of(material);
         color.alpha_picture = color.picture;
         if (factor.is_array() && factor.size() == 4)
