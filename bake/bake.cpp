@@ -2,6 +2,7 @@
 
 #include "bake/notes.h"
 #include "bake/peak_memory.h"
+#include "bake/point_job.h"
 #include "bake/texel_job.h"
 #include "engines/threads.h"
 #include "files/file_type.h"
@@ -43,13 +44,7 @@ VertexBake answer(const Mesh& mesh, const VertexTarget& target, const StageProgr
                                                      *settings.error, settings.check, progress)
                                      : bake_vertices(mesh, target, settings.engine, offset,
                                                      settings.check, progress);
-    report.settings.engine = bake.engine;
-    report.surfels = bake.surfels;
-    report.residual = bake.residual;
-    report.error = bake.error;
-    report.trials = bake.trials;
-    report.is_met = bake.is_met;
-    static_cast<VertexBakeSeconds&>(report.seconds) = bake.seconds;
+    take(bake, report);
     return bake;
 }
 
@@ -98,6 +93,44 @@ std::vector<fs::path> files_beside(const BakeSettings& settings)
 
 }  // namespace
 
+void take(const VertexBake& bake, BakeReport& report)
+{
+    report.settings.engine = bake.engine;
+    report.surfels = bake.surfels;
+    report.residual = bake.residual;
+    report.error = bake.error;
+    report.trials = bake.trials;
+    report.is_met = bake.is_met;
+    static_cast<VertexBakeSeconds&>(report.seconds) = bake.seconds;
+}
+
+namespace {
+
+/// The part of bake() that is for meshes.
+void bake_mesh(Scene scene, BakeReport& report, const StageProgress& progress)
+{
+    const BakeSettings& settings = report.settings;
+    Stopwatch stage;
+    const auto mesh =
+        std::make_shared<const Mesh>(make_mesh(std::move(scene), settings.target.normals));
+    const Geometry& geometry = mesh->geometry;
+    report.settings.engine.definition =
+        definition_of(settings.max_distance, settings.kernel, geometry.frame);
+    report.seconds.read += stage.lap();
+    if (settings.texels)
+        bake_texels(*mesh, report, progress);
+    else
+        bake_at_vertices(mesh, report, progress);
+    report.vertices = mesh->scene.positions.size();
+    report.dropped_triangles = geometry.dropped_triangles;
+    report.vertices_without_normal = static_cast<std::uint64_t>(
+        std::count(mesh->surface.normals.begin(), mesh->surface.normals.end(), glm::vec3(0.0f)));
+    report.corners_from_file = mesh->surface.corners_from_file;
+    report.replaced_corners = mesh->surface.replaced_corners;
+}
+
+}  // namespace
+
 BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
 {
     BakeReport report;
@@ -110,25 +143,15 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
         check_output(settings.input, settings.output);
 
     enter(progress, "read");
-    const auto mesh = std::make_shared<const Mesh>(
-        make_mesh(read_scene(settings.input), settings.target.normals));
-    const Scene& scene = mesh->scene;
-    const Geometry& geometry = mesh->geometry;
-    EngineSettings& engine = report.settings.engine;
-    engine.definition = definition_of(settings.max_distance, settings.kernel, geometry.frame);
-    report.seconds.read = stage.lap();
-    if (settings.texels)
-        bake_texels(*mesh, report, progress);
-    else
-        bake_at_vertices(mesh, report, progress);
-
+    Scene scene = read_scene(settings.input);
+    check_points(settings, scene);
     report.vertices = scene.positions.size();
     report.triangles = scene.triangles.size();
-    report.dropped_triangles = geometry.dropped_triangles;
-    report.vertices_without_normal = static_cast<std::uint64_t>(
-        std::count(mesh->surface.normals.begin(), mesh->surface.normals.end(), glm::vec3(0.0f)));
-    report.corners_from_file = mesh->surface.corners_from_file;
-    report.replaced_corners = mesh->surface.replaced_corners;
+    report.seconds.read = stage.lap();
+    if (scene.triangles.empty())
+        bake_at_points(scene, report, progress);
+    else
+        bake_mesh(std::move(scene), report, progress);
     report.seconds.total = whole.lap();
     report.peak_rss_bytes = peak_rss_bytes();
     return report;

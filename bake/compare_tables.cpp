@@ -110,9 +110,11 @@ std::string errors_text(const Comparison& comparison)
     const std::uint64_t all = comparison.points + comparison.ill_defined;
     const double share = 100.0 * static_cast<double>(comparison.ill_defined) /
                          static_cast<double>(std::max<std::uint64_t>(1, all));
-    return "surface error (seen) over " + std::to_string(comparison.points) + " points, floor " +
-           fixed(comparison.floor.rmse, 4) + "; " + std::to_string(comparison.ill_defined) +
-           " ill-defined points left out (" + fixed(share, 2) + " %)" +
+    return (comparison.points_report ? "error against rays at the same squares at "
+                                     : "surface error (seen) over ") +
+           std::to_string(comparison.points) + " points, floor " + fixed(comparison.floor.rmse, 4) +
+           "; " + std::to_string(comparison.ill_defined) + " ill-defined points left out (" +
+           fixed(share, 2) + " %)" +
            (comparison.hidden > 0 ? ", " + std::to_string(comparison.hidden) + " hidden ones"
                                   : "") +
            "\nreference: " + std::to_string(comparison.reference_rays) +
@@ -151,13 +153,15 @@ std::string table_of(const Comparison& comparison)
             cells.insert(cells.begin() + 2, fixed(row.raster_s, 4));
         table.add(std::move(cells));
     }
-    std::string text = comparison.input.string() + ": " + std::to_string(comparison.vertices) +
-                       " vertices, " + std::to_string(comparison.triangles) + " triangles, " +
-                       (is_map ? target_text(comparison) + ", " : "") +
-                       std::to_string(comparison.receivers) + " receivers, " +
-                       std::to_string(comparison.threads) + " threads, median of " +
-                       std::to_string(comparison.rounds) + '\n' + errors_text(comparison) + "\n\n" +
-                       table.text() + rows_run_once(comparison);
+    std::string text =
+        comparison.input.string() + ": " + std::to_string(comparison.vertices) +
+        (comparison.points_report
+             ? " points, "
+             : " vertices, " + std::to_string(comparison.triangles) + " triangles, ") +
+        (is_map ? target_text(comparison) + ", " : "") + std::to_string(comparison.receivers) +
+        " receivers, " + std::to_string(comparison.threads) + " threads, median of " +
+        std::to_string(comparison.rounds) + '\n' + errors_text(comparison) + "\n\n" + table.text() +
+        rows_run_once(comparison);
     for (const CompareRow& row : comparison.rows) {
         if (row.ratio && row.ratio->extrapolated) {
             text += "* extrapolated beyond the rows of rays\n";

@@ -91,7 +91,7 @@ void solve_for(const Model& model, const EngineSettings& engine, const ViewOptio
     Stopwatch watch;
     shown.occlusion.resize(model.answer_count());
     if (needs_answer(view.colors))
-        shown.occlusion = solve_model(prepare(model.geometry(), engine), model, engine,
+        shown.occlusion = solve_model(prepare(model, engine), model, engine,
                                       {.ground = shows_ground(view)}, stage("solve"))
                               .values;
     shown.solve_s = watch.lap();
@@ -151,13 +151,15 @@ int run(const RenderCommandOptions& options)
 
     Stopwatch watch;
     const TargetSettings target = target_settings_of(options.surface);
-    Mesh mesh = make_mesh(read_scene(options.input), target.normals);
-    EngineSettings engine = settings_of(options.engine);
-    engine.definition = definition_of(distance_limit_of(options.measure),
-                                      kernel_of(options.measure), mesh.geometry.frame);
     const UpAxis up = up_axis_of(options.show);
-    const Model model = make_model(std::move(mesh), up, target);
+    const Model model = model_of(read_scene(options.input), up, target);
     const Frame& frame = model.geometry().frame;
+    EngineSettings engine = settings_of(options.engine);
+    engine.definition =
+        definition_of(distance_limit_of(options.measure), kernel_of(options.measure), frame);
+    const auto texels = shown_texels_of(options.texels);
+    if (texels && model.cloud)
+        throw UsageError(options.input + ": has points only, no faces: --at points");
     const Camera camera = parse_camera(
         options.camera,
         {.points = model.seen,
@@ -166,12 +168,12 @@ int run(const RenderCommandOptions& options)
          .up = up,
          .aspect = static_cast<float>(options.width) / static_cast<float>(options.height)});
     Shown shown;
-    if (picture.view.colors == Colors::textured)
+    if (picture.view.colors == Colors::textured && !model.cloud)
         shown.paint = base_paint_of(*model.mesh);
     const double read_s = watch.lap();
 
     const std::uint32_t rays = options.show.reference_rays;
-    if (const auto texels = shown_texels_of(options.texels))
+    if (texels)
         solve_map_for(model, *texels, engine, picture.view, rays, stage, shown);
     else
         solve_for(model, engine, picture.view, rays, stage, shown);
@@ -186,9 +188,11 @@ int run(const RenderCommandOptions& options)
 
     const auto time = [](double s) { return fixed(s, 3) + " s"; };
     std::cout << options.input << " -> " << options.output << ", " << image.width << " x "
-              << image.height << "\n  " << model.geometry().positions.size() << " vertices, "
-              << model.geometry().triangles.size() << " triangles, " << name_of(engine.engine)
-              << ", " << setting_of(engine) << '\n';
+              << image.height << "\n  " << model.geometry().positions.size()
+              << (model.cloud ? " points, "
+                              : " vertices, " + std::to_string(model.geometry().triangles.size()) +
+                                    " triangles, ")
+              << name_of(engine.engine) << ", " << setting_of(engine) << '\n';
     if (shown.layout)
         std::cout << "  " << text_of(*shown.layout) << '\n';
     std::cout << "  read " << time(read_s) << ", solve " << time(shown.solve_s) << ", reference "

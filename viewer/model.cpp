@@ -6,6 +6,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -162,6 +163,21 @@ void make_splats(Model& model, float largest)
     }
 }
 
+void add_ground(Model& model, const Offset& offset)
+{
+    model.ground = make_ground(model.seen, up_direction(model.up));
+    const float height = offset.value_or(kMostOffset);
+    const Ground& ground = model.ground;
+    for (int y = 0; y <= kGroundCells; ++y) {
+        for (int x = 0; x <= kGroundCells; ++x) {
+            const float cell = 1.0f / static_cast<float>(kGroundCells);
+            const glm::vec3 place = ground.corner + static_cast<float>(x) * cell * ground.axis_x +
+                                    static_cast<float>(y) * cell * ground.axis_y;
+            model.ground_receivers.push_back({place + height * ground.up, ground.up, height});
+        }
+    }
+}
+
 }  // namespace
 
 glm::vec2 level_range(const Model& model)
@@ -222,18 +238,43 @@ Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings, float lar
     model.points = surface_points(g, kModelPoints);
     model.point_receivers = receivers_at(g, model.mesh->surface, model.points, offset);
 
-    model.ground = make_ground(model.seen, up_direction(up));
-    const float height = offset.value_or(kMostOffset);
-    const Ground& ground = model.ground;
-    for (int y = 0; y <= kGroundCells; ++y) {
-        for (int x = 0; x <= kGroundCells; ++x) {
-            const float cell = 1.0f / static_cast<float>(kGroundCells);
-            const glm::vec3 place = ground.corner + static_cast<float>(x) * cell * ground.axis_x +
-                                    static_cast<float>(y) * cell * ground.axis_y;
-            model.ground_receivers.push_back({place + height * ground.up, ground.up, height});
-        }
-    }
+    add_ground(model, offset);
     return model;
+}
+
+Model make_cloud_model(Scene scene, UpAxis up, const TargetSettings& settings)
+{
+    Model model;
+    auto target = std::make_shared<const PointTarget>(make_point_target(scene, settings));
+    const PointCloud& cloud = target->cloud;
+    model.mesh = std::make_shared<const Mesh>(point_mesh(std::move(scene), cloud));
+    model.cloud = target;
+    model.settings = settings;
+    model.up = up;
+    model.seen = cloud.positions;
+    const Geometry& geometry = model.geometry();
+    // lone points are drawn as wide as others
+    const auto usual =
+        static_cast<float>(cloud.spacing / cloud.frame.diagonal / std::sqrt(glm::pi<double>()));
+    const float least = cloud.spacing > 0.0 ? 0.0f : kLargestSplat;
+    for (std::uint32_t i = 0; i < cloud.positions.size(); ++i) {
+        if (geometry.areas[i] > 0.0f)
+            model.surfels.push_back(i);
+        const float radius = std::min(cloud.radii[i], kOutlier * usual);
+        model.splats.push_back({glm::uvec3(i), 0});
+        model.splat_radii.push_back(std::max(kSquareShare * radius, least));
+    }
+    model.levels = leaf_levels(build_octree(surfels_at_vertices(geometry)));
+    add_ground(model, target->offset);
+    return model;
+}
+
+Model model_of(Scene scene, UpAxis up, const TargetSettings& settings)
+{
+    check_target(scene, settings);
+    if (scene.triangles.empty())
+        return make_cloud_model(std::move(scene), up, settings);
+    return make_model(make_mesh(std::move(scene), settings.normals), up, settings);
 }
 
 }  // namespace surfelao

@@ -92,7 +92,7 @@ struct Session::Engines {
         if (model != wanted)
             layout.reset();
         model = wanted;
-        prepared.emplace(prepare(wanted->geometry(), choice));
+        prepared.emplace(surfelao::prepare(*wanted, choice));
         untold_s = prepared->seconds().surfels + prepared->seconds().tree;
     }
 
@@ -127,8 +127,8 @@ void Session::start_making(Making making)
             Scene scene = making.scene ? *making.scene : read_scene(making.path);
             if (scene.free_vertices)  // make_mesh splits them, for these normals alone
                 made->scene = making.scene ? making.scene : std::make_shared<const Scene>(scene);
-            made->model = std::make_shared<const Model>(make_model(
-                make_mesh(std::move(scene), making.target.normals), making.up, making.target));
+            made->model =
+                std::make_shared<const Model>(model_of(std::move(scene), making.up, making.target));
             const std::shared_ptr<const Mesh>& mesh = made->model->mesh;
             if (!made->scene)
                 made->scene = std::shared_ptr<const Scene>(mesh, &mesh->scene);
