@@ -100,7 +100,8 @@ public:
             throw InputError(file_name + ": line " + std::to_string(farthest_line_) +
                              ": the face uses vertex " + std::to_string(farthest_ + 1) +
                              ", but there are " + std::to_string(positions.size()) + " vertices");
-        normals.finish();
+        if (polygons.count() > 0)  // a cloud's are those of its points
+            normals.finish();
         uvs.finish();
     }
 
@@ -170,9 +171,8 @@ Scene read_obj(const std::string& file_name, std::string contents)
     reader.finish(file_name);
     const std::uint64_t lost_normals = reader.normals.lost, lost_uvs = reader.uvs.lost;
     source->vertex_count = reader.positions.size();
-    Scene scene =
-        make_mesh_scene(file_name, std::move(reader.positions), std::move(reader.polygons), source,
-                        {std::move(reader.normals), std::move(reader.uvs)});
+    Scene scene = make_scene_of(file_name, std::move(reader.positions), std::move(reader.polygons),
+                                source, {std::move(reader.normals), std::move(reader.uvs)});
     add_note(scene.notes, lost_normals, "corner",
              "of faces with a normal that the file does not have: taken as without");
     add_note(scene.notes, lost_uvs, "corner",

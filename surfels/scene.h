@@ -112,6 +112,10 @@ struct Scene {
     std::vector<Label> labels;  ///< in the order in which their first triangles stand
     /// Clouds: where the scanner stood, in the coordinates of the points.
     std::optional<glm::dvec3> viewpoint;
+    /// Clouds: points without a finite place in the file, rising (an organised cloud has them where
+    /// the scanner saw nothing). They stand where the first other point stands, occlude nothing and
+    /// get occlusion 0.
+    std::vector<std::uint32_t> placeless;
     bool free_vertices = false;  ///< the file has none of its own (STL): they may be split
     /// What the file holds and nobody honours, and what in it was let pass: a sentence each.
     std::vector<std::string> notes;
