@@ -143,8 +143,25 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
         check_output(settings.input, settings.output);
 
     enter(progress, "read");
+<<<<<<< HEAD
     Scene scene = read_scene(settings.input);
     check_points(settings, scene);
+=======
+    const auto mesh = std::make_shared<const Mesh>(
+        make_mesh(read_scene(settings.input, settings.reading), settings.target.normals));
+    const Scene& scene = mesh->scene;
+    const Geometry& geometry = mesh->geometry;
+    EngineSettings& engine = report.settings.engine;
+    engine.definition = definition_of(settings.max_distance, settings.kernel, geometry.frame);
+    if (!settings.texels)
+        check_output(scene, settings.output);
+    report.seconds.read = stage.lap();
+    if (settings.texels)
+        bake_texels(*mesh, report, progress);
+    else
+        bake_at_vertices(mesh, report, progress);
+
+>>>>>>> clouds-files
     report.vertices = scene.positions.size();
     report.triangles = scene.triangles.size();
     report.seconds.read = stage.lap();
@@ -199,6 +216,11 @@ std::string mark_of(const BakeSettings& settings)
     if (const auto& texels = settings.texels) {
         text += " " + text_of(*texels);
         return make_mark("bake", text);
+    }
+    if (!settings.reading.columns.empty()) {
+        std::string columns = settings.reading.columns;
+        std::ranges::replace(columns, ' ', ',');
+        text += " columns=" + columns;
     }
     text += " colors=" + name_of(settings.colors);
     text += " encoding=" + name_of(settings.encoding);

@@ -8,7 +8,7 @@
 #include "bake/vertex_bake.h"
 #include "bake/vertex_target.h"
 #include "engines/engine.h"
-#include "files/vertex_colors.h"
+#include "files/scene_io.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -37,6 +37,7 @@ struct BakeSettings {
     std::optional<bool> at_points = {};
     VertexColors colors = VertexColors::automatic;
     Encoding encoding = Encoding::automatic;
+    ReadOptions reading = {};  ///< of the input
 };
 
 /// Wall-clock seconds of each stage.

@@ -287,7 +287,12 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     comparison.rounds = settings.rounds;
     static_cast<void>(stage("read"));
     Stopwatch watch;
+<<<<<<< HEAD
     read_into(comparison, settings, progress);
+=======
+    comparison.mesh = std::make_shared<const Mesh>(
+        make_mesh(read_scene(settings.input, settings.reading), settings.target.normals));
+>>>>>>> clouds-files
     std::unique_ptr<const CompareTarget> target = target_of(settings, comparison);
     comparison.read_s = watch.lap();
     comparison.vertices = comparison.mesh->scene.positions.size();

@@ -43,6 +43,7 @@ struct CompareSettings {
     std::uint64_t sample = 0;                       ///< points of the surface; 0 = kSurfacePoints
     int rounds = 3;                                 ///< >= 1
     bool use_cache = true;                          ///< of references
+    ReadOptions reading = {};                       ///< of the input
     Instructions instructions = Instructions::all;  ///< of the candidates and the opponent
 };
 

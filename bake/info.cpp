@@ -235,8 +235,14 @@ std::string uvs_text(const UvReport& uvs)
 
 }  // namespace
 
-Info inspect(const std::filesystem::path& input, const Progress& progress)
+Info inspect(const std::filesystem::path& input, const Progress& progress,
+             const ReadOptions& reading)
 {
+<<<<<<< HEAD
+=======
+    const auto mesh = std::make_shared<const Mesh>(make_mesh(read_scene(input, reading)));
+    const VertexTarget target(mesh, {});
+>>>>>>> clouds-files
     Info info;
     info.input = input;
     Scene scene = read_scene(input);

@@ -3,6 +3,7 @@
 
 #include "bake/point_target.h"
 #include "bake/vertex_target.h"
+#include "files/scene_io.h"
 #include "surfels/half_edges.h"
 #include "surfels/progress.h"
 #include "surfels/scene.h"
@@ -64,7 +65,8 @@ struct Info {
 /// Reads, bakes with default settings, keeping only what is to be said of it, and looks, with rays
 /// at up to kExaminedReceivers places. Throws InputError; Cancelled when progress, told of both,
 /// returns false.
-[[nodiscard]] Info inspect(const std::filesystem::path& input, const Progress& progress = {});
+[[nodiscard]] Info inspect(const std::filesystem::path& input, const Progress& progress = {},
+                           const ReadOptions& reading = {});
 
 inline constexpr std::uint64_t kExaminedReceivers = 20'000;
 

@@ -17,8 +17,8 @@ void check_points(const BakeSettings& settings, const Scene& scene)
     const bool wants_points = settings.at_points.value_or(is_cloud);
     require(is_cloud || !wants_points,
             scene.name + ": has faces, --at points is for files without");
-    require(!is_cloud || (wants_points && !settings.texels),
-            scene.name + ": has points only, no faces: --at points");
+    require(!is_cloud || !settings.texels, scene.name + ": has no faces for a map to lie on");
+    require(!is_cloud || wants_points, scene.name + ": has points only, no faces: --at points");
     check_target(scene, settings.target);
 }
 

@@ -5,6 +5,7 @@
 #include "cli/engine_options.h"
 #include "cli/output.h"
 #include "cli/progress_bar.h"
+#include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "engines/threads.h"
 #include "reference/rays.h"
@@ -27,6 +28,7 @@ constexpr std::uint64_t kMostSample = 10'000'000;
 struct CompareOptions {
     std::vector<std::string> inputs;
     std::optional<std::string> output;
+    ReadOptions reading;
     bool overwrite = false;
     bool frontier = false;
     std::vector<std::string> engines = {"masks", "disks"};
@@ -56,6 +58,7 @@ CompareSettings common_settings(const CompareOptions& options)
     settings.sample = options.sample;
     settings.rounds = options.rounds;
     settings.use_cache = !options.no_cache;
+    settings.reading = options.reading;
     settings.instructions = options.avx2 ? Instructions::avx2 : Instructions::all;
     return settings;
 }
@@ -233,9 +236,7 @@ void add_compare_command(CLI::App& app, Work& work)
         "compare",
         "One scene by our engines and by ray tracing, the same job: how long, how wrong");
     command
-        ->add_option("IN", options->inputs,
-                     "Mesh file: .obj .ply .off .stl .gltf .glb; several with "
-                     "--frontier")
+        ->add_option("IN", options->inputs, std::string(kMeshOrCloud) + "; several with --frontier")
         ->required()
         ->type_name("");
     command
@@ -244,6 +245,7 @@ void add_compare_command(CLI::App& app, Work& work)
                      "--frontier or --at texels), and report.html; without it no file is "
                      "written")
         ->type_name("DIR");
+    add_read_options(*command, options->reading);
     add_overwrite_option(*command, options->overwrite);
     command->add_flag(
         "--frontier", options->frontier,

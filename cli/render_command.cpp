@@ -3,6 +3,7 @@
 #include "cli/engine_options.h"
 #include "cli/output.h"
 #include "cli/progress_bar.h"
+#include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "cli/view_options.h"
 #include "engines/threads.h"
@@ -30,6 +31,7 @@ constexpr int kMostSamples = 4096;
 struct RenderCommandOptions {
     std::string input;
     std::string output;
+    ReadOptions reading;
     int width = 1280, height = 720;
     int samples = 16;
     std::string camera;
@@ -151,6 +153,13 @@ int run(const RenderCommandOptions& options)
 
     Stopwatch watch;
     const TargetSettings target = target_settings_of(options.surface);
+<<<<<<< HEAD
+=======
+    Mesh mesh = make_mesh(read_scene(options.input, options.reading), target.normals);
+    EngineSettings engine = settings_of(options.engine);
+    engine.definition = definition_of(distance_limit_of(options.measure),
+                                      kernel_of(options.measure), mesh.geometry.frame);
+>>>>>>> clouds-files
     const UpAxis up = up_axis_of(options.show);
     const Model model = model_of(read_scene(options.input), up, target);
     const Frame& frame = model.geometry().frame;
@@ -213,12 +222,11 @@ void add_render_command(CLI::App& app, Work& work)
     const auto options = std::make_shared<RenderCommandOptions>();
     CLI::App* command =
         app.add_subcommand("render", "A picture of a mesh with its occlusion, without a window");
-    command->add_option("IN", options->input, "Mesh file: .obj .ply .off .stl .gltf .glb")
-        ->required()
-        ->type_name("");
+    command->add_option("IN", options->input, kMeshOrCloud)->required()->type_name("");
     command->add_option("-o,--output", options->output, "Picture: .png .jpg .exr")
         ->required()
         ->type_name("OUT");
+    add_read_options(*command, options->reading);
     command->add_option("--width", options->width, "Pixels")
         ->check(CLI::Range(1, kMostPixels))
         ->type_name("N")

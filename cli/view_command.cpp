@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/interrupt.h"
+#include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "cli/view_options.h"
 #include "engines/threads.h"
@@ -20,6 +21,7 @@ namespace {
 
 struct ViewCommandOptions {
     std::string input;
+    ReadOptions reading;
     std::string camera;
     ShowOptions show;
     EngineOptions engine;
@@ -37,6 +39,7 @@ int run(const ViewCommandOptions& options)
         limit.emplace(*options.threads);
     WindowOptions window;
     window.input = options.input;
+    window.reading = options.reading;
     window.up = up_axis_of(options.show);
     window.camera = options.camera;
     window.panel.view = view_options_of(options.show);
@@ -68,13 +71,13 @@ void add_view_command(CLI::App& app, Work& work)
         "view", "A window: orbit, engines, settings, display modes, comparison with rays");
     command
         ->add_option("IN", options->input,
-                     "Mesh file: .obj .ply .off .stl .gltf .glb; without one, drop files on the "
-                     "window")
+                     std::string(kMeshOrCloud) + "; without one, drop files on the window")
         ->type_name("");
     command
         ->add_option("--camera", options->camera,
                      "Where from, as for render: azimuth=30,elevation=18,distance=1,fov=35")
         ->type_name("WHERE");
+    add_read_options(*command, options->reading);
     add_show_options(*command, options->show);
     add_layout_options(*command, options->texels, kShownMaps);
     add_atlas_option(*command, options->atlas);

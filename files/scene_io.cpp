@@ -147,6 +147,12 @@ void check_output(const fs::path& input, const fs::path& output)
     check_writable(output);
 }
 
+void check_output(const Scene& scene, const fs::path& output)
+{
+    if (holds_points_only(type_of(output)) && !scene.triangles.empty())
+        throw InputError(output.string() + ": " + kLosesFaces);
+}
+
 std::vector<std::string> write_scene(const fs::path& path, const Scene& scene,
                                      std::span<const Occlusion> occlusion,
                                      const WriteOptions& options)
@@ -161,8 +167,7 @@ std::vector<std::string> write_scene(const fs::path& path, const Scene& scene,
     if (!covered)
         throw InputError(path.string() + ": the scene's parts do not cover its vertices");
     check_output(path, path);
-    if (holds_points_only(type_of(path)) && !scene.triangles.empty())
-        throw InputError(path.string() + ": " + kLosesFaces);
+    check_output(scene, path);
     WrittenFile written = contents_for(path, scene, occlusion, options);
     write_atomically(path, written.contents);
     return std::move(written.notes);

@@ -27,6 +27,9 @@ struct ReadOptions {
     std::string columns = {};
 };
 
+/// Throws SettingsError for columns that do not name x, y and z once each; empty is right.
+void check_columns(const std::string& columns);
+
 /// Reads a file. A file without faces is a cloud: a scene without triangles. Throws InputError with
 /// one sentence that names file, element and fault for anything that is not a complete, finite,
 /// consistent mesh or cloud; SettingsError for columns that make no point and for columns of a file
@@ -47,10 +50,12 @@ struct WrittenFile {
 };
 
 /// Throws InputError when a scene from `input` could not be written to `output` at all: unknown
-/// extension, STL, a glTF asked of a scene that is none, points alone asked of a mesh (of .ply,
-/// .obj and .off only write_scene() knows), folder missing or not writable, output is a folder. For
-/// use before any work is done.
+/// extension, STL, a glTF asked of a scene that is none, points alone asked of STL or glTF, folder
+/// missing or not writable, output is a folder. For use before any work is done.
 void check_output(const std::filesystem::path& input, const std::filesystem::path& output);
+
+/// The same, once the scene has been read: a mesh is not written as points alone.
+void check_output(const Scene& scene, const std::filesystem::path& output);
 
 /// Writes the scene with one Occlusion per scene vertex, in scene order. The file appears under its
 /// name only when it is complete (written to a temporary name beside it, then renamed): on any

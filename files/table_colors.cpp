@@ -124,13 +124,13 @@ RowSource::Own read_own(const RowSource& source, const Element& vertices, const 
 
 ColorPlaces color_places(const Element& vertices)
 {
-    if (vertices.packs_colors)
-        return packed_places(vertices);
     ColorPlaces places;
     for (const Names& names : kShown) {
         if (!places.shown)
             places.shown = channels_of(vertices, names);
     }
+    if (vertices.packs_colors && !places.shown)
+        return packed_places(vertices);
     if (places.shown && are_baked(vertices, *places.shown))
         places.shown.reset();
     if (!places.shown)
@@ -147,6 +147,15 @@ ColorPlaces color_places(const Element& vertices)
         alpha < vertices.properties.size())
         places.alpha = alpha;
     return places;
+}
+
+bool names_color(std::string_view property)
+{
+    const auto is_in = [&](const Names& names) {
+        return std::ranges::find(names, property) != names.end();
+    };
+    return std::ranges::any_of(kShown, is_in) || is_in(kOwn) || property == "rgb" ||
+           property == "rgba" || property == "own_rgb";
 }
 
 double white_of(Type type, double largest)

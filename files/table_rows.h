@@ -105,6 +105,9 @@ struct ColorPlaces {
 };
 [[nodiscard]] ColorPlaces color_places(const Element& vertices);
 
+/// Whether a property of this name may be part of a colour.
+[[nodiscard]] bool names_color(std::string_view property);
+
 /// What white is for numbers of this type. largest: of the file's numbers.
 [[nodiscard]] double white_of(Type type, double largest);
 

@@ -182,18 +182,13 @@ Others read_others(const RowSource& source)
     const Element& points = source.vertices();
     const std::string no_name;
     const std::vector<Role> roles = roles_of(no_name, points);
-    const VertexChanges changes{color_places(points), {}, 0.0, {}};
     std::vector<bool> kept(roles.size());
     Others others;
     for (std::size_t p = 0; p < roles.size(); ++p) {
         const Property& property = points.properties[p];
-        const auto is_in = [&](const std::optional<Channels>& channels) {
-            return channels && std::ranges::find(*channels, p) != channels->end();
-        };
         kept[p] = roles[p].kind == Role::none && !property.count_type && !property.is_second &&
                   property.name.find_first_not_of("-_") != property.name.npos &&
-                  !changes.drops(property.name) && !is_in(changes.places.shown) &&
-                  !is_in(changes.places.own);
+                  !names(kMeasured, property.name) && !names_color(property.name);
         if (kept[p])
             others.columns.push_back({property.type, property.name});
     }

@@ -22,10 +22,12 @@ public:
     std::string text;
     Element points;
     RowForm row_form;
-    std::size_t rows_begin = 0;  ///< bytes of the text
-    std::size_t rows_end = 0;    ///< before what an earlier result says of itself
-    bool has_count = false;      ///< on a line in front of them
-    std::string_view header;     ///< the names of the columns in the text; empty: it has none
+    std::size_t rows_begin = 0;    ///< bytes of the text
+    std::size_t rows_end = 0;      ///< before what an earlier result says of itself
+    bool has_count = false;        ///< on a line in front of them
+    bool is_list = false;          ///< .pts
+    bool header_says_all = false;  ///< it gives every column the name that it has
+    std::string_view header;       ///< the names of the columns in the text; empty: it has none
 
     [[nodiscard]] const Element& vertices() const override { return points; }
     [[nodiscard]] std::string_view vertex_rows() const override

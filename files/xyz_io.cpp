@@ -76,6 +76,7 @@ struct Lead {
     std::optional<std::uint64_t> count;
     std::uint64_t count_line = 0;
     std::string_view header;  ///< the words that name the columns; empty: none
+    bool is_comment = false;  ///< and whether a comment does, which may mean something else
     std::size_t end = 0;      ///< where the line of the first point begins
     std::uint64_t line = 1;   ///< its number
     std::string_view first;   ///< that line
@@ -120,8 +121,10 @@ Lead read_lead(const std::string& file_name, std::string_view text, bool is_told
         if (line.words.empty()) {
         } else if (is_comment(line.words)) {
             const std::string_view words = comment_words(line.words);
-            if (names_places(plain_names(words)))
+            if (names_places(plain_names(words)) && (lead.header.empty() || lead.is_comment)) {
                 lead.header = words;
+                lead.is_comment = true;
+            }
         } else if (first == line.words && number_in(first) && !lead.count &&
                    line.end < text.size()) {
             TextCursor cursor(file_name, first, {}, lead.line);
@@ -132,6 +135,7 @@ Lead read_lead(const std::string& file_name, std::string_view text, bool is_told
             lead.count_line = lead.line;
         } else if (!number_in(first) && (is_told || names_places(plain_names(line.words)))) {
             lead.header = line.words;
+            lead.is_comment = false;
             is_told = false;
         } else if (!number_in(first)) {
             fail(quoted(first) + " is not a number, and the line does not name columns x y z");
@@ -231,21 +235,32 @@ ColumnNames guess(const ColumnFacts& facts, bool is_pts)
     return names;
 }
 
-/// `# columns ...` as the last line, with its end; empty without one.
-std::string_view columns_comment(std::string_view text)
-{
-    const std::size_t end = text.find_last_not_of(kEnds) + 1;
-    const std::size_t begin = text.substr(0, end).find_last_of(kEnds) + 1;  // npos + 1 is 0
-    return text.substr(begin).starts_with(kColumnsComment) ? text.substr(begin)
-                                                           : std::string_view();
-}
+/// What a result says of itself behind its points.
+struct Tail {
+    std::size_t begin = 0;
+    ColumnNames columns;  ///< none: it does not say
+};
 
-/// What such a comment names.
-ColumnNames names_of_comment(std::string_view comment)
+Tail read_tail(std::string_view text)
 {
-    if (comment.empty())
-        return {};
-    return plain_names(line_at(comment, 0).words.substr(kColumnsComment.size()));
+    Tail tail;
+    while (true) {
+        const std::size_t end = text.find_last_not_of(kEnds) + 1;
+        tail.begin = text.substr(0, end).find_last_of(kEnds) + 1;  // npos + 1 is 0
+        const std::string_view line = text.substr(tail.begin, end - tail.begin);
+        if (line.starts_with(kColumnsComment)) {
+            if (tail.columns.empty() && line.size() <= kLongestNames) {
+                for (const std::string_view name : names_in(line.substr(kColumnsComment.size())))
+                    tail.columns.emplace_back(name);
+            }
+        } else if (off_mark(text).line.empty()) {
+            tail.begin = text.size();
+            if (!names_places(tail.columns))
+                tail.columns.clear();
+            return tail;
+        }
+        text = text.substr(0, tail.begin);
+    }
 }
 
 /// Makes the columns of the points; numbers of colours are whole where all of them are.
@@ -285,6 +300,15 @@ void check_count(TextCursor cursor, std::size_t columns, std::size_t names)
     cursor.next_line();
     cursor.fail("the point has " + count_text(columns, "column") + ", but " +
                 (columns < 3 ? "x y z are 3" : "those named are " + std::to_string(names)));
+}
+
+/// Of the first point.
+std::size_t columns_in(TextCursor cursor)
+{
+    std::size_t columns = 0;
+    for (cursor.next_line(); !cursor.at_line_end(); ++columns)
+        cursor.word();
+    return columns;
 }
 
 char separator_in(std::string_view row)
@@ -333,22 +357,27 @@ std::vector<std::string_view> xyz::names_in(std::string_view line)
     return names;
 }
 
+void check_columns(const std::string& columns)
+{
+    require(columns.empty() || names_places(plain_names(columns)),
+            "columns are told as in \"x y z r g b\", with x, y and z once each");
+}
+
 Scene read_xyz(const std::string& file_name, std::string contents, const std::string& columns)
 {
+    check_columns(columns);
     ColumnNames names = plain_names(columns);
-    require(columns.empty() || names_places(names),
-            "columns are told as in \"x y z r g b\", with x, y and z once each");
     const auto source = std::make_shared<XyzSource>();
     source->text = std::move(contents);
     const std::string_view text = source->text;
     static_cast<void>(TextCursor(file_name, text, {}));  // refuses UTF-16
 
-    const std::string_view unmarked = text.substr(0, text.size() - off_mark(text).line.size());
-    const std::string_view comment = columns_comment(unmarked);
-    source->rows_end = unmarked.size() - comment.size();
-    const Lead lead = read_lead(file_name, text.substr(0, source->rows_end), !columns.empty());
-    source->header = lead.header;
+    const Tail tail = read_tail(text);
+    source->rows_end = tail.begin;
+    const Lead lead = read_lead(file_name, text.substr(0, source->rows_end),
+                                !columns.empty() || !tail.columns.empty());
     source->has_count = lead.count.has_value();
+    source->is_list = lower_extension(file_name) == ".pts";
     source->rows_begin = lead.end;
     source->row_form = {Format::ascii,
                         lead.line,
@@ -356,17 +385,21 @@ Scene read_xyz(const std::string& file_name, std::string contents, const std::st
     source->points.name = "point";
 
     const TextCursor cursor(file_name, source->vertex_rows(), source->row_form.rules, lead.line);
+    ColumnNames named = plain_names(lead.header);
+    if (lead.is_comment && named.size() != columns_in(cursor))
+        named.clear();
+    else
+        source->header = lead.header;
+    const ColumnNames& of_file = tail.columns.empty() ? named : tail.columns;
     // what is told is of the file as it was before a result
-    const ColumnNames of_result = names_of_comment(comment);
-    for (std::size_t c = names.size(); c < of_result.size(); ++c)
-        names.push_back(of_result[c]);
-    if (!names_places(names))
-        names = plain_names(lead.header);
+    for (std::size_t c = names.size(); c < of_file.size(); ++c)
+        names.push_back(of_file[c]);
+    source->header_says_all = !names.empty() && named == names;
     ColumnFacts facts;
     if (names.empty()) {
         facts = look_at(cursor, {});
         if (facts.columns >= 3)
-            names = guess(facts, lower_extension(file_name) == ".pts");
+            names = guess(facts, source->is_list);
     }
     set_columns(*source, names, cursor, facts);
     check_count(cursor, facts.columns, names.size());

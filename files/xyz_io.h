@@ -4,8 +4,8 @@
 /// blank lines and comments (`#`, `//`) anywhere; in front of the points a line with nothing but
 /// their count (.pts), and a line that names the columns, which may be a comment (CloudCompare's
 /// `//X Y Z R G B`). What the columns are is said, the first of these that there is, by
-/// ReadOptions::columns, by the comment `# columns ...` of an earlier result, by the line of names,
-/// or by what stands in them:
+/// ReadOptions::columns, by the comment `# columns ...` of an earlier result, by the line of names
+/// (a comment only where it names as many as there are), or by what stands in them:
 ///
 ///   x y z        the first three
 ///   nx ny nz     of six columns and more the first three behind z, in a row, whose length as a
@@ -16,9 +16,9 @@
 ///
 /// Names are taken in any case: `x y z`, `nx ny nz` or `normal_x ...`, `r g b` or `red green blue`
 /// or CloudCompare's `Rf Gf Bf`; any others are kept and not used. x, y and z are finite and up to
-/// 1e100 everywhere: nobody writes a point into a list that is not there. Other columns may hold
-/// any words; a normal that is no vector is none. Colours are whole numbers up to 255, or up to
-/// 65535 where one is larger, or else as number_in() and white_of() of own_colors.h take them.
+/// 1e100 everywhere: nobody writes a point into a list that is not there. Normals are numbers (any:
+/// zero and nan are none); other columns may hold any words. Colours are whole numbers up to 255,
+/// or up to 65535 where one is larger, or else as own_colors.h takes numbers.
 #pragma once
 
 #include "files/scene_io.h"
@@ -42,9 +42,10 @@ namespace surfelao {
 ///
 /// A cloud that came from text gives its own file with nothing else changed: numbers as they are
 /// written there, separators, comments, count; the line that names the columns names the new ones
-/// too. Where there is none, a comment behind the points does, `# columns x y z ...`: no reader
-/// stumbles over it there. Any other cloud, and one without a count that becomes a .pts, gives new
-/// text with blanks between numbers: its coordinates, normals, colours and other columns.
+/// too. Where there is none, or columns were told, a comment behind the points does, `# columns x y
+/// z ...`: no reader stumbles over it there. Any other cloud, and one that becomes or was a .pts
+/// with the count that this needs, gives new text with blanks between numbers: its coordinates,
+/// normals, colours and other columns; points without a finite place are left out.
 /// options.mark: a comment as the last line (maker_mark.h).
 [[nodiscard]] WrittenFile xyz_contents(const std::filesystem::path& path, const Scene& scene,
                                        std::span<const Occlusion> occlusion,

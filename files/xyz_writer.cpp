@@ -28,11 +28,13 @@ std::string new_header(const XyzSource& source, const VertexChanges& changes)
 {
     const std::vector<std::string_view> names = names_in(source.header);
     const std::vector<Property>& columns = source.points.properties;
+    if (names.size() != columns.size())
+        return std::string(source.header);
     std::string header;
     const char* copied = source.header.data();
     for (std::size_t n = 0; n < names.size(); ++n) {
         const char* end = names[n].data() + names[n].size();
-        if (n >= columns.size() || !changes.drops(columns[n].name))
+        if (!changes.drops(columns[n].name))
             header.append(copied, end);
         copied = end;
     }
@@ -44,9 +46,8 @@ std::string new_header(const XyzSource& source, const VertexChanges& changes)
 
 void append_name(std::string& line, std::string_view name)
 {
-    const std::size_t begin = line.size();
-    line.append(name);
-    std::replace(line.begin() + static_cast<std::ptrdiff_t>(begin), line.end(), ' ', '_');
+    for (const char c : name)
+        line += std::string_view(" \t\v\f,;").find(c) == std::string_view::npos ? c : '_';
     line += ' ';
 }
 
@@ -83,7 +84,7 @@ std::string changed_text(const XyzSource& source, std::span<const Occlusion> occ
     text += changed_rows(source, occlusion, changes);
     if (text.back() != '\n' && text.back() != '\r')
         text += line_end;
-    if (source.header.empty()) {
+    if (!source.header_says_all) {
         std::string columns(kColumnsComment);
         for (const Property& property : source.points.properties) {
             if (!changes.drops(property.name))
@@ -103,7 +104,7 @@ WrittenFile xyz_contents(const std::filesystem::path& path, const Scene& scene,
     WrittenFile written;
     const auto* source = dynamic_cast<const XyzSource*>(scene.asset.get());
     const bool is_list = lower_extension(path) == ".pts";
-    if (source && !(is_list && !source->has_count)) {
+    if (source && (source->is_list == is_list || source->has_count == is_list)) {
         const VertexChanges changes = changes_of(*source, options, true, written.notes);
         written.contents = changed_text(*source, occlusion, changes, options.mark);
         return written;

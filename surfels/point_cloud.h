@@ -65,7 +65,7 @@ inline /*constexpr*/ float kScatter = 0.2f;
 inline /*constexpr*/ float kSquareShare = 1.25f, kUnevenShare = 1.6f;
 inline /*constexpr*/ float kUneven = 2.0f;
 /// Receivers stand so many r above their squares.
-inline /*constexpr*/ float kLift = 1.0f;
+inline /*constexpr*/ float kLift = 1.1f;
 /// Occlusion by which one side must be more open than the other.
 inline constexpr float kWeakVote = 0.1f;
 /// An outlier's r is above so many times the median of its neighbours'.

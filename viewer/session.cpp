@@ -109,10 +109,10 @@ Session::Session() : engines_(std::make_unique<Engines>()), solver_([this] { eng
 }
 Session::~Session() = default;
 
-void Session::open(const std::filesystem::path& path, UpAxis up)
+void Session::open(const std::filesystem::path& path, UpAxis up, const ReadOptions& reading)
 {
     state_.message.clear();
-    start_making({path, up, nullptr, settings_.target});
+    start_making({path, up, nullptr, settings_.target, reading});
 }
 
 void Session::start_making(Making making)
@@ -124,7 +124,7 @@ void Session::start_making(Making making)
         auto made = std::make_unique<Made>();
         made->number = number;
         try {
-            Scene scene = making.scene ? *making.scene : read_scene(making.path);
+            Scene scene = making.scene ? *making.scene : read_scene(making.path, making.reading);
             if (scene.free_vertices)  // make_mesh splits them, for these normals alone
                 made->scene = making.scene ? making.scene : std::make_shared<const Scene>(scene);
             made->model =

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engines/engine.h"
+#include "files/scene_io.h"
 #include "surfels/occlusion.h"
 #include "surfels/scene.h"
 #include "viewer/background_worker.h"
@@ -70,7 +71,7 @@ public:
 
     /// Reads a file in the background, then solves it with the last settings. What is shown stays
     /// until the file turns out to be readable.
-    void open(const std::filesystem::path& path, UpAxis up);
+    void open(const std::filesystem::path& path, UpAxis up, const ReadOptions& reading = {});
 
     /// Solves the model with these settings: a draft first where the engine has one, then the
     /// whole. What is running is given up. Other targets need another model: it is made first, of
@@ -122,6 +123,7 @@ private:
         UpAxis up = UpAxis::y;
         std::shared_ptr<const Scene> scene;  ///< null: the file is read
         TargetSettings target;
+        ReadOptions reading = {};
     };
     struct Made;
     struct Answer;

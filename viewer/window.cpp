@@ -77,7 +77,7 @@ public:
         panel_state_.wants_reference |= needs_reference(panel_state_);
         session_.solve(panel_state_.settings);
         if (!options.input.empty())
-            session_.open(options.input, options.up);
+            session_.open(options.input, options.up, options.reading);
     }
 
     void run()

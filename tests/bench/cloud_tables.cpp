@@ -136,6 +136,38 @@ int main(int c, char** v)
             show("noise .3 no normals rays",
                  row(m, {.points = N, .noise = .3, .has_normals = false}, {}, 0, Engine::rays));
         }
+    if (mode == "verts") {
+        double lg = 0;
+        int n = 0;
+        double un = 0;
+        for (unsigned i = 0; i < scenes::kFamilySize; i++) {
+            if (scenes::half_of(i) != scenes::Half::choosing || (i / 16) % 5 >= 1)
+                continue;
+            Mesh m = make_mesh(scenes::family_scene(i));
+            auto rec = receivers_at_wedges(m.geometry, m.surface);
+            rec.resize(m.surface.vertex_count());
+            SolveSettings b;
+            b.quality = 2;
+            auto T = solve(prepare(m.geometry), rec, b).occlusion;
+            Scene s;
+            s.positions = m.scene.positions;
+            s.normals.values.assign(m.surface.normals.begin(),
+                                    m.surface.normals.begin() + rec.size());
+            PointCloud pc = make_point_cloud(s, {});
+            auto A = solve_cloud(pc, receivers_at(pc, all_of(pc)));
+            double se = 0;
+            for (size_t k = 0; k < T.size(); k++)
+                se += (A[k].occlusion - T[k].occlusion) * (A[k].occlusion - T[k].occlusion);
+            double rm = std::sqrt(se / T.size());
+            lg += std::log(std::max(rm, 1e-4));
+            un += double(pc.counts.uneven) / T.size();
+            n++;
+            if (getenv("V"))
+                std::printf("%s %.4f uneven %.3f\n", scenes::family_kind(i), rm,
+                            double(pc.counts.uneven) / T.size());
+        }
+        std::printf("verts geomean %.5f uneven %.3f n %d\n", std::exp(lg / n), un / n, n);
+    }
     if (mode == "family") {
         int half = atoi(v[2]);
         int step = c > 3 ? atoi(v[3]) : 16;

@@ -213,6 +213,15 @@ inline std::vector<CloudCase> clouds()
          pcd_header(kAllFields, 2, "binary_compressed") +
              compressed(pcd_points(true), lzf(pcd_points(true))),
          "", places, up, colors},
+        {"prose.xyz", "# x y z of a scan\n1 2 3\n4 5 6\n"},
+        {"named_after_result.xyz", "1 3 2\n4 6 5\n# columns x z y\n"},
+        {"channels.pcd",
+         pcd_header("FIELDS x y z r g b\nSIZE 4 4 4 1 1 1\nTYPE F F F U U U\n", 2, "ascii") +
+             "1 2 3 255 0 0\n4 5 6 0 128 7\n",
+         "",
+         places,
+         {},
+         colors},
         {"no_unit.xyz", "1 2 3 0 0 1.2\n4 5 6 0 1.2 0\n"},
     };
 }

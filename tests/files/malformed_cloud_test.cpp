@@ -62,7 +62,6 @@ std::vector<Case> cloud_cases()
         {"xyz_DecimalCommas", "1,5;2,5;3,5\n", {"line 1", "\"1,5\""}},
         {"xyz_Header", "x y z r g\n1 2 3 4 5 6\n", {"line 2", "6 columns", "named are 5"}},
         {"xyz_HeaderWithoutZ", "x y r g\n1 2 3 4\n", {"line 1", "\"x\"", "x y z"}},
-        {"xyz_Comment", "// x y z r\n1 2 3\n", {"line 2", "3 columns", "named are 4"}},
         {"xyz_SecondHeader", "x y z\nx y z\n1 2 3 4\n", {"line 3", "4 columns", "named are 3"}},
         {"xyz_Utf16", utf16("1 2 3\n"), {"UTF-16"}},
         {"xyz_NulBytes", std::string(1000, '\0'), {"line 1", "not a number"}},
