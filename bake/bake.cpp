@@ -143,25 +143,10 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
         check_output(settings.input, settings.output);
 
     enter(progress, "read");
-<<<<<<< HEAD
-    Scene scene = read_scene(settings.input);
+    Scene scene = read_scene(settings.input, settings.reading);
     check_points(settings, scene);
-=======
-    const auto mesh = std::make_shared<const Mesh>(
-        make_mesh(read_scene(settings.input, settings.reading), settings.target.normals));
-    const Scene& scene = mesh->scene;
-    const Geometry& geometry = mesh->geometry;
-    EngineSettings& engine = report.settings.engine;
-    engine.definition = definition_of(settings.max_distance, settings.kernel, geometry.frame);
     if (!settings.texels)
         check_output(scene, settings.output);
-    report.seconds.read = stage.lap();
-    if (settings.texels)
-        bake_texels(*mesh, report, progress);
-    else
-        bake_at_vertices(mesh, report, progress);
-
->>>>>>> clouds-files
     report.vertices = scene.positions.size();
     report.triangles = scene.triangles.size();
     report.seconds.read = stage.lap();

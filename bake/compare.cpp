@@ -184,7 +184,7 @@ void set_times(CompareRow& row, const std::vector<JobSeconds>& rounds, std::size
 void read_into(Comparison& comparison, const CompareSettings& settings,
                const StageProgress& progress)
 {
-    Scene scene = read_scene(settings.input);
+    Scene scene = read_scene(settings.input, settings.reading);
     check_target(scene, settings.target);
     if (!scene.triangles.empty()) {
         comparison.mesh =
@@ -287,12 +287,7 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     comparison.rounds = settings.rounds;
     static_cast<void>(stage("read"));
     Stopwatch watch;
-<<<<<<< HEAD
     read_into(comparison, settings, progress);
-=======
-    comparison.mesh = std::make_shared<const Mesh>(
-        make_mesh(read_scene(settings.input, settings.reading), settings.target.normals));
->>>>>>> clouds-files
     std::unique_ptr<const CompareTarget> target = target_of(settings, comparison);
     comparison.read_s = watch.lap();
     comparison.vertices = comparison.mesh->scene.positions.size();

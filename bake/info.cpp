@@ -238,14 +238,9 @@ std::string uvs_text(const UvReport& uvs)
 Info inspect(const std::filesystem::path& input, const Progress& progress,
              const ReadOptions& reading)
 {
-<<<<<<< HEAD
-=======
-    const auto mesh = std::make_shared<const Mesh>(make_mesh(read_scene(input, reading)));
-    const VertexTarget target(mesh, {});
->>>>>>> clouds-files
     Info info;
     info.input = input;
-    Scene scene = read_scene(input);
+    Scene scene = read_scene(input, reading);
     if (scene.triangles.empty()) {
         look_at_points(scene, progress, info);
         return info;

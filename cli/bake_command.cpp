@@ -201,19 +201,10 @@ void add_bake_command(CLI::App& app, Work& work)
 {
     const auto options = std::make_shared<BakeOptions>();
     CLI::App* command = app.add_subcommand("bake",
-<<<<<<< HEAD
                                            "Occlusion and bent normals at every vertex or point, "
                                            "or as a map: a mesh or a cloud of points in, the same "
                                            "or a picture out");
-    command->add_option("IN", options->inputs, "Mesh files: .obj .ply .off .stl .gltf .glb")
-        ->required()
-        ->type_name("");
-=======
-                                           "Occlusion and bent normals at every vertex, or as a "
-                                           "map: a mesh file in, the same mesh or a "
-                                           "picture out");
     command->add_option("IN", options->inputs, kMeshOrCloud)->required()->type_name("");
->>>>>>> clouds-files
     command
         ->add_option(
             "-o,--output", options->output,

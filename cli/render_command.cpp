@@ -18,6 +18,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -129,6 +130,30 @@ void solve_map_for(const Model& model, const TexelSettings& texels, const Engine
     shown.reference_s = watch.lap();
 }
 
+/// What was drawn, and how long it took: read_s, draw_s, write_s.
+void tell(const RenderCommandOptions& options, const Model& model, const EngineSettings& engine,
+          const Shown& shown, const std::array<double, 3>& seconds)
+{
+    const auto time = [](double s) { return fixed(s, 3) + " s"; };
+    std::cout << options.input << " -> " << options.output << ", " << options.width << " x "
+              << options.height << "\n  " << model.geometry().positions.size()
+              << (model.cloud ? " points, "
+                              : " vertices, " + std::to_string(model.geometry().triangles.size()) +
+                                    " triangles, ")
+              << name_of(engine.engine) << ", " << setting_of(engine) << '\n';
+    if (shown.layout)
+        std::cout << "  " << text_of(*shown.layout) << '\n';
+    std::cout << "  read " << time(seconds[0]) << ", solve " << time(shown.solve_s)
+              << ", reference "
+              << (shown.reference_from_cache ? "from the cache" : time(shown.reference_s))
+              << ", draw " << time(seconds[1]) << ", write " << time(seconds[2]) << '\n';
+    if (shown.paint)
+        for (const std::string& note : shown.paint->notes)
+            std::cout << "  note: " << note << '\n';
+    const std::filesystem::path written[] = {options.output};
+    print_written(written, false);
+}
+
 int run(const RenderCommandOptions& options)
 {
     check_image_output(options.output);
@@ -153,15 +178,8 @@ int run(const RenderCommandOptions& options)
 
     Stopwatch watch;
     const TargetSettings target = target_settings_of(options.surface);
-<<<<<<< HEAD
-=======
-    Mesh mesh = make_mesh(read_scene(options.input, options.reading), target.normals);
-    EngineSettings engine = settings_of(options.engine);
-    engine.definition = definition_of(distance_limit_of(options.measure),
-                                      kernel_of(options.measure), mesh.geometry.frame);
->>>>>>> clouds-files
     const UpAxis up = up_axis_of(options.show);
-    const Model model = model_of(read_scene(options.input), up, target);
+    const Model model = model_of(read_scene(options.input, options.reading), up, target);
     const Frame& frame = model.geometry().frame;
     EngineSettings engine = settings_of(options.engine);
     engine.definition =
@@ -195,23 +213,7 @@ int run(const RenderCommandOptions& options)
     const double draw_s = watch.lap();
     write_image(options.output, image);
 
-    const auto time = [](double s) { return fixed(s, 3) + " s"; };
-    std::cout << options.input << " -> " << options.output << ", " << image.width << " x "
-              << image.height << "\n  " << model.geometry().positions.size()
-              << (model.cloud ? " points, "
-                              : " vertices, " + std::to_string(model.geometry().triangles.size()) +
-                                    " triangles, ")
-              << name_of(engine.engine) << ", " << setting_of(engine) << '\n';
-    if (shown.layout)
-        std::cout << "  " << text_of(*shown.layout) << '\n';
-    std::cout << "  read " << time(read_s) << ", solve " << time(shown.solve_s) << ", reference "
-              << (shown.reference_from_cache ? "from the cache" : time(shown.reference_s))
-              << ", draw " << time(draw_s) << ", write " << time(watch.lap()) << '\n';
-    if (shown.paint)
-        for (const std::string& note : shown.paint->notes)
-            std::cout << "  note: " << note << '\n';
-    const std::filesystem::path written[] = {options.output};
-    print_written(written, false);
+    tell(options, model, engine, shown, {read_s, draw_s, watch.lap()});
     return kDone;
 }
 

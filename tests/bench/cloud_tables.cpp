@@ -1,199 +1,205 @@
-#include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <glm/glm.hpp>
-#include "engines/engine.h"
+// cloud_tables: how far clouds of points are from the surfaces that they were sampled from.
+//
+//   cloud_tables rows POINTS MODEL...     JSON: each model clean and noisy, with normals and
+//   without cloud_tables family choosing|judging  JSON: the same over generated scenes
+//   (tests/family.h) cloud_tables sample MODEL POINTS NOISE normals|none CLOUD.ply TRUTH.txt
+//
+// The truth is that of masks at best on the mesh, at the same points. TRUTH.txt has it beside the
+// share of all directions, the whole sphere's, that are open: what CloudCompare's PCV measures
+// (tests/bench/clouds/pcv.py).
+
+#include "bake/point_target.h"
 #include "family.h"
 #include "files/scene_io.h"
+#include "random.h"
 #include "sampled_cloud.h"
-#include "surfels/point_cloud.h"
-#include "surfels/stopwatch.h"
-#include "surfels/surface.h"
-using namespace surfelao;
-struct Row {
-    double rmse, max, bias, wrong, weak, ang, proj, uneven, outl;
-    double t_make, t_orient, t_build, t_solve;
+#include "surfels/atomic_file.h"
+#include "surfels/number_text.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace surfelao {
+namespace {
+
+struct Condition {
+    const char* name;
+    double noise;  // in spacings
+    bool has_normals;
 };
-static float g_q = 1;
-static std::vector<std::uint32_t> all_of(const PointCloud& c)
+constexpr Condition kConditions[] = {
+    {"clean, normals", 0.0, true}, {"clean", 0.0, false}, {"noise .3", 0.3, false}};
+
+struct Figures {
+    double rmse = 0.0, bias = 0.0, p95 = 0.0, max = 0.0;
+    double turned = 0.0, weak = 0.0;  // shares
+};
+
+std::vector<Occlusion> truth_of(const Mesh& mesh, const scenes::SampledCloud& sampled)
 {
-    std::vector<std::uint32_t> v(c.positions.size());
-    for (std::uint32_t i = 0; i < v.size(); i++)
-        v[i] = i;
-    return v;
+    const std::vector<Receiver> receivers =
+        receivers_at(mesh.geometry, mesh.surface, sampled.samples);
+    return solve(prepare(mesh.geometry), receivers, {.quality = kBest}).occlusion;
 }
-static std::vector<Occlusion> solve_cloud(const PointCloud& c, const std::vector<Receiver>& r,
-                                          double* tb = nullptr, double* ts = nullptr, float q = -9,
-                                          Engine e = Engine::masks)
+
+Figures figures_of(const Mesh& mesh, const scenes::CloudSampling& sampling)
 {
-    Stopwatch w;
-    Geometry sq = squares_of(c);
-    EngineChoice ch;
-    ch.engine = e;
-    Prepared p = prepare(c, sq, ch);
-    if (tb)
-        *tb = w.lap();
-    SolveSettings s;
-    s.quality = q > -9 ? q : g_q;
-    s.rays = 512;
-    auto a = solve(p, r, s).occlusion;
-    if (ts)
-        *ts = w.lap();
-    return a;
-}
-static void orient_cloud(PointCloud& c, float q)
-{
-    if (!c.is_unoriented)
-        return;
-    auto all = receivers_at(c, all_of(c));
-    std::vector<Receiver> f, b;
-    for (auto i : c.occluders) {
-        f.push_back(all[i]);
-        Receiver r = all[i];
-        r.position -= 2 * r.offset * r.normal;
-        r.normal = -r.normal;
-        b.push_back(r);
+    const scenes::SampledCloud sampled = scenes::sampled(mesh, sampling);
+    const std::vector<Occlusion> truth = truth_of(mesh, sampled);
+    const PointTarget target = make_point_target(sampled.cloud, {});
+    const std::vector<Occlusion> answers = bake_points(target, {}, 0).values;
+    const std::vector<Receiver> on_mesh =
+        receivers_at(mesh.geometry, mesh.surface, sampled.samples);
+    Figures figures;
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        const double error = double{answers[i].occlusion} - double{truth[i].occlusion};
+        figures.bias += error;
+        errors.push_back(std::abs(error));
+        figures.rmse += error * error;
+        figures.turned += glm::dot(target.cloud.normals[i], on_mesh[i].normal) < 0.0f;
     }
-    Geometry sq = squares_of(c);
-    Prepared p = prepare(c, sq, {});
-    SolveSettings s;
-    s.quality = q;
-    auto A = solve(p, f, s).occlusion, B = solve(p, b, s).occlusion;
-    orient(c, A, B);
+    std::ranges::sort(errors);
+    const auto count = static_cast<double>(errors.size());
+    figures.rmse = std::sqrt(figures.rmse / count);
+    figures.bias /= count;
+    figures.p95 = errors[errors.size() * 95 / 100];
+    figures.max = errors.back();
+    figures.turned /= count;
+    figures.weak = static_cast<double>(target.cloud.counts.weak) / count;
+    return figures;
 }
-static Row row(const Mesh& m, const scenes::CloudSampling& cs, const PointSettings& ps,
-               float oq = 0, Engine e = Engine::masks)
+
+void print_rows(std::uint32_t points, int count, char** files)
 {
-    auto s = scenes::sampled(m, cs);
-    auto tr = receivers_at(m.geometry, m.surface, s.samples);
-    SolveSettings b;
-    b.quality = 2;
-    auto T = solve(prepare(m.geometry), tr, b).occlusion;
-    Row r{};
-    Stopwatch w;
-    PointCloud c = make_point_cloud(s.cloud, ps);
-    r.t_make = w.lap();
-    orient_cloud(c, oq);
-    r.t_orient = w.lap();
-    auto A = solve_cloud(c, receivers_at(c, all_of(c)), &r.t_build, &r.t_solve, -9, e);
-    double se = 0, bi = 0;
-    size_t n = T.size();
-    std::vector<double> er;
-    for (size_t i = 0; i < n; i++) {
-        double d = A[i].occlusion - T[i].occlusion;
-        se += d * d;
-        bi += d;
-        r.max = std::max(r.max, std::abs(d));
-        float dt = glm::dot(c.normals[i], tr[i].normal);
-        r.wrong += dt < 0;
-        r.ang += std::acos(std::clamp(std::abs(dt), 0.f, 1.f)) * 57.3 / n;
+    std::printf("[");
+    for (int i = 0; i < count; ++i) {
+        const Mesh mesh = make_mesh(read_scene(files[i]));
+        for (const Condition& condition : kConditions) {
+            const Figures f = figures_of(mesh, {points, condition.noise, condition.has_normals});
+            std::printf(
+                "%s\n{\"model\": \"%s\", \"points\": %u, \"condition\": \"%s\", "
+                "\"rmse\": %.6f, \"bias\": %.6f, \"p95\": %.5f, \"max\": %.4f, "
+                "\"turned\": %.6f, \"weak\": %.6f}",
+                i == 0 && &condition == kConditions ? "" : ",", mesh.scene.name.c_str(), points,
+                condition.name, f.rmse, f.bias, f.p95, f.max, f.turned, f.weak);
+            std::fflush(stdout);
+        }
     }
-    r.rmse = std::sqrt(se / n);
-    r.bias = bi / n;
-    r.wrong /= n;
-    r.weak = double(c.counts.weak) / n;
-    r.proj = c.is_flattened;
-    r.uneven = double(c.counts.uneven) / n;
-    r.outl = double(c.counts.outliers) / n;
-    return r;
+    std::printf("\n]\n");
 }
-static void show(const char* what, const Row& r)
+
+/// One in so many scenes, of each kind as many; of 20,000 points each. Geometric means.
+constexpr std::uint32_t kFamilyStride = 5;
+
+void print_family(scenes::Half half)
 {
-    std::printf(
-        "%-34s rmse %.4f max %.2f bias %+.4f wrong %.3f%% weak %.2f%% ang %.1f proj %.1f%% uneven "
-        "%.1f%% outl %.2f%% | make %.3f orient %.3f build %.3f solve %.3f\n",
-        what, r.rmse, r.max, r.bias, 100 * r.wrong, 100 * r.weak, r.ang, 100 * r.proj,
-        100 * r.uneven, 100 * r.outl, r.t_make, r.t_orient, r.t_build, r.t_solve);
-    std::fflush(stdout);
-}
-int main(int c, char** v)
-{
-    std::string mode = v[1];
-    if (getenv("LIFT"))
-        kLift = atof(getenv("LIFT"));
-    if (getenv("F"))
-        kSquareShare = atof(getenv("F"));
-    if (getenv("FU"))
-        kUnevenShare = atof(getenv("FU"));
-    if (getenv("SC"))
-        kScatter = atof(getenv("SC"));
-    if (getenv("UN"))
-        kUneven = atof(getenv("UN"));
-    if (getenv("Q"))
-        g_q = atof(getenv("Q"));
-    if (mode == "mesh")
-        for (int i = 2; i < c; i++) {
-            Mesh m = make_mesh(read_scene(v[i]));
-            unsigned N = getenv("N") ? atoi(getenv("N")) : 50000;
-            std::puts(v[i]);
-            show("normals", row(m, {.points = N}, {}));
-            show("normals, rays", row(m, {.points = N}, {}, 0, Engine::rays));
-            show("normals, disks", row(m, {.points = N}, {}, 0, Engine::disks));
-            show("no normals", row(m, {.points = N, .has_normals = false}, {}));
-            show("noise .3 no normals",
-                 row(m, {.points = N, .noise = .3, .has_normals = false}, {}));
-            show("noise .3 no normals rays",
-                 row(m, {.points = N, .noise = .3, .has_normals = false}, {}, 0, Engine::rays));
-        }
-    if (mode == "verts") {
-        double lg = 0;
-        int n = 0;
-        double un = 0;
-        for (unsigned i = 0; i < scenes::kFamilySize; i++) {
-            if (scenes::half_of(i) != scenes::Half::choosing || (i / 16) % 5 >= 1)
+    std::printf("[");
+    for (const Condition& condition : kConditions) {
+        double sum = 0.0, count = 0.0;
+        for (std::uint32_t i = 0; i < scenes::kFamilySize; ++i) {
+            if (scenes::half_of(i) != half || i / scenes::kFamilyKindCount % kFamilyStride != 0)
                 continue;
-            Mesh m = make_mesh(scenes::family_scene(i));
-            auto rec = receivers_at_wedges(m.geometry, m.surface);
-            rec.resize(m.surface.vertex_count());
-            SolveSettings b;
-            b.quality = 2;
-            auto T = solve(prepare(m.geometry), rec, b).occlusion;
-            Scene s;
-            s.positions = m.scene.positions;
-            s.normals.values.assign(m.surface.normals.begin(),
-                                    m.surface.normals.begin() + rec.size());
-            PointCloud pc = make_point_cloud(s, {});
-            auto A = solve_cloud(pc, receivers_at(pc, all_of(pc)));
-            double se = 0;
-            for (size_t k = 0; k < T.size(); k++)
-                se += (A[k].occlusion - T[k].occlusion) * (A[k].occlusion - T[k].occlusion);
-            double rm = std::sqrt(se / T.size());
-            lg += std::log(std::max(rm, 1e-4));
-            un += double(pc.counts.uneven) / T.size();
-            n++;
-            if (getenv("V"))
-                std::printf("%s %.4f uneven %.3f\n", scenes::family_kind(i), rm,
-                            double(pc.counts.uneven) / T.size());
+            const Mesh mesh = make_mesh(scenes::family_scene(i));
+            constexpr double kLeast = 1e-4;  // of a logarithm
+            sum += std::log(std::max(
+                kLeast, figures_of(mesh, {20'000, condition.noise, condition.has_normals}).rmse));
+            count += 1.0;
         }
-        std::printf("verts geomean %.5f uneven %.3f n %d\n", std::exp(lg / n), un / n, n);
+        std::printf("%s\n{\"condition\": \"%s\", \"scenes\": %.0f, \"rmse\": %.6f}",
+                    &condition == kConditions ? "" : ",", condition.name, count,
+                    std::exp(sum / count));
     }
-    if (mode == "family") {
-        int half = atoi(v[2]);
-        int step = c > 3 ? atoi(v[3]) : 16;
-        double se[3] = {}, bi[3] = {};
-        int n = 0;
-        for (unsigned i = 0; i < scenes::kFamilySize; i += 1) {
-            if ((scenes::half_of(i) == scenes::Half::choosing) != (half == 0))
-                continue;
-            if ((i / 16) % 5 >= unsigned(step))
-                continue;
-            Mesh m = make_mesh(scenes::family_scene(i));
-            Row r[3] = {row(m, {.points = 20000}, {}),
-                        row(m, {.points = 20000, .has_normals = false}, {}),
-                        row(m, {.points = 20000, .noise = .3, .has_normals = false}, {})};
-            for (int k = 0; k < 3; k++) {
-                se[k] += r[k].rmse;
-                bi[k] += r[k].bias;
-            }
-            n++;
-            if (getenv("V")) {
-                show(scenes::family_kind(i), r[0]);
-                show("  none", r[1]);
-                show("  noise", r[2]);
-            }
-        }
-        std::printf("family %d: n %d normals %.4f %+.4f none %.4f %+.4f noise %.4f %+.4f\n", half,
-                    n, se[0] / n, bi[0] / n, se[1] / n, bi[1] / n, se[2] / n, bi[2] / n);
+    std::printf("\n]\n");
+}
+
+/// The share of the whole sphere of directions that is open over each point: rays about normals
+/// that point anywhere go anywhere.
+std::vector<double> open_spheres(const Mesh& mesh, std::span<const Receiver> receivers)
+{
+    constexpr int kRays = 256;
+    const Prepared rays = prepare(mesh.geometry, {.engine = Engine::rays});
+    std::vector<double> open(receivers.size(), 0.0);
+    Random random(9);
+    std::vector<Receiver> asked(receivers.begin(), receivers.end());
+    for (std::uint32_t ray = 0; ray < kRays; ++ray) {
+        for (Receiver& receiver : asked)
+            receiver.normal = glm::vec3(random.direction());
+        const std::vector<Occlusion> hits = solve(rays, asked, {.rays = 1, .seed = ray}).occlusion;
+        for (std::size_t i = 0; i < open.size(); ++i)
+            open[i] += (1.0 - double{hits[i].occlusion}) / kRays;
+    }
+    return open;
+}
+
+void write_sample(char** words)
+{
+    const Mesh mesh = make_mesh(read_scene(words[0]));
+    const scenes::SampledCloud sampled =
+        scenes::sampled(mesh, {static_cast<std::uint32_t>(std::stoul(words[1])),
+                               std::stod(words[2]), std::string_view(words[3]) == "normals"});
+    const Scene& cloud = sampled.cloud;
+    const bool has_normals = !cloud.normals.empty();
+    std::string text =
+        "ply\nformat ascii 1.0\nelement vertex " + std::to_string(cloud.positions.size()) +
+        "\nproperty float x\nproperty float y\nproperty float z\n" +
+        (has_normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "") +
+        "end_header\n";
+    const auto add = [&](glm::vec3 v, char end) {
+        append_shortest(text, v.x);
+        append_shortest(text += ' ', v.y);
+        append_shortest(text += ' ', v.z);
+        text += end;
+    };
+    for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
+        add(glm::vec3(cloud.positions[i]), has_normals ? ' ' : '\n');
+        if (has_normals)
+            add(cloud.normals.values[i], '\n');
+    }
+    write_atomically(words[4], text);
+    const std::vector<Occlusion> truth = truth_of(mesh, sampled);
+    const std::vector<double> open =
+        open_spheres(mesh, receivers_at(mesh.geometry, mesh.surface, sampled.samples));
+    text.clear();
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        append_shortest(text, truth[i].occlusion);
+        append_shortest(text += ' ', static_cast<float>(open[i]));
+        text += '\n';
+    }
+    write_atomically(words[5], text);
+}
+
+int run(int count, char** words)
+{
+    const std::string_view what = count > 1 ? words[1] : "";
+    if (what == "rows" && count > 3)
+        print_rows(static_cast<std::uint32_t>(std::stoul(words[2])), count - 3, words + 3);
+    else if (what == "family" && count == 3)
+        print_family(std::string_view(words[2]) == "choosing" ? scenes::Half::choosing
+                                                              : scenes::Half::judging);
+    else if (what == "sample" && count == 8)
+        write_sample(words + 2);
+    else
+        return 2;
+    return 0;
+}
+
+}  // namespace
+}  // namespace surfelao
+
+int main(int count, char** words)
+{
+    try {
+        return surfelao::run(count, words);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "cloud_tables: %s\n", error.what());
+        return 1;
     }
 }
