@@ -23,6 +23,9 @@ constexpr float kGroundGap =
 /// to be larger than covering_radii to meet.
 constexpr float kSplatMargin = 1.2f;
 constexpr float kInsideMargin = 1.05f;  ///< inside of a triangle nothing bends
+/// Of a point's own area: with less there are holes between points that lie at random, which the
+/// masks close but a picture does not.
+constexpr float kPointSplat = 2.2f;
 constexpr std::size_t kMostSplatsInside = 400'000;
 
 /// See covering_radii. Squared sides: a2 is opposite to corner A.
@@ -262,7 +265,7 @@ Model make_cloud_model(Scene scene, UpAxis up, const TargetSettings& settings)
             model.surfels.push_back(i);
         const float radius = std::min(cloud.radii[i], kOutlier * usual);
         model.splats.push_back({glm::uvec3(i), 0});
-        model.splat_radii.push_back(std::max(kSquareShare * radius, least));
+        model.splat_radii.push_back(std::max(kPointSplat * radius, least));
     }
     model.levels = leaf_levels(build_octree(surfels_at_vertices(geometry)));
     add_ground(model, target->offset);

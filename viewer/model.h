@@ -80,7 +80,7 @@ struct Model {
 [[nodiscard]] Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings = {},
                                float largest_splat = kLargestSplat);
 
-/// A cloud: each point is a surfel, drawn as wide as its square.
+/// A cloud: each point is a surfel, drawn wide enough to meet its neighbours.
 [[nodiscard]] Model make_cloud_model(Scene scene, UpAxis up, const TargetSettings& settings = {});
 
 /// Of a scene that was read, whichever it is. Throws as make_mesh() and make_point_target(), and

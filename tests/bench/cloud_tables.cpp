@@ -2,7 +2,7 @@
 //
 //   cloud_tables rows POINTS MODEL...     JSON: each model clean and noisy, with normals and
 //   without cloud_tables family choosing|judging  JSON: the same over generated scenes
-//   (tests/family.h) cloud_tables sample MODEL POINTS NOISE normals|none CLOUD.ply TRUTH.txt
+//   (tests/family.h) cloud_tables sample MODEL POINTS NOISE normals|none CLOUD.ply [TRUTH.txt]
 //
 // The truth is that of masks at best on the mesh, at the same points. TRUTH.txt has it beside the
 // share of all directions, the whole sphere's, that are open: what CloudCompare's PCV measures
@@ -139,7 +139,7 @@ std::vector<double> open_spheres(const Mesh& mesh, std::span<const Receiver> rec
     return open;
 }
 
-void write_sample(char** words)
+void write_sample(int count, char** words)
 {
     const Mesh mesh = make_mesh(read_scene(words[0]));
     const scenes::SampledCloud sampled =
@@ -164,6 +164,8 @@ void write_sample(char** words)
             add(cloud.normals.values[i], '\n');
     }
     write_atomically(words[4], text);
+    if (count < 6)
+        return;
     const std::vector<Occlusion> truth = truth_of(mesh, sampled);
     const std::vector<double> open =
         open_spheres(mesh, receivers_at(mesh.geometry, mesh.surface, sampled.samples));
@@ -184,8 +186,8 @@ int run(int count, char** words)
     else if (what == "family" && count == 3)
         print_family(std::string_view(words[2]) == "choosing" ? scenes::Half::choosing
                                                               : scenes::Half::judging);
-    else if (what == "sample" && count == 8)
-        write_sample(words + 2);
+    else if (what == "sample" && (count == 7 || count == 8))
+        write_sample(count - 2, words + 2);
     else
         return 2;
     return 0;
