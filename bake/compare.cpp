@@ -2,7 +2,6 @@
 
 #include "bake/compare_target.h"
 #include "engines/threads.h"
-#include "files/scene_io.h"
 #include "gpu/context.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
@@ -185,18 +184,17 @@ void read_into(Comparison& comparison, const CompareSettings& settings,
                const StageProgress& progress)
 {
     Scene scene = read_scene(settings.input, settings.reading);
-    check_target(scene, settings.target);
+    check_target(scene, settings.target, settings.parts);
     if (!scene.triangles.empty()) {
-        comparison.mesh =
-            std::make_shared<const Mesh>(make_mesh(std::move(scene), settings.target.normals));
+        comparison.mesh = std::make_shared<const Mesh>(
+            mesh_of(std::move(scene), settings.target.normals, settings.parts, settings.reading));
         return;
     }
     require(!settings.texels, scene.name + ": has points only, no faces: --at points");
     comparison.cloud =
         std::make_shared<const PointTarget>(make_point_target(scene, settings.target, progress));
     comparison.points_report = report_of(*comparison.cloud);
-    comparison.mesh =
-        std::make_shared<const Mesh>(point_mesh(std::move(scene), comparison.cloud->cloud));
+    comparison.mesh = std::make_shared<const Mesh>(point_mesh(std::move(scene), comparison.cloud));
 }
 
 /// The layout is told in the comparison.
@@ -207,7 +205,7 @@ std::unique_ptr<const CompareTarget> target_of(const CompareSettings& settings,
         return points_to_compare(*comparison.cloud);
     if (!settings.texels)
         return vertices_to_compare(comparison.mesh, settings.target);
-    TexelLayout found = layout_for(*comparison.mesh, *settings.texels, /*can_hold_new=*/true);
+    TexelLayout found = layout_for(*comparison.mesh, *settings.texels);
     comparison.page = found.layout.size;
     comparison.pages = found.layout.pages.size();
     comparison.uv_set = found.uv_set;
@@ -294,8 +292,14 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     comparison.triangles = comparison.mesh->scene.triangles.size();
     comparison.dropped_triangles = comparison.mesh->geometry.dropped_triangles;
     comparison.receivers = target->receivers();
-    const Definition definition =
-        definition_of(settings.max_distance, settings.kernel, comparison.mesh->geometry.frame);
+    const Geometry& geometry = comparison.mesh->geometry;
+    Definition definition = definition_of(settings.max_distance, settings.kernel, geometry.frame);
+    definition.ground = comparison.cloud
+                            ? ground_below(*comparison.cloud, settings.ground)
+                            : ground_of(settings.ground, {geometry},
+                                        largest_offset_of(settings.target, geometry.frame));
+    if (definition.ground)
+        comparison.ground = text_of(*definition.ground, geometry.frame);
     const TruthSettings truth_settings =
         truth_settings_of(settings, definition, *comparison.mesh, *target);
     SurfaceTruth truth = target->truth(truth_settings, stage("reference"));

@@ -158,10 +158,11 @@ std::string table_of(const Comparison& comparison)
         (comparison.points_report
              ? " points, "
              : " vertices, " + std::to_string(comparison.triangles) + " triangles, ") +
-        (is_map ? target_text(comparison) + ", " : "") + std::to_string(comparison.receivers) +
-        " receivers, " + std::to_string(comparison.threads) + " threads, median of " +
-        std::to_string(comparison.rounds) + '\n' + errors_text(comparison) + "\n\n" + table.text() +
-        rows_run_once(comparison);
+        (is_map ? target_text(comparison) + ", " : "") +
+        (comparison.ground.empty() ? "" : "a ground at " + comparison.ground + ", ") +
+        std::to_string(comparison.receivers) + " receivers, " + std::to_string(comparison.threads) +
+        " threads, median of " + std::to_string(comparison.rounds) + '\n' +
+        errors_text(comparison) + "\n\n" + table.text() + rows_run_once(comparison);
     for (const CompareRow& row : comparison.rows) {
         if (row.ratio && row.ratio->extrapolated) {
             text += "* extrapolated beyond the rows of rays\n";

@@ -19,7 +19,7 @@ void check_points(const BakeSettings& settings, const Scene& scene)
             scene.name + ": has faces, --at points is for files without");
     require(!is_cloud || !settings.texels, scene.name + ": has no faces for a map to lie on");
     require(!is_cloud || wants_points, scene.name + ": has points only, no faces: --at points");
-    check_target(scene, settings.target);
+    check_target(scene, settings.target, settings.parts);
 }
 
 void bake_at_points(const Scene& scene, BakeReport& report, const StageProgress& progress)
@@ -28,6 +28,9 @@ void bake_at_points(const Scene& scene, BakeReport& report, const StageProgress&
     const PointTarget target = make_point_target(scene, settings.target, progress);
     report.settings.engine.definition =
         definition_of(settings.max_distance, settings.kernel, target.cloud.frame);
+    report.settings.engine.definition.ground = ground_below(target, settings.ground);
+    if (const auto& ground = report.settings.engine.definition.ground)
+        report.ground = text_of(*ground, target.cloud.frame);
     report.points = report_of(target);
     report.receivers = scene.positions.size();
     report.vertices_without_normal = target.cloud.counts.without_normal;

@@ -131,7 +131,7 @@ std::string some_points(std::uint64_t count, std::uint64_t all)
 
 }  // namespace
 
-void check_target(const Scene& scene, const TargetSettings& settings)
+void check_target(const Scene& scene, const TargetSettings& settings, const PartChoice& parts)
 {
     const bool is_cloud = scene.triangles.empty();
     const bool has_cloud_option = settings.viewpoint || settings.occluder_spacing ||
@@ -141,6 +141,8 @@ void check_target(const Scene& scene, const TargetSettings& settings)
                 ": has faces, --viewpoint, --occluder-spacing and --normals up are for points");
     require(!is_cloud || settings.normals.source != NormalSource::flat,
             scene.name + ": has points only, no faces: --normals flat is for faces");
+    require(!is_cloud || parts == PartChoice{},
+            scene.name + ": has points only, no faces, and no parts to be chosen");
 }
 
 PointTarget make_point_target(const Scene& scene, const TargetSettings& settings,
@@ -178,8 +180,18 @@ PointTarget make_point_target(const Scene& scene, const TargetSettings& settings
     return target;
 }
 
-Mesh point_mesh(Scene scene, const PointCloud& cloud)
+std::optional<Ground> ground_below(const PointTarget& target,
+                                   const std::optional<GroundPlane>& plane)
 {
+    const PointCloud& cloud = target.cloud;
+    const double usual = cloud.spacing / std::sqrt(std::numbers::pi) / cloud.frame.diagonal;
+    return ground_of(plane, {target.squares},
+                     target.offset.value_or(kLift * static_cast<float>(usual)));
+}
+
+Mesh point_mesh(Scene scene, const std::shared_ptr<const PointTarget>& target)
+{
+    const PointCloud& cloud = target->cloud;
     Mesh mesh{std::move(scene), {}, {}};
     Geometry& geometry = mesh.geometry;
     const std::size_t count = cloud.positions.size();
@@ -192,6 +204,7 @@ Mesh point_mesh(Scene scene, const PointCloud& cloud)
     for (const float radius : cloud.radii)
         geometry.areas.push_back(std::numbers::pi_v<float> * radius * radius);
     mesh.surface.normals = cloud.normals;
+    mesh.occluders = std::shared_ptr<const Geometry>(target, &target->squares);
     return mesh;
 }
 

@@ -9,6 +9,7 @@
 #include "bake/occluders.h"
 #include "bake/vertex_bake.h"
 #include "bake/vertex_target.h"
+#include "bake/world.h"
 #include "engines/engine.h"
 #include "surfels/point_cloud.h"
 #include "surfels/scene.h"
@@ -48,7 +49,7 @@ inline constexpr std::size_t kBandPoints = std::size_t{1} << 22;
 
 /// Throws SettingsError where settings are for points and the scene has faces, or the other way
 /// round.
-void check_target(const Scene& scene, const TargetSettings& settings);
+void check_target(const Scene& scene, const TargetSettings& settings, const PartChoice& parts);
 
 /// scene: without triangles. Stages "points" and "orient". O(n log n), and two solves at draft
 /// where neither the file nor a viewpoint tells where the outside is. Throws as make_point_cloud(),
@@ -56,9 +57,14 @@ void check_target(const Scene& scene, const TargetSettings& settings);
 [[nodiscard]] PointTarget make_point_target(const Scene& scene, const TargetSettings& settings,
                                             const StageProgress& progress = {});
 
-/// The points as vertices without a triangle, for what shows vertices: their areas are the points'.
+/// The points as vertices without a triangle, for what shows vertices: their areas are the points',
+/// and the squares occlude.
 /// Those without a normal are drawn facing up.
-[[nodiscard]] Mesh point_mesh(Scene scene, const PointCloud& cloud);
+[[nodiscard]] Mesh point_mesh(Scene scene, const std::shared_ptr<const PointTarget>& target);
+
+/// As ground_of() of engines/engine.h: below all squares.
+[[nodiscard]] std::optional<Ground> ground_below(const PointTarget& target,
+                                                 const std::optional<GroundPlane>& plane);
 
 [[nodiscard]] PointReport report_of(const PointTarget& target);
 [[nodiscard]] std::string name_of(Orientation orientation);

@@ -107,7 +107,7 @@ SurfaceTruth trace_truth(const Mesh& mesh, const TruthSettings& settings, const 
                                  : surface_points(settings.measure, settings.points);
     const std::vector<Receiver> receivers =
         receivers_at(mesh.geometry, mesh.surface, points, settings.offset);
-    return trace_truth(mesh.geometry, points, receivers, settings, progress);
+    return trace_truth(mesh.occluding(), points, receivers, settings, progress);
 }
 
 SurfaceTruth trace_truth(const Geometry& geometry, std::span<const SurfacePoint> points,
@@ -179,13 +179,14 @@ std::uint32_t floor_rays(std::size_t receivers, std::uint32_t truth_rays)
     return std::min(rays, truth_rays);
 }
 
-Floor find_floor(const VertexTarget& fitted, const Geometry& geometry, const SurfaceTruth& truth,
+Floor find_floor(const VertexTarget& fitted, const Mesh& mesh, const SurfaceTruth& truth,
                  const TruthSettings& settings, const Progress& progress)
 {
+    const Geometry& geometry = mesh.geometry;
     Floor floor;
     floor.rays = floor_rays(fitted.receivers().size(), settings.rays);
     Reference reference = trace_reference(
-        geometry, fitted.receivers(),
+        mesh.occluding(), fitted.receivers(),
         {settings.definition, floor.rays, settings.use_cache, /*find_ill_defined=*/false},
         progress);
     floor.from_cache = reference.from_cache;

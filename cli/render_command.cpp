@@ -2,12 +2,12 @@
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/output.h"
+#include "cli/part_options.h"
 #include "cli/progress_bar.h"
 #include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "cli/view_options.h"
 #include "engines/threads.h"
-#include "files/scene_io.h"
 #include "image/image_file.h"
 #include "surfels/number_text.h"
 #include "surfels/stopwatch.h"
@@ -42,6 +42,7 @@ struct RenderCommandOptions {
     MeasureOptions measure;
     SurfaceOptions surface;
     TexelOptions texels;
+    PartOptions parts;
     bool atlas = false;
     std::optional<int> threads;
 };
@@ -58,6 +59,8 @@ void check_files(const RenderCommandOptions& options)
 {
     FilePlan plan;
     plan.reads(options.input);
+    for (const std::string& other : options.parts.occluders)
+        plan.reads(other);
     if (options.show.environment)
         plan.reads(*options.show.environment);
     plan.writes(options.output, "the picture");
@@ -119,7 +122,7 @@ void solve_map_for(const Model& model, const TexelSettings& texels, const Engine
                     : open_map(places);
     shown.occlusion.resize(model.answer_count());
     if (shows_ground(view))
-        shown.occlusion = solve_model(prepare(model.geometry(), engine), model, engine,
+        shown.occlusion = solve_model(prepare(model.occluding(), engine), model, engine,
                                       {.vertices = false}, stage("ground"))
                               .values;
     shown.solve_s = watch.lap();
@@ -140,7 +143,11 @@ void tell(const RenderCommandOptions& options, const Model& model, const EngineS
               << (model.cloud ? " points, "
                               : " vertices, " + std::to_string(model.geometry().triangles.size()) +
                                     " triangles, ")
-              << name_of(engine.engine) << ", " << setting_of(engine) << '\n';
+              << name_of(engine.engine) << ", " << setting_of(engine);
+    if (engine.definition.ground)
+        std::cout << ", over a ground at "
+                  << text_of(*engine.definition.ground, model.geometry().frame);
+    std::cout << '\n';
     if (shown.layout)
         std::cout << "  " << text_of(*shown.layout) << '\n';
     std::cout << "  read " << time(seconds[0]) << ", solve " << time(shown.solve_s)
@@ -179,11 +186,15 @@ int run(const RenderCommandOptions& options)
     Stopwatch watch;
     const TargetSettings target = target_settings_of(options.surface);
     const UpAxis up = up_axis_of(options.show);
-    const Model model = model_of(read_scene(options.input, options.reading), up, target);
+    const Model model = model_of(read_scene(options.input, options.reading), up, target,
+                                 {.parts = part_choice_of(options.parts),
+                                  .ground = ground_plane_of(options.measure, options.show.up),
+                                  .reading = options.reading});
     const Frame& frame = model.geometry().frame;
     EngineSettings engine = settings_of(options.engine);
     engine.definition =
         definition_of(distance_limit_of(options.measure), kernel_of(options.measure), frame);
+    engine.definition.ground = model.occluding_ground;
     const auto texels = shown_texels_of(options.texels);
     if (texels && model.cloud)
         throw UsageError(options.input + ": has points only, no faces: --at points");
@@ -255,6 +266,7 @@ void add_render_command(CLI::App& app, Work& work)
         ->capture_default_str();
     add_show_options(*command, options->show);
     add_layout_options(*command, options->texels, kShownMaps);
+    add_part_options(*command, options->parts);
     add_atlas_option(*command, options->atlas);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
@@ -263,6 +275,7 @@ void add_render_command(CLI::App& app, Work& work)
     command->callback([options, &work] {
         check_kernel(settings_of(options->engine).engine, kernel_of(options->measure));
         static_cast<void>(distance_limit_of(options->measure));
+        static_cast<void>(ground_plane_of(options->measure, options->show.up));
         static_cast<void>(target_settings_of(options->surface));
         const bool has_map = shown_texels_of(options->texels).has_value();
         check_shown_map(view_options_of(options->show), has_map, options->atlas);

@@ -41,6 +41,10 @@ struct WriteOptions {
     VertexColors colors = VertexColors::automatic;  ///< vertex_colors.h
     Encoding encoding = Encoding::automatic;        ///< of the colours that are written
     std::string mark = {};  ///< who made the file, and how (maker_mark.h); empty: it says nothing
+    /// Scene triangles that were not baked; empty: all were. glTF keeps primitives of such alone
+    /// exactly as they are. In other formats a vertex has its occlusion in any case: there it is
+    /// what the answers say, 0 for what nobody asked.
+    std::vector<bool> unbaked = {};
 };
 
 /// A result as the writers of the formats make it.
@@ -74,6 +78,11 @@ struct OcclusionMap {
     /// New ones, in place of uv_set: finite, one for each corner or vertex (UvSet). As they are in
     /// files they are floats.
     std::optional<UvSet> uvs = {};
+    /// Maps of the pages behind the first, over the same coordinates: in glTF only, without uvs.
+    std::vector<std::string> more_pngs = {};
+    /// Of each scene triangle: its page, 0 for `png`; the same for all triangles of a material.
+    /// Empty: all lie on the first.
+    std::vector<std::uint32_t> pages = {};
 };
 
 /// Where the map of a result at `output` stands: STEM.ao.png beside a .gltf, .obj or .ply; nothing

@@ -47,7 +47,9 @@ struct Part {
 enum class LabelKind { node, mesh, object, group, material };
 
 /// Triangles that have a name in the file in common. Those of different kinds overlap: a triangle
-/// has a node, a mesh and a material. Labels of one kind and name are one.
+/// has a node, a mesh and a material, and of nodes (glTF) also all that its node lies below. Labels
+/// of one kind and name are one. OBJ has objects (o), groups (g) and materials (usemtl), text STL
+/// objects (solid), PLY and OFF nothing (labels.h).
 struct Label {
     struct Range {
         std::uint32_t first = 0, count = 0;
@@ -92,6 +94,8 @@ public:
     /// What the file paints its surfaces with, vertex colours apart; no materials where it says
     /// nothing of it. What is malformed in it is white. O(bytes).
     [[nodiscard]] virtual BaseColors base_colors() const { return {}; }
+    /// Whether any of these materials is not Opacity::solid: known without a look at all triangles.
+    [[nodiscard]] virtual bool has_openings() const { return false; }
     /// The number of the texture coordinates (Scene::uvs) over which the file has a map of
     /// occlusion already; of several the first. O(primitives).
     [[nodiscard]] virtual std::optional<std::uint32_t> occlusion_uvs() const { return {}; }

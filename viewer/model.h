@@ -1,11 +1,13 @@
 /// model.h: a scene made ready to be drawn and solved: the same for the window and for a file.
 ///
-/// Under the scene lies a ground of receivers only: it is shaded by the scene, but shades nothing,
-/// so that no number of the scene changes because a picture is taken.
+/// Under the scene lies a square of receivers only: it is shaded by the scene, but shades nothing,
+/// so that no number of the scene changes because a picture is taken. Where a ground is asked for
+/// that occludes, the square lies in it.
 #pragma once
 
 #include "bake/point_target.h"
 #include "bake/vertex_target.h"
+#include "engines/engine.h"
 #include "surfels/geometry.h"
 #include "surfels/receiver.h"
 #include "viewer/camera.h"
@@ -16,6 +18,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,7 +28,7 @@ namespace surfelao {
 /// facing the sky.
 inline constexpr int kGroundCells = 96;
 inline constexpr int kGroundReceivers = (kGroundCells + 1) * (kGroundCells + 1);
-struct Ground {
+struct ShadowSquare {
     glm::vec3 corner{0.0f};  ///< of the first receiver; unit frame
     glm::vec3 axis_x{0.0f};  ///< to the last receiver of the first row
     glm::vec3 axis_y{0.0f};  ///< to the first receiver of the last row
@@ -59,7 +62,9 @@ struct Model {
     std::vector<float> levels;       ///< one per surfel: its leaf's depth in the octree, 0 = root
     std::vector<Splat> splats;       ///< they cover every triangle that has an area
     std::vector<float> splat_radii;  ///< one per splat
-    Ground ground;
+    std::optional<GroundPlane> ground_plane;  ///< that it was made with
+    std::optional<Ground> occluding_ground;   ///< the same in the unit frame
+    ShadowSquare ground;
     std::vector<Receiver> ground_receivers;
     /// kModelPoints, all over the surface; none without area, and none of a cloud
     std::vector<SurfacePoint> points;
@@ -67,6 +72,7 @@ struct Model {
     UpAxis up = UpAxis::y;
 
     const Geometry& geometry() const { return mesh->geometry; }
+    const Geometry& occluding() const { return mesh->occluding(); }
     /// Values that a picture needs: one per vertex, then the ground's.
     std::size_t answer_count() const
     {
@@ -77,15 +83,26 @@ struct Model {
 /// O(n log n). mesh: made with settings.normals. largest_splat: triangles that need larger
 /// disks at their corners are covered from inside; where that takes more than a few hundred
 /// thousand disks, larger ones are allowed. Infinite: one splat per surfel, however large.
+/// ground: that occludes, its up as `up` says. Throws as ground_of().
 [[nodiscard]] Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings = {},
-                               float largest_splat = kLargestSplat);
+                               float largest_splat = kLargestSplat,
+                               const std::optional<GroundPlane>& ground = {});
 
 /// A cloud: each point is a surfel, drawn wide enough to meet its neighbours.
-[[nodiscard]] Model make_cloud_model(Scene scene, UpAxis up, const TargetSettings& settings = {});
+[[nodiscard]] Model make_cloud_model(Scene scene, UpAxis up, const TargetSettings& settings = {},
+                                     const std::optional<GroundPlane>& ground = {});
+
+/// What else a user says of a scene.
+struct ModelChoice {
+    PartChoice parts = {};
+    std::optional<GroundPlane> ground = {};
+    ReadOptions reading = {};  ///< of PartChoice::occluders
+};
 
 /// Of a scene that was read, whichever it is. Throws as make_mesh() and make_point_target(), and
 /// SettingsError as check_target() (bake/point_target.h).
-[[nodiscard]] Model model_of(Scene scene, UpAxis up, const TargetSettings& settings);
+[[nodiscard]] Model model_of(Scene scene, UpAxis up, const TargetSettings& settings,
+                             const ModelChoice& choice = {});
 
 /// The lowest and the highest level, at least 1 apart: what the ends of a colour scale stand for.
 [[nodiscard]] glm::vec2 level_range(const Model& model);

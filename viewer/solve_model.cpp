@@ -53,7 +53,7 @@ bool is_same(const SurfacePoint& a, const SurfacePoint& b)
 Prepared prepare(const Model& model, const EngineChoice& choice)
 {
     return model.cloud ? prepare(model.cloud->cloud, model.cloud->squares, choice)
-                       : prepare(model.geometry(), choice);
+                       : prepare(model.occluding(), choice);
 }
 
 ModelAnswer solve_model(const Prepared& prepared, const Model& model, const SolveSettings& settings,
@@ -96,7 +96,7 @@ ModelReference reference_of(const Model& model, const Definition& definition, st
     const std::size_t asked = receivers.size();
     receivers.insert(receivers.end(), model.ground_receivers.begin(), model.ground_receivers.end());
     const Reference traced = trace_reference(
-        model.cloud ? model.cloud->squares : model.geometry(), receivers,
+        model.occluding(), receivers,
         {.definition = definition, .rays = rays, .find_ill_defined = false}, progress);
     const std::span<const Occlusion> answers = traced.occlusion;
     ModelReference reference{values_of(model, answers.first(asked)), traced.from_cache};
@@ -118,12 +118,12 @@ ModelTruth truth_of(const Model& model, const Definition& definition, std::uint3
     found.truth = trace_truth(*model.mesh, settings, stage(progress, 0.0, 0.2));
     const auto find = [&](const VertexTarget& fitted) {
         found.floor =
-            find_floor(fitted, geometry, found.truth, settings, stage(progress, 0.2, 0.6));
+            find_floor(fitted, *model.mesh, found.truth, settings, stage(progress, 0.2, 0.6));
     };
     if (model.settings.values == VertexValues::fit) {
         find(*model.target);
         const Reference ground =
-            trace_reference(geometry, model.ground_receivers,
+            trace_reference(model.occluding(), model.ground_receivers,
                             {.definition = definition, .rays = rays, .find_ill_defined = false},
                             stage(progress, 0.6, 1.0));
         found.reference = {found.floor.values, found.floor.from_cache && ground.from_cache};

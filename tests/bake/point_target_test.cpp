@@ -353,14 +353,16 @@ TEST(Points, AnyNumberOfThreadsGivesTheSameBytes)
 TEST(Points, WrongSettingsAreRefused)
 {
     const Scene cloud = cloud_of(10, on_floor);
-    EXPECT_THROW(check_target(cloud, {.normals = {.source = NormalSource::flat}}), SettingsError);
+    EXPECT_THROW(check_target(cloud, {.normals = {.source = NormalSource::flat}}, {}),
+                 SettingsError);
     EXPECT_THROW(make_point_target(cloud, {.normals = {.source = NormalSource::file}}), InputError);
     EXPECT_THROW(make_point_target(cloud, {.occluder_spacing = Length{1e-9, false}}), InputError);
     const Scene mesh = scenes::sphere({0, 0, 0}, 1.0, 2);
-    EXPECT_THROW(check_target(mesh, {.viewpoint = glm::dvec3(0.0)}), SettingsError);
-    EXPECT_THROW(check_target(mesh, {.occluder_spacing = Length{1.0, true}}), SettingsError);
-    EXPECT_THROW(check_target(mesh, {.normals = {.source = NormalSource::up}}), SettingsError);
-    EXPECT_NO_THROW(check_target(mesh, {}));
+    EXPECT_THROW(check_target(mesh, {.viewpoint = glm::dvec3(0.0)}, {}), SettingsError);
+    EXPECT_THROW(check_target(mesh, {.occluder_spacing = Length{1.0, true}}, {}), SettingsError);
+    EXPECT_THROW(check_target(mesh, {.normals = {.source = NormalSource::up}}, {}), SettingsError);
+    EXPECT_NO_THROW(check_target(mesh, {}, {.exclude = {"a"}}));
+    EXPECT_THROW(check_target(cloud, {}, {.exclude = {"a"}}), SettingsError);
 }
 
 }  // namespace
