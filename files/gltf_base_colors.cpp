@@ -92,8 +92,6 @@ private:
     BaseColor color_of(const json& material)
     {
         BaseColor color;
-        if (const json& name = member(material, "name"); name.is_string())
-            color.name = name.get<std::string>();
         const json& looks = member(material, "pbrMetallicRoughness");
         const json& factor = member(looks, "baseColorFactor");
         for (int k = 0; k < 3 && factor.is_array() && factor.size() == 4; ++k) {
