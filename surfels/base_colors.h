@@ -28,7 +28,7 @@ enum class Opacity {
 };
 
 struct BaseColor {
-    std::string name;        ///< in the file; may be empty
+    std::string name = {};   ///< in the file; may be empty
     glm::vec3 factor{1.0f};  ///< linear light; multiplies the picture
     std::optional<std::uint32_t> picture;
     std::uint32_t uv_set = 0;  ///< Scene::uvs, where the picture's top row is v = 0

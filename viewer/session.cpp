@@ -29,15 +29,6 @@ EngineSettings draft_of(EngineSettings settings)
     return settings;
 }
 
-Mesh mesh_of(Scene scene, const NormalSettings& normals, const PartChoice& parts)
-{
-    std::vector<Scene> input, others;
-    input.push_back(std::move(scene));
-    for (const std::filesystem::path& file : parts.occluders)
-        others.push_back(read_scene(file));
-    return std::move(make_world(std::move(input), others, normals, parts).meshes.front());
-}
-
 }  // namespace
 
 struct Session::Made {
@@ -102,7 +93,7 @@ struct Session::Engines {
         if (model != wanted)
             layout.reset();
         model = wanted;
-        prepared.emplace(prepare(wanted->occluding(), choice));
+        prepared.emplace(surfelao::prepare(*wanted, choice));
         untold_s = prepared->seconds().surfels + prepared->seconds().tree;
     }
 
@@ -145,8 +136,8 @@ void Session::start_making(Making making)
             if (scene.free_vertices)  // make_mesh splits them, for these normals alone
                 made->scene = making.scene ? making.scene : std::make_shared<const Scene>(scene);
             made->model = std::make_shared<const Model>(
-                make_model(mesh_of(std::move(scene), making.target.normals, making.parts),
-                           making.up, making.target, kLargestSplat, making.ground));
+                model_of(std::move(scene), making.up, making.target,
+                         {.parts = making.parts, .ground = making.ground}));
             const std::shared_ptr<const Mesh>& mesh = made->model->mesh;
             if (!made->scene)
                 made->scene = std::shared_ptr<const Scene>(mesh, &mesh->scene);
