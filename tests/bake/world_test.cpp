@@ -21,7 +21,7 @@ namespace {
 
 using scenes::operator+=;
 
-constexpr Engine kEngines[] = {Engine::masks, Engine::disks, Engine::rays};
+constexpr Engine kEnginesOfWorld[] = {Engine::masks, Engine::disks, Engine::rays};
 
 /// Scenes one after the other, each an object of its name.
 Scene named(const std::vector<std::pair<const char*, Scene>>& parts)
@@ -100,7 +100,7 @@ TEST(World, WhatIsExcludedTakesNoPart)
     const Mesh without = mesh_of(all, {.exclude = {"s?y"}});
     const Mesh plain = mesh_of(rest, {});
     EXPECT_EQ(without.geometry.frame.diagonal, plain.geometry.frame.diagonal);
-    for (const Engine engine : kEngines) {
+    for (const Engine engine : kEnginesOfWorld) {
         const std::vector<float> values = values_of(without, engine);
         expect_alike(first_of(values, rest.positions.size()), values_of(plain, engine), engine);
         EXPECT_EQ(values.back(), 0.0f);
@@ -116,7 +116,7 @@ TEST(World, ReceiversHaveTheValuesOfTheWhole)
     const Mesh some = mesh_of(all, {.receivers = {"floor"}});
     const Mesh ghost = mesh_of(all, {.exclude = {"lid"}, .receivers = {"*"}});
     const Mesh whole = mesh_of(all, {});
-    for (const Engine engine : kEngines) {
+    for (const Engine engine : kEnginesOfWorld) {
         const std::vector<float> values = values_of(some, engine);
         expect_alike(first_of(values, count), first_of(values_of(whole, engine), count), engine);
         EXPECT_EQ(values.back(), 0.0f);
@@ -131,7 +131,7 @@ TEST(World, FilesTogetherAreTheJoinedScene)
     const std::vector<Scene> files{floor_scene(), lid_scene()};
     const BakeWorld world = make_world(files, {}, {}, {});
     const Mesh joined = mesh_of(join(files), {});
-    for (const Engine engine : kEngines) {
+    for (const Engine engine : kEnginesOfWorld) {
         std::vector<float> values = values_of(world.meshes[0], engine);
         const std::vector<float> of_lid = values_of(world.meshes[1], engine);
         values.insert(values.end(), of_lid.begin(), of_lid.end());
@@ -214,7 +214,7 @@ TEST(World, HolesByAlphaDoNotOcclude)
         folder.file("card.mtl", std::string("newmtl card\n") + row.material + "\n");
         const Mesh mesh = read_mesh(input, {}, {.clear = row.clear});
         EXPECT_EQ(mesh.geometry.triangles.size(), 6u);
-        for (const Engine engine : kEngines)
+        for (const Engine engine : kEnginesOfWorld)
             EXPECT_NEAR(values_of(mesh, engine)[kCentre], row.occlusion,
                         engine == Engine::disks  ? 0.06
                         : engine == Engine::rays ? 0.04
