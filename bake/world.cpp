@@ -276,7 +276,8 @@ BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
             is_joined = is_joined || (own.is_baked(t) && !own.occludes(t));
         }
         if (!is_any_baked)
-            throw InputError(inputs[i].name + ": nothing of it is left to be baked");
+            throw InputError(inputs[i].name + ": nothing of it is left to be baked" +
+                             (inputs.size() > 1 ? ", --occluders is for what only occludes" : ""));
     }
     const Frame frame = common_frame(inputs, left_out);
 
