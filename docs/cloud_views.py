@@ -38,7 +38,7 @@ def cloud_large(figures):
     """A large cloud from file to file: seconds of each stage, and memory"""
     stages = ("read", "points", "tree", "solve", "check", "write", "total")
     return table(["points", "normals", *stages, "MiB"],
-                 [[thousands(row["points"]), "of the file" if row["normals"] else "fitted",
+                 [[thousands(row["count"]), "of the file" if row["normals"] else "fitted",
                    *[fixed(row[stage], 2) for stage in stages], fixed(row["mib"], 0)]
                   for row in figures["clouds"]["large"]])
 

@@ -267,6 +267,18 @@ void Panel::mouse(PanelState& state, PanelInput& input, float wipe_x, float left
     input.zoom *= std::pow(kZoomPerNotch, io.MouseWheel);
 }
 
+namespace {
+
+void name_model(const SessionState& state)
+{
+    const Geometry& geometry = state.model->geometry();
+    ImGui::Text(state.model->cloud ? "%s\n%zu points" : "%s\n%zu vertices, %zu triangles",
+                state.path.filename().c_str(), geometry.positions.size(),
+                geometry.triangles.size());
+}
+
+}  // namespace
+
 void Panel::widgets(PanelState& state, const Session& session, const PanelFigures& figures,
                     PanelInput& input)
 {
@@ -275,10 +287,7 @@ void Panel::widgets(PanelState& state, const Session& session, const PanelFigure
                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse);
     ImGui::PushItemWidth(-100.0f * ImGui::GetIO().FontGlobalScale);
     if (shown_state.model)
-        ImGui::Text(shown_state.model->cloud ? "%s\n%zu points" : "%s\n%zu vertices, %zu triangles",
-                    shown_state.path.filename().c_str(),
-                    shown_state.model->geometry().positions.size(),
-                    shown_state.model->geometry().triangles.size());
+        name_model(shown_state);
     else if (!session.opening())
         ImGui::TextUnformatted("Drop a mesh file on this window.");
     if (session.opening())

@@ -85,7 +85,7 @@ TEST(Bake, OutputThatCannotBeIsRefusedBeforeReading)
 {
     const TemporaryFolder folder;
     std::ofstream(folder / "in.obj") << "not a mesh";
-    for (const char* output : {"missing/out.ply", "out.txt2", "out.stl", "."}) {
+    for (const char* output : {"missing/out.ply", "out.abc", "out.stl", "."}) {
         bool read = false;
         EXPECT_THROW(static_cast<void>(bake(settings_for(folder / "in.obj", folder / output),
                                             [&](std::string_view, double) {

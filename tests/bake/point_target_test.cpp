@@ -55,7 +55,7 @@ bool is_inside(glm::dvec3 p)
     return std::max(std::abs(p.x - 0.5), std::abs(p.y - 0.5)) < 0.4;
 }
 
-constexpr Engine kEngines[] = {Engine::masks, Engine::disks, Engine::rays};
+constexpr Engine kAllOfThem[] = {Engine::masks, Engine::disks, Engine::rays};
 
 std::vector<Occlusion> answers_of(const PointTarget& target, Engine engine = Engine::masks)
 {
@@ -87,7 +87,7 @@ TEST(Points, APlaneIsOpen)
         EXPECT_FALSE(target.cloud.is_flattened);
         // neither side is more open
         EXPECT_EQ(target.cloud.counts.weak, has_normals ? 0u : 5000u);
-        for (const Engine engine : kEngines) {
+        for (const Engine engine : kAllOfThem) {
             const std::vector<Occlusion> answers = answers_of(target, engine);
             double sum = 0.0, most = 0.0, count = 0.0;
             for (std::size_t i = 0; i < answers.size(); ++i) {
@@ -219,7 +219,7 @@ TEST(Points, FewAndCollinearOnesAreOpen)
         const PointTarget target =
             make_point_target(cloud_of(c.points, c.place, c.has_normals ? up_at : nullptr), {});
         EXPECT_EQ(target.cloud.counts.without_normal, c.without_normal);
-        for (const Engine engine : kEngines) {
+        for (const Engine engine : kAllOfThem) {
             EngineSettings settings;
             settings.engine = engine;
             const VertexBake bake = bake_points(target, settings, 50);

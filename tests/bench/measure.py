@@ -397,7 +397,7 @@ def part_clouds(build):
                                       pathlib.Path(folder) / "out.ply", "--json", "-"))
                        for _ in range(ROUNDS)]
             report = sorted(reports, key=lambda report: report["seconds"]["total"])[ROUNDS // 2]
-            large.append({"points": LARGE_CLOUD, "normals": normals == "normals",
+            large.append({"count": LARGE_CLOUD, "normals": normals == "normals",
                           "mib": report["peak_rss_bytes"] / 2**20, **report["seconds"]})
     return {**provenance(build, "cloud_tables; surfelao bake"), "rows": rows, "thin": thin,
             "family": family, "large": large}

@@ -63,7 +63,7 @@ def main(build, mesh, points, noise, normals):
                              "-NO_TIMESTAMP", "-C_EXPORT_FMT", "ASC", "-PREC", 9, "-PCV", "-N_RAYS",
                              RAYS, "-RESOLUTION", pixels)
             lines = (folder / "cloud_PCV.asc").read_text().splitlines()
-            seen = [float(line.split()[-1]) for line in lines]
+            seen = [float(line.split()[3]) for line in lines]
             found["pcv"].append({"pixels": pixels, "s": seconds, "own": rmse(seen, sphere),
                                  "cosine": rmse([min(1.0, 2 * share) for share in seen], cosine)})
     print(json.dumps(found))
