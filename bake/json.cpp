@@ -163,6 +163,11 @@ Json json_of(const BatchEntry& entry)
     json["misfit"] = json_of(report.misfit);
     json["error"] = json_of(report.error);
     json["texels"] = report.texels ? json_of(report, *report.texels) : Json();
+    if (const auto& part = report.settings.share)
+        json["part"] = {{"share", part->share.index + 1},
+                        {"shares", part->share.count},
+                        {"solved", report.solved},
+                        {"file", part_path(report.settings.output, part->share).string()}};
     json["asked"] = report.settings.error ? search_json_of(report) : Json();
     json["notes"] = report.notes;
     return json;
