@@ -201,6 +201,8 @@ BakeReport bake_one(const Job& job, const BakeSettings& settings, double read_se
     Stopwatch whole;
     const Mesh& mesh = *job.mesh;
     const Geometry& geometry = mesh.geometry;
+    if (!settings.texels)
+        check_output(mesh.scene, settings.output);
     report.settings.engine.definition =
         definition_of(report.settings.max_distance, report.settings.kernel, geometry.frame);
     set_ground({geometry, mesh.occluding()}, report);
@@ -243,7 +245,8 @@ std::vector<BakeReport> bake_together(const std::vector<BakeSettings>& settings,
         inputs.push_back(of_file.input);
     }
     enter(progress, "read");
-    World world = read_world(inputs, settings.front().target.normals, settings.front().parts);
+    BakeWorld world = read_world(inputs, settings.front().target.normals, settings.front().parts,
+                                 settings.front().reading);
     double read_seconds = watch.lap();
     const std::shared_ptr<const Geometry> occluding = world.meshes.front().occluders;
     std::optional<Occluders> occluders;
@@ -306,6 +309,11 @@ std::string mark_of(const BakeSettings& settings)
         text += " " + text_of(*texels);
         return make_mark("bake", text);
     }
+    if (!settings.reading.columns.empty()) {
+        std::string columns = settings.reading.columns;
+        std::ranges::replace(columns, ' ', ',');
+        text += " columns=" + columns;
+    }
     text += " colors=" + name_of(settings.colors);
     text += " encoding=" + name_of(settings.encoding);
     return make_mark("bake", text);
@@ -330,7 +338,8 @@ bool is_finished(const BakeSettings& settings)
         std::ranges::copy(settings.texels->high, std::back_inserter(sources));
     sources.push_back(settings.input);
     for (std::size_t i = 0, count = sources.size(); i < count; ++i) {
-        if (type_of(sources[i]) == FileType::gltf)
+        const FileType type = type_of(sources[i]);
+        if (type == FileType::gltf || type == FileType::obj)  // whose alpha counts too
             std::ranges::copy(sidecars_of(sources[i]), std::back_inserter(sources));
     }
     return std::ranges::all_of(sources, [&](const fs::path& source) {

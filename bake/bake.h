@@ -9,7 +9,7 @@
 #include "bake/vertex_target.h"
 #include "bake/world.h"
 #include "engines/engine.h"
-#include "files/vertex_colors.h"
+#include "files/scene_io.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -46,6 +46,7 @@ struct BakeSettings {
     std::optional<TexelSettings> texels = {};  ///< a map instead of values at vertices
     VertexColors colors = VertexColors::automatic;
     Encoding encoding = Encoding::automatic;
+    ReadOptions reading = {};  ///< of the input
     /// Only this share is solved; in place of the output stands its file, part_path(output). For
     /// values at vertices by an engine on the CPU.
     std::optional<BakeShare> share = {};
@@ -129,7 +130,8 @@ struct BatchEntry {
     std::string error;
 };
 
-/// Keys input, output, vertices, triangles, dropped_triangles, vertices_without_normal, surfels,
+/// Keys input, output, vertices, triangles, dropped_triangles, vertices_without_normal,
+/// baked_triangles, occluding_triangles, surfels,
 /// engine, settings, seconds{read, surfels, tree, solve, fit, write, total}, receivers,
 /// corners_from_file, replaced_corners, peak_rss_bytes, residual, mean_occlusion, misfit{rms,
 /// share}, error, asked, texels, notes. What an engine or a target does not have is null. Failed:
@@ -149,14 +151,16 @@ struct BatchEntry {
                                                      const std::filesystem::path& folder);
 
 /// The mark of the result (files/maker_mark.h): all settings on which its bytes depend, as they
-/// were asked for; neither the input nor threads. Of what only another engine has, nothing.
+/// were asked for; neither the input nor threads, but what occludes it. Of what only another engine
+/// has, nothing.
 ///
 ///     surfelao 0.1.0 bake: engine=masks device=cpu quality=1 kernel=cosine max_distance=none
 ///     falloff=none normals=auto crease=40 values=fit colors=auto encoding=auto
 [[nodiscard]] std::string mark_of(const BakeSettings& settings);
 
 /// Whether the output exists with the mark that a bake would give it now and is not older than its
-/// input and the files that a .gltf refers to. Outputs are complete when they exist.
+/// input, the files that occlude or are baked beside it, and those that a .gltf or .obj of these
+/// refers to. Outputs are complete when they exist.
 [[nodiscard]] bool is_finished(const BakeSettings& settings);
 
 }  // namespace surfelao

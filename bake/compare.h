@@ -39,11 +39,13 @@ struct CompareSettings {
     Kernel kernel = Kernel::cosine;
     std::optional<GroundPlane> ground = {};
     TargetSettings target;
+    PartChoice parts = {};                          ///< who occludes, who is asked
     std::optional<TexelSettings> texels;            ///< a map; empty: values at the vertices
     std::uint32_t reference_rays = 4096;            ///< an even number
     std::uint64_t sample = 0;                       ///< points of the surface; 0 = kSurfacePoints
     int rounds = 3;                                 ///< >= 1
     bool use_cache = true;                          ///< of references
+    ReadOptions reading = {};                       ///< of the input
     Instructions instructions = Instructions::all;  ///< of the candidates and the opponent
 };
 

@@ -3,6 +3,7 @@
 #include "bake/compare.h"
 #include "bake/frontier.h"
 #include "bake/info.h"
+#include "surfels/labels.h"
 #include "surfels/number_text.h"
 
 #include <nlohmann/json.hpp>
@@ -124,6 +125,17 @@ Json json_of(const BakeReport& report, const TexelReport& texels)
             {"written", written}};
 }
 
+Json json_of(const PartChoice& parts)
+{
+    Json occluders = Json::array();
+    for (const std::filesystem::path& file : parts.occluders)
+        occluders.push_back(file.string());
+    return {{"exclude", parts.exclude},
+            {"receivers", parts.receivers},
+            {"occluders", occluders},
+            {"transparent", name_of(parts.clear)}};
+}
+
 Json json_of(const BatchEntry& entry)
 {
     Json json;
@@ -142,11 +154,17 @@ Json json_of(const BatchEntry& entry)
     json["triangles"] = report.triangles;
     json["dropped_triangles"] = report.dropped_triangles;
     json["vertices_without_normal"] = report.vertices_without_normal;
+    json["baked_triangles"] = report.baked_triangles;
+    json["occluding_triangles"] = report.occluding_triangles;
     json["surfels"] = report.surfels;
     json["engine"] = name_of(report.settings.engine.engine);
     json["settings"] = json_of(report.settings.engine);
     json["settings"]["threads"] = report.threads;
     add(json["settings"], report.settings.target);
+    json["settings"]["parts"] = json_of(report.settings.parts);
+    json["settings"]["beside"] = Json::array();
+    for (const std::filesystem::path& file : report.settings.beside)
+        json["settings"]["beside"].push_back(file.string());
     json["settings"]["colors"] = name_of(report.settings.colors);
     json["settings"]["encoding"] = name_of(report.settings.encoding);
     json["seconds"] = {
@@ -318,6 +336,11 @@ std::string json_of(const Info& info)
                          {"vertices", part.vertex_count},
                          {"triangles", part.triangle_count}});
     }
+    Json labels = Json::array();
+    for (const Label& label : info.labels)
+        labels.push_back({{"kind", name_of(label.kind)},
+                          {"name", label.name},
+                          {"triangles", triangle_count(label)}});
     Json uvs = Json::array();
     for (const UvReport& report : info.uvs) {
         uvs.push_back({{"set", report.set},
@@ -360,7 +383,8 @@ std::string json_of(const Info& info)
                        {"mean_occlusion", info.mean_occlusion},
                        {"misfit", json_of(info.misfit)},
                        {"notes", info.notes},
-                       {"parts", parts}};
+                       {"parts", parts},
+                       {"labels", labels}};
     return json.dump(2) + '\n';
 }
 

@@ -7,6 +7,7 @@
 #include "cli/output.h"
 #include "cli/part_options.h"
 #include "cli/progress_bar.h"
+#include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "engines/threads.h"
 #include "files/file_type.h"
@@ -31,6 +32,7 @@ namespace fs = std::filesystem;
 struct BakeOptions {
     std::vector<std::string> inputs;
     std::string output;
+    ReadOptions reading;
     EngineOptions engine;
     MeasureOptions measure;
     std::string up = "y";
@@ -134,6 +136,7 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.colors = colors_of(options.colors);
     settings.encoding = encoding_of(options.colors);
     settings.share = share_of(options);
+    settings.reading = options.reading;
     return settings;
 }
 
@@ -270,19 +273,19 @@ void check_options(const BakeOptions& options)
 
 void add_options(CLI::App* command, const std::shared_ptr<BakeOptions>& options)
 {
-    command->add_option("IN", options->inputs, "Mesh files: .obj .ply .off .stl .gltf .glb")
-        ->required()
-        ->type_name("");
+    command->add_option("IN", options->inputs, kMeshOrCloud)->required()->type_name("");
     command
         ->add_option(
             "-o,--output", options->output,
-            "Mesh file (.ply .obj .off, .gltf/.glb from glTF), a map over the file's texture "
+            "Mesh or cloud file (.ply .obj .off, .gltf/.glb from glTF, .pcd .xyz .pts .txt .asc "
+            "from clouds), a map over the file's texture "
             "coordinates (.png .tif .exr), or a folder (made where it is "
             "missing, for several files and behind a /): there every "
             "result has its input's name, .ply for .stl, and only files that bake made are "
             "replaced")
         ->required()
         ->type_name("OUT|DIR");
+    add_read_options(*command, options->reading);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
     add_up_option(*command, options->up, "What is measured");
@@ -313,10 +316,9 @@ void add_options(CLI::App* command, const std::shared_ptr<BakeOptions>& options)
             ->group("Error");
     for (const char* other : {"--engine", "--quality", "--rays", "--passes", "--strength"})
         error->excludes(command->get_option(other));
-    command->add_flag(
-        "--resume", options->resume,
-        "Skip files whose result is not older than they are and says that it was "
-        "made with these settings (a comment in .ply .obj .off, asset.extras in glTF)");
+    command->add_flag("--resume", options->resume,
+                      "Skip files whose result is not older than they are and says that it was "
+                      "made with these settings (a comment in the file, asset.extras in glTF)");
     add_overwrite_option(*command, options->overwrite);
     command
         ->add_option("--json", options->json,

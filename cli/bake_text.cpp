@@ -81,6 +81,10 @@ void print_report(const BakeReport& report)
               << "  " << report.vertices << " vertices, " << report.triangles << " triangles";
     if (report.dropped_triangles > 0)
         std::cout << " (" << report.dropped_triangles << " without area dropped)";
+    if (report.baked_triangles + report.dropped_triangles < report.triangles ||
+        report.occluding_triangles != report.baked_triangles)
+        std::cout << ", " << report.baked_triangles << " baked, " << report.occluding_triangles
+                  << " occlude";
     if (report.vertices_without_normal > 0)
         std::cout << ", " << report.vertices_without_normal << " vertices without a normal";
     if (const auto& part = report.settings.share) {

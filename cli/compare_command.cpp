@@ -4,7 +4,9 @@
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/output.h"
+#include "cli/part_options.h"
 #include "cli/progress_bar.h"
+#include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "engines/threads.h"
 #include "reference/rays.h"
@@ -27,6 +29,7 @@ constexpr std::uint64_t kMostSample = 10'000'000;
 struct CompareOptions {
     std::vector<std::string> inputs;
     std::optional<std::string> output;
+    ReadOptions reading;
     bool overwrite = false;
     bool frontier = false;
     std::vector<std::string> engines = {"masks", "disks"};
@@ -36,6 +39,7 @@ struct CompareOptions {
     std::string up = "y";
     SurfaceOptions surface;
     TexelOptions texels;
+    PartOptions parts;
     std::uint32_t reference_rays = 4096;
     std::uint64_t sample = kSurfacePoints;
     int rounds = 3;
@@ -53,11 +57,13 @@ CompareSettings common_settings(const CompareOptions& options)
     settings.kernel = kernel_of(options.measure);
     settings.ground = ground_plane_of(options.measure, options.up);
     settings.target = target_settings_of(options.surface);
+    settings.parts = part_choice_of(options.parts);
     settings.texels = shown_texels_of(options.texels);
     settings.reference_rays = options.reference_rays;
     settings.sample = options.sample;
     settings.rounds = options.rounds;
     settings.use_cache = !options.no_cache;
+    settings.reading = options.reading;
     settings.instructions = options.avx2 ? Instructions::avx2 : Instructions::all;
     return settings;
 }
@@ -218,8 +224,9 @@ void check(const CompareOptions& options)
     for (const EngineSettings& candidate : settings.candidates)
         check_kernel(candidate.engine, settings.kernel);
     FilePlan files;
-    for (const std::string& input : options.inputs)
-        files.reads(input);
+    for (const auto* inputs : {&options.inputs, &options.parts.occluders})
+        for (const std::string& input : *inputs)
+            files.reads(input);
     for (const fs::path& file : own_names(options))
         files.writes(file, file.filename().string());
     files.writes_report(options.json, "--json");
@@ -235,9 +242,7 @@ void add_compare_command(CLI::App& app, Work& work)
         "compare",
         "One scene by our engines and by ray tracing, the same job: how long, how wrong");
     command
-        ->add_option("IN", options->inputs,
-                     "Mesh file: .obj .ply .off .stl .gltf .glb; several with "
-                     "--frontier")
+        ->add_option("IN", options->inputs, std::string(kMeshOrCloud) + "; several with --frontier")
         ->required()
         ->type_name("");
     command
@@ -246,6 +251,7 @@ void add_compare_command(CLI::App& app, Work& work)
                      "--frontier or --at texels), and report.html; without it no file is "
                      "written")
         ->type_name("DIR");
+    add_read_options(*command, options->reading);
     add_overwrite_option(*command, options->overwrite);
     command->add_flag(
         "--frontier", options->frontier,
@@ -276,6 +282,7 @@ void add_compare_command(CLI::App& app, Work& work)
     add_up_option(*command, options->up, "What is measured");
     add_surface_options(*command, options->surface);
     add_layout_options(*command, options->texels, kShownMaps);
+    add_part_options(*command, options->parts);
     command
         ->add_option("--reference-rays", options->reference_rays,
                      "Rays per surface point of the reference, an even number")

@@ -150,7 +150,8 @@ public:
             throw InputError(file_name + ": line " + std::to_string(farthest_line_) +
                              ": the face uses vertex " + std::to_string(farthest_ + 1) +
                              ", but there are " + std::to_string(positions.size()) + " vertices");
-        normals.finish();
+        if (polygons.count() > 0)  // a cloud's are those of its points
+            normals.finish();
         uvs.finish();
     }
 
@@ -216,6 +217,8 @@ Scene read_obj(const std::string& file_name, std::string contents)
             reader.normals.values.push_back(read_normal(cursor));
         } else if (statement == "vt") {
             reader.uvs.values.push_back(read_uv(cursor));
+        } else if (statement == "mtllib") {
+            source->libraries.emplace_back(cursor.rest_of_line());
         } else if (statement == "g") {
             names.set_groups(cursor, reader.triangle_count());
         } else if (statement == "o" || statement == "usemtl") {
@@ -227,9 +230,8 @@ Scene read_obj(const std::string& file_name, std::string contents)
     const std::uint64_t lost_normals = reader.normals.lost, lost_uvs = reader.uvs.lost;
     source->vertex_count = reader.positions.size();
     const std::size_t triangles = reader.triangle_count();
-    Scene scene =
-        make_mesh_scene(file_name, std::move(reader.positions), std::move(reader.polygons), source,
-                        {std::move(reader.normals), std::move(reader.uvs)});
+    Scene scene = make_scene_of(file_name, std::move(reader.positions), std::move(reader.polygons),
+                                source, {std::move(reader.normals), std::move(reader.uvs)});
     scene.labels = names.finish(triangles);  // at most as many as 32 bits count, by now
     add_note(scene.notes, lost_normals, "corner",
              "of faces with a normal that the file does not have: taken as without");

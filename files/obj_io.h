@@ -27,8 +27,8 @@ namespace surfelao {
 
 /// file_name is what faults are reported of; contents is the file. Vertices are those of the `v`
 /// lines, in order; normals and texture coordinates (one set) those of the `vn` and `vt` lines, if
-/// a face uses any. Faults name the line, or
-/// the vertex and face, counted from 0.
+/// a face uses any. Without any face it is a cloud of points, with the normals of `vn` if there are
+/// as many as points. Faults name the line, or the vertex and face, counted from 0.
 [[nodiscard]] Scene read_obj(const std::string& file_name, std::string contents);
 
 /// The scene as OBJ with colours (vertex_colors.h), `v x y z r g b` with six decimals; `automatic`

@@ -68,6 +68,7 @@ struct Model {
     UpAxis up = UpAxis::y;
 
     const Geometry& geometry() const { return mesh->geometry; }
+    const Geometry& occluding() const { return mesh->occluding(); }
     /// Values that a picture needs: one per vertex, then the ground's.
     std::size_t answer_count() const
     {

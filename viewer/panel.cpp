@@ -298,6 +298,8 @@ void Panel::widgets(PanelState& state, const Session& session, const PanelFigure
         stage_lines(shown_state);
         histogram(session);
     }
+    if (shown_state.model && ImGui::CollapsingHeader("Parts"))
+        edit_parts(shown_state.model->mesh->scene, state.settings.parts);
     if (ImGui::CollapsingHeader("Show", ImGuiTreeNodeFlags_DefaultOpen)) {
         input.view_changed |= view_widgets(state);
         input.frame_all |= ImGui::Button("frame all");

@@ -1,6 +1,7 @@
 #include "viewer/panel_widgets.h"
 
 #include "image/color_map.h"
+#include "viewer/part_list.h"
 
 #include <imgui.h>
 
@@ -171,6 +172,55 @@ bool edit_texels(std::optional<TexelSettings>& texels, TexelSettings& chosen)
         apply = true;
     }
     return apply;
+}
+
+void edit_parts(const Scene& scene, PartChoice& parts)
+{
+    int clear = static_cast<int>(parts.clear);
+    if (ImGui::Combo("glass", &clear, "solid\0open\0cut by alpha\0"))
+        parts.clear = static_cast<ClearSurfaces>(clear);
+    std::vector<PartTick> ticks = part_ticks(scene, parts);
+    if (ticks.empty()) {
+        ImGui::TextDisabled("no part of it has a name");
+        return;
+    }
+    constexpr float kRowsShown = 9.5f;
+    const float row = ImGui::GetFrameHeightWithSpacing();
+    const float height = row * std::min(kRowsShown, static_cast<float>(ticks.size()) + 1.5f);
+    constexpr ImGuiTableFlags kFlags =
+        ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV;
+    if (!ImGui::BeginTable("parts", 3, kFlags, ImVec2(0.0f, height)))
+        return;
+    ImGui::TableSetupScrollFreeze(0, 1);
+    ImGui::TableSetupColumn("part", ImGuiTableColumnFlags_WidthStretch);
+    ImGui::TableSetupColumn("occludes", ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableSetupColumn("baked", ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableHeadersRow();
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(ticks.size()));
+    const std::vector<PartTick> before = ticks;
+    while (clipper.Step()) {
+        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+            PartTick& tick = ticks[static_cast<std::size_t>(i)];
+            ImGui::PushID(i);
+            ImGui::TableNextRow();
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(tick.name.c_str());
+            if (ImGui::IsItemHovered())
+                ImGui::SetTooltip("%s, %llu triangles", tick.name.c_str(),
+                                  static_cast<unsigned long long>(tick.triangles));
+            ImGui::TableNextColumn();
+            ImGui::Checkbox("##occludes", &tick.occludes);
+            ImGui::TableNextColumn();
+            ImGui::Checkbox("##baked", &tick.is_baked);
+            ImGui::PopID();
+        }
+    }
+    ImGui::EndTable();
+    const bool is_any_baked = std::ranges::any_of(ticks, &PartTick::is_baked);
+    if (ticks == before || !is_any_baked)
+        return;
+    parts = choice_of(ticks, std::move(parts));
 }
 
 bool view_widgets(PanelState& state)

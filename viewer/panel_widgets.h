@@ -25,6 +25,10 @@ bool edit_target(TargetSettings& target);
 /// once there is one.
 bool edit_texels(std::optional<TexelSettings>& texels, TexelSettings& chosen);
 
+/// The parts of the model's scene with two ticks each, and what light goes through. The last part
+/// that is baked stays so.
+void edit_parts(const Scene& scene, PartChoice& parts);
+
 /// How the model is shown. True when anything changed.
 bool view_widgets(PanelState& state);
 

@@ -359,5 +359,36 @@ TEST_F(BakeCommand, AFullDiskIsAFailureThatLeavesTheOldFileAndNothingElse)
     umount(disk.c_str());
 }
 
+TEST_F(BakeCommand, PartsAndFilesTogether)
+{
+    std::ofstream(folder_ / "named.obj") << "o tri\n" << contents_of(folder_ / "a.obj");
+    const std::string named = folder_ / "named.obj", out = folder_ / "out";
+    const struct {
+        std::vector<std::string> arguments;
+        int code;
+        std::string words;
+    } rows[] = {
+        {{named, "-o", folder_ / "x.ply", "--exclude", "Tri"}, 1, "near it: tri"},
+        {{named, "-o", folder_ / "x.ply", "--receivers", "tri"}, 0, "mean occlusion"},
+        {{named, "-o", folder_ / "x.ply", "--together"}, 2, "--together is for several files."},
+        {{named, folder_ / "b.obj", "-o", out, "--together", "--occluders", named}, 0, "b.obj"},
+        {{named, "-o", named, "--occluders", folder_ / "b.obj"}, 2, "named.obj"},
+    };
+    for (const auto& row : rows) {
+        std::vector<std::string> arguments{"bake"};
+        arguments.insert(arguments.end(), row.arguments.begin(), row.arguments.end());
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.code, row.code) << outcome.err;
+        EXPECT_NE((outcome.out + outcome.err).find(row.words), std::string::npos)
+            << outcome.out << outcome.err;
+    }
+    const Json report = Json::parse(
+        run({"bake", named, "-o", folder_ / "x.ply", "--receivers", "t*", "--json", "-"}).out);
+    EXPECT_EQ(report["settings"]["parts"]["receivers"], Json({"t*"}));
+    EXPECT_EQ(report["baked_triangles"], report["triangles"]);
+    const Json info = Json::parse(run({"info", named, "--json", "-"}).out);
+    EXPECT_EQ(info["labels"][0]["name"], "tri");
+}
+
 }  // namespace
 }  // namespace surfelao

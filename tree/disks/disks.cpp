@@ -121,6 +121,19 @@ void add_ground(const Definition& definition, std::span<const Receiver> receiver
     });
 }
 
+/// kUnsolved for the receivers of all but these leaves.
+void mark_others(const ReceiverGroups& groups, const ShareRange& leaves,
+                 std::vector<Occlusion>& occlusion)
+{
+    for (std::size_t leaf = 0; leaf < groups.leaves.size(); ++leaf) {
+        if (leaf >= leaves.begin && leaf < leaves.end)
+            continue;
+        const ReceiverGroup& group = groups.groups[groups.leaves[leaf]];
+        for (std::uint32_t i = group.begin; i < group.end; ++i)
+            occlusion[groups.order[i]] = kUnsolved;
+    }
+}
+
 Occlusion to_occlusion(const DiskSum& sum, const glm::vec3& normal, float strength)
 {
     const DiskSum s = capped(sum);
@@ -239,13 +252,7 @@ std::vector<DiskResult> solve_disk_lists(const Octree& octree,
             add_ground(definition, receivers, sums);
         for (std::size_t i = 0; i < receivers.size(); ++i)
             result.occlusion[i] = to_occlusion(sums[i], receivers[i].normal, options.strength);
-        for (std::size_t leaf = 0; leaf < groups[list].leaves.size(); ++leaf) {
-            if (leaf >= leaves.begin && leaf < leaves.end)
-                continue;
-            const ReceiverGroup& group = groups[list].groups[groups[list].leaves[leaf]];
-            for (std::uint32_t i = group.begin; i < group.end; ++i)
-                result.occlusion[groups[list].order[i]] = kUnsolved;
-        }
+        mark_others(groups[list], leaves, result.occlusion);
     }
     return results;
 }
