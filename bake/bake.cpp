@@ -2,6 +2,7 @@
 
 #include "bake/notes.h"
 #include "bake/peak_memory.h"
+#include "bake/point_job.h"
 #include "bake/texel_job.h"
 #include "engines/threads.h"
 #include "files/file_type.h"
@@ -32,6 +33,21 @@ void enter(const StageProgress& progress, std::string_view stage)
     if (progress && !progress(stage, 0.0))
         throw Cancelled();
 }
+
+}  // namespace
+
+void take(const VertexBake& bake, BakeReport& report)
+{
+    report.settings.engine = bake.engine;
+    report.surfels = bake.surfels;
+    report.residual = bake.residual;
+    report.error = bake.error;
+    report.trials = bake.trials;
+    report.is_met = bake.is_met;
+    static_cast<VertexBakeSeconds&>(report.seconds) = bake.seconds;
+}
+
+namespace {
 
 /// One file of a world, and the engines of the whole; null where it is the only one: then what they
 /// built is gone as soon as they have answered, for what follows needs the memory.
@@ -75,13 +91,7 @@ VertexBake answer(const Job& job, const VertexTarget& target, const StageProgres
                                           settings.check, progress, job.occluders)
                           : bake_vertices(mesh, target, settings.engine, offset, settings.check,
                                           progress, job.occluders);
-    report.settings.engine = bake.engine;
-    report.surfels = bake.surfels;
-    report.residual = bake.residual;
-    report.error = bake.error;
-    report.trials = bake.trials;
-    report.is_met = bake.is_met;
-    static_cast<VertexBakeSeconds&>(report.seconds) = bake.seconds;
+    take(bake, report);
     return bake;
 }
 
@@ -178,6 +188,23 @@ void check_before_work(const BakeSettings& settings, bool is_alone)
                          ": with a high mesh nothing but it occludes, no other files");
 }
 
+/// Of those that something baked or nothing at all uses.
+std::uint64_t vertices_without_normal(const Mesh& mesh)
+{
+    const std::vector<glm::vec3>& normals = mesh.surface.normals;
+    std::vector<bool> counts(normals.size(), true);
+    for (const bool is_baked : {false, true}) {
+        for (std::size_t t = 0; t < mesh.unbaked.size(); ++t) {
+            for (int corner = 0; corner < 3 && mesh.unbaked[t] != is_baked; ++corner)
+                counts[mesh.scene.triangles[t][corner]] = is_baked;
+        }
+    }
+    std::uint64_t count = 0;
+    for (std::size_t v = 0; v < mesh.surface.vertex_count(); ++v)
+        count += counts[v] && normals[v] == glm::vec3(0.0f);
+    return count;
+}
+
 /// As the settings ask, below all of these.
 void set_ground(std::initializer_list<std::reference_wrapper<const Geometry>> geometries,
                 BakeReport& report)
@@ -218,8 +245,7 @@ BakeReport bake_one(const Job& job, const BakeSettings& settings, double read_se
     report.dropped_triangles = geometry.dropped_triangles;
     report.baked_triangles = geometry.triangles.size();
     report.occluding_triangles = mesh.occluding().triangles.size();
-    report.vertices_without_normal = static_cast<std::uint64_t>(
-        std::count(mesh.surface.normals.begin(), mesh.surface.normals.end(), glm::vec3(0.0f)));
+    report.vertices_without_normal = vertices_without_normal(mesh);
     report.corners_from_file = mesh.surface.corners_from_file;
     report.replaced_corners = mesh.surface.replaced_corners;
     report.seconds.total = read_seconds + whole.lap();
@@ -231,17 +257,41 @@ BakeReport bake_one(const Job& job, const BakeSettings& settings, double read_se
 
 BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
 {
-    return std::move(bake_together(std::vector{settings}, progress).front());
+    check_before_work(settings, true);
+    enter(progress, "read");
+    Stopwatch watch;
+    Scene scene = read_scene(settings.input, settings.reading);
+    check_points(settings, scene);
+    if (!scene.triangles.empty()) {
+        const Job job{std::make_shared<const Mesh>(
+            mesh_of(std::move(scene), settings.target.normals, settings.parts, settings.reading))};
+        return bake_one(job, settings, watch.lap(), progress);
+    }
+    if (settings.share)
+        throw InputError(settings.input.string() + ": has points only, --part is for faces");
+    BakeReport report;
+    report.settings = settings;
+    report.threads = thread_count();
+    report.vertices = scene.positions.size();
+    report.seconds.read = watch.lap();
+    bake_at_points(scene, report, progress);
+    report.seconds.total = report.seconds.read + watch.lap();
+    report.peak_rss_bytes = peak_rss_bytes();
+    return report;
 }
 
 std::vector<BakeReport> bake_together(const std::vector<BakeSettings>& settings,
                                       const StageProgress& progress)
 {
-    const bool is_alone = settings.size() == 1;
+    std::vector<BakeReport> reports;
+    if (settings.size() == 1) {
+        reports.push_back(bake(settings.front(), progress));
+        return reports;
+    }
     Stopwatch watch;
     std::vector<fs::path> inputs;
     for (const BakeSettings& of_file : settings) {
-        check_before_work(of_file, is_alone);
+        check_before_work(of_file, false);
         inputs.push_back(of_file.input);
     }
     enter(progress, "read");
@@ -249,13 +299,9 @@ std::vector<BakeReport> bake_together(const std::vector<BakeSettings>& settings,
                                  settings.front().reading);
     double read_seconds = watch.lap();
     const std::shared_ptr<const Geometry> occluding = world.meshes.front().occluders;
-    std::optional<Occluders> occluders;
-    if (!is_alone)
-        occluders.emplace(*occluding);
-    std::vector<BakeReport> reports;
+    Occluders occluders(*occluding);
     for (std::size_t i = 0; i < settings.size(); ++i) {
-        const Job job{std::make_shared<const Mesh>(std::move(world.meshes[i])),
-                      occluders ? &*occluders : nullptr};
+        const Job job{std::make_shared<const Mesh>(std::move(world.meshes[i])), &occluders};
         reports.push_back(bake_one(job, settings[i], read_seconds, progress));
         read_seconds = 0.0;
     }

@@ -4,6 +4,7 @@
 #include "atlas/seams.h"
 #include "bake/map_bake.h"
 #include "bake/part_file.h"
+#include "bake/point_target.h"
 #include "bake/texel_layout.h"
 #include "bake/vertex_bake.h"
 #include "bake/vertex_target.h"
@@ -44,6 +45,8 @@ struct BakeSettings {
     /// check >= 1. Of `engine` only the instructions count.
     std::optional<double> error = {};
     std::optional<TexelSettings> texels = {};  ///< a map instead of values at vertices
+    /// Whether the input is a cloud of points, as the user says; empty: as it is.
+    std::optional<bool> at_points = {};
     VertexColors colors = VertexColors::automatic;
     Encoding encoding = Encoding::automatic;
     ReadOptions reading = {};  ///< of the input
@@ -57,6 +60,7 @@ struct BakeSettings {
 /// Wall-clock seconds of each stage.
 struct BakeSeconds : VertexBakeSeconds {
     double read = 0.0;    ///< the file, and the clean geometry
+    double points = 0.0;  ///< clouds: neighbours, normals and their sides
     double charts = 0.0;  ///< texels: charts of our own
     double raster = 0.0;  ///< texels: which of them, and where each is asked
     double fill = 0.0;    ///< texels: those that nothing covers or nobody sees, and seams
@@ -68,6 +72,7 @@ struct TexelReport {
     MapSize size;
     std::optional<std::uint32_t> uv_set;        ///< of the file; empty: charts of our own
     std::vector<std::uint32_t> tiles;           ///< UDIM
+    std::vector<std::string> materials;         ///< that have a map each
     std::optional<ChartReport> charts;          ///< of our own
     std::uint64_t covered = 0;                  ///< texels
     std::uint64_t overlapping = 0;              ///< texels of several sheets: they hold the mean
@@ -104,14 +109,19 @@ struct BakeReport {
     std::optional<Misfit> misfit;         ///< of the values at vertices, as displayed
     std::optional<StatedError> error;     ///< as displayed
     std::optional<TexelReport> texels;
+    std::optional<PointReport> points;
     std::vector<Trial> trials;       ///< of settings.error
     bool is_met = false;             ///< settings.error is kept
     std::uint64_t solved = 0;        ///< of a part: receivers of its share
     std::vector<std::string> notes;  ///< bake/notes.h, then those of write_scene()
 };
 
+/// What the bake says of itself goes into the report; its values stay. Internal to bake/.
+void take(const VertexBake& bake, BakeReport& report);
+
 /// Reads, solves, writes. The output appears complete or not at all: after any exception an older
-/// file is still there untouched. Throws InputError, std::runtime_error, Cancelled.
+/// file is still there untouched. Throws InputError, std::runtime_error, Cancelled, and
+/// SettingsError for settings that are not for such a file, as a map of points.
 /// An output that cannot be written is refused before any work.
 [[nodiscard]] BakeReport bake(const BakeSettings& settings, const StageProgress& progress = {});
 
@@ -134,8 +144,9 @@ struct BatchEntry {
 /// baked_triangles, occluding_triangles, surfels,
 /// engine, settings, seconds{read, surfels, tree, solve, fit, write, total}, receivers,
 /// corners_from_file, replaced_corners, peak_rss_bytes, residual, mean_occlusion, misfit{rms,
-/// share}, error, asked, texels, notes. What an engine or a target does not have is null. Failed:
-/// input, output, error. Skipped: input, output, skipped. A list of such objects for several files.
+/// share}, error, asked, texels, points, notes. What an engine or a target does not have is null.
+/// Failed: input, output, error. Skipped: input, output, skipped. A list of such objects for
+/// several files.
 [[nodiscard]] std::string json_of(std::span<const BatchEntry> batch);
 
 /// Where bent normals stand beside a map: "ao.bent.png" for "ao.png".

@@ -76,6 +76,11 @@ std::vector<WorstPoint> worst_of(const Mesh& mesh, const SurfaceTruth& truth,
     std::vector<WorstPoint> worst;
     for (const std::uint32_t i : order) {
         const SurfacePoint& point = truth.points[i];
+        if (mesh.scene.triangles.empty()) {
+            worst.push_back({point.triangle, mesh.scene.positions[point.triangle],
+                             shown[i].occlusion, truth.reference[i].occlusion});
+            continue;
+        }
         const std::size_t triangle = mesh.geometry.scene_triangle(point.triangle);
         const glm::uvec3 t = mesh.scene.triangles[triangle];
         const std::vector<glm::dvec3>& p = mesh.scene.positions;
@@ -174,13 +179,33 @@ void set_times(CompareRow& row, const std::vector<JobSeconds>& rounds, std::size
         row.solve_s * 1e6 / static_cast<double>(std::max<std::size_t>(1, receiver_count));
 }
 
+/// The mesh, or the cloud.
+void read_into(Comparison& comparison, const CompareSettings& settings,
+               const StageProgress& progress)
+{
+    Scene scene = read_scene(settings.input, settings.reading);
+    check_target(scene, settings.target, settings.parts);
+    if (!scene.triangles.empty()) {
+        comparison.mesh = std::make_shared<const Mesh>(
+            mesh_of(std::move(scene), settings.target.normals, settings.parts, settings.reading));
+        return;
+    }
+    require(!settings.texels, scene.name + ": has points only, no faces: --at points");
+    comparison.cloud =
+        std::make_shared<const PointTarget>(make_point_target(scene, settings.target, progress));
+    comparison.points_report = report_of(*comparison.cloud);
+    comparison.mesh = std::make_shared<const Mesh>(point_mesh(std::move(scene), comparison.cloud));
+}
+
 /// The layout is told in the comparison.
 std::unique_ptr<const CompareTarget> target_of(const CompareSettings& settings,
                                                Comparison& comparison)
 {
+    if (comparison.cloud)
+        return points_to_compare(*comparison.cloud);
     if (!settings.texels)
         return vertices_to_compare(comparison.mesh, settings.target);
-    TexelLayout found = layout_for(*comparison.mesh, *settings.texels, /*can_hold_new=*/true);
+    TexelLayout found = layout_for(*comparison.mesh, *settings.texels);
     comparison.page = found.layout.size;
     comparison.pages = found.layout.pages.size();
     comparison.uv_set = found.uv_set;
@@ -260,8 +285,7 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     comparison.rounds = settings.rounds;
     static_cast<void>(stage("read"));
     Stopwatch watch;
-    comparison.mesh = std::make_shared<const Mesh>(
-        read_mesh(settings.input, settings.target.normals, settings.parts, settings.reading));
+    read_into(comparison, settings, progress);
     std::unique_ptr<const CompareTarget> target = target_of(settings, comparison);
     comparison.read_s = watch.lap();
     comparison.vertices = comparison.mesh->scene.positions.size();
@@ -270,13 +294,15 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     comparison.receivers = target->receivers();
     const Geometry& geometry = comparison.mesh->geometry;
     Definition definition = definition_of(settings.max_distance, settings.kernel, geometry.frame);
-    definition.ground = ground_of(settings.ground, {geometry, comparison.mesh->occluding()},
-                                  largest_offset_of(settings.target, geometry.frame));
+    definition.ground = comparison.cloud
+                            ? ground_below(*comparison.cloud, settings.ground)
+                            : ground_of(settings.ground, {geometry, comparison.mesh->occluding()},
+                                        largest_offset_of(settings.target, geometry.frame));
     if (definition.ground)
         comparison.ground = text_of(*definition.ground, geometry.frame);
     const TruthSettings truth_settings =
         truth_settings_of(settings, definition, *comparison.mesh, *target);
-    SurfaceTruth truth = trace_truth(*comparison.mesh, truth_settings, stage("reference"));
+    SurfaceTruth truth = target->truth(truth_settings, stage("reference"));
     Floor floor = target->floor(truth, truth_settings, stage("floor"));
     const Question question{std::move(target), std::move(truth), std::move(floor)};
     tell(question, settings.reference_rays, comparison);

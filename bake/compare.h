@@ -57,7 +57,7 @@ struct EmbreeRatio {
 
 /// A surface point at which what is seen is most wrong.
 struct WorstPoint {
-    std::uint64_t triangle = 0;  ///< index in the scene
+    std::uint64_t triangle = 0;  ///< index in the scene; of a cloud that of the point
     glm::dvec3 position{0.0};    ///< the file's units
     float displayed = 0.0f;
     float reference = 0.0f;
@@ -85,13 +85,15 @@ struct CompareRow {
 
 struct Comparison {
     std::filesystem::path input;
-    std::shared_ptr<const Mesh> mesh;
+    std::shared_ptr<const Mesh> mesh;          ///< of a cloud: point_mesh() (point_target.h)
+    std::shared_ptr<const PointTarget> cloud;  ///< null: a mesh
     TargetSettings target;
     std::optional<TexelSettings> texels;  ///< empty: values at the vertices
     MapSize page;                         ///< of a map: the size of each page
     std::uint64_t pages = 0;
     std::optional<std::uint32_t> uv_set;  ///< the file's coordinates; empty: new ones
     std::vector<float> reference;  ///< as CompareRow::errors: occlusion of the floor's values
+    std::optional<PointReport> points_report;  ///< of a cloud
     std::uint64_t vertices = 0;
     std::uint64_t triangles = 0;
     std::uint64_t dropped_triangles = 0;

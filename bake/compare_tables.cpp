@@ -110,9 +110,11 @@ std::string errors_text(const Comparison& comparison)
     const std::uint64_t all = comparison.points + comparison.ill_defined;
     const double share = 100.0 * static_cast<double>(comparison.ill_defined) /
                          static_cast<double>(std::max<std::uint64_t>(1, all));
-    return "surface error (seen) over " + std::to_string(comparison.points) + " points, floor " +
-           fixed(comparison.floor.rmse, 4) + "; " + std::to_string(comparison.ill_defined) +
-           " ill-defined points left out (" + fixed(share, 2) + " %)" +
+    return (comparison.points_report ? "error against rays at the same squares at "
+                                     : "surface error (seen) over ") +
+           std::to_string(comparison.points) + " points, floor " + fixed(comparison.floor.rmse, 4) +
+           "; " + std::to_string(comparison.ill_defined) + " ill-defined points left out (" +
+           fixed(share, 2) + " %)" +
            (comparison.hidden > 0 ? ", " + std::to_string(comparison.hidden) + " hidden ones"
                                   : "") +
            "\nreference: " + std::to_string(comparison.reference_rays) +
@@ -152,8 +154,10 @@ std::string table_of(const Comparison& comparison)
         table.add(std::move(cells));
     }
     std::string text =
-        comparison.input.string() + ": " + std::to_string(comparison.vertices) + " vertices, " +
-        std::to_string(comparison.triangles) + " triangles, " +
+        comparison.input.string() + ": " + std::to_string(comparison.vertices) +
+        (comparison.points_report
+             ? " points, "
+             : " vertices, " + std::to_string(comparison.triangles) + " triangles, ") +
         (is_map ? target_text(comparison) + ", " : "") +
         (comparison.ground.empty() ? "" : "a ground at " + comparison.ground + ", ") +
         std::to_string(comparison.receivers) + " receivers, " + std::to_string(comparison.threads) +

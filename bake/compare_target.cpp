@@ -1,5 +1,6 @@
 #include "bake/compare_target.h"
 
+#include "bake/sample.h"
 #include "surfels/stopwatch.h"
 
 #include <cmath>
@@ -40,6 +41,11 @@ public:
     std::uint64_t receivers() const override { return target_.receivers().size(); }
 
     bool shows(std::uint32_t) const override { return true; }
+
+    SurfaceTruth truth(const TruthSettings& settings, const Progress& progress) const override
+    {
+        return trace_truth(*mesh_, settings, progress);
+    }
 
     Floor floor(const SurfaceTruth& truth, const TruthSettings& settings,
                 const Progress& progress) const override
@@ -105,6 +111,11 @@ public:
     bool shows(std::uint32_t triangle) const override
     {
         return places_of(*mesh_, layout_, {triangle, {0.25f, 0.25f}}).count > 0;
+    }
+
+    SurfaceTruth truth(const TruthSettings& settings, const Progress& progress) const override
+    {
+        return trace_truth(*mesh_, settings, progress);
     }
 
     Floor floor(const SurfaceTruth& truth, const TruthSettings& settings,
@@ -192,7 +203,72 @@ private:
     std::vector<Receiver> receivers_;  ///< at the texels of all pages
 };
 
+class ComparedPoints : public CompareTarget {
+public:
+    explicit ComparedPoints(const PointTarget& target) : target_(target) {}
+
+    std::uint64_t receivers() const override { return target_.cloud.order.size(); }
+
+    bool shows(std::uint32_t) const override { return true; }
+
+    SurfaceTruth truth(const TruthSettings& settings, const Progress& progress) const override
+    {
+        std::vector<std::uint32_t> asked = sample_of(receivers(), settings.points);
+        std::erase_if(asked,
+                      [&](std::uint32_t i) { return target_.cloud.normals[i] == glm::vec3(0.0f); });
+        std::vector<SurfacePoint> points;
+        for (const std::uint32_t i : asked)
+            points.push_back({i, {}});
+        return trace_truth(target_.squares, points,
+                           receivers_at(target_.cloud, asked, target_.offset), settings, progress);
+    }
+
+    Floor floor(const SurfaceTruth& truth, const TruthSettings& settings,
+                const Progress& progress) const override
+    {
+        Floor floor;
+        floor.rays = floor_rays(target_.cloud.order.size(), settings.rays);
+        EngineSettings rays;
+        rays.engine = Engine::rays;
+        rays.definition = settings.definition;
+        rays.rays = floor.rays;
+        floor.values =
+            solve_points(prepare(target_.cloud, target_.squares, rays), target_, rays, progress)
+                .occlusion;
+        floor.displayed = truth.reference;
+        floor.noise = truth.noise;
+        floor.from_cache = truth.from_cache;
+        return floor;
+    }
+
+    JobResult run(const EngineSettings& engine, const SurfaceTruth* truth,
+                  const Progress& progress) const override
+    {
+        const Prepared prepared = prepare(target_.cloud, target_.squares, engine);
+        const Solution solution = solve_points(prepared, target_, engine, progress);
+        JobResult result;
+        result.seconds.build = build_seconds(prepared.seconds());
+        result.seconds.solve = solution.seconds;
+        if (truth == nullptr)
+            return result;
+        for (const SurfacePoint& point : truth->points)
+            result.displayed.push_back(solution.occlusion[point.triangle]);
+        result.answers = result.displayed;
+        for (const Occlusion& value : solution.occlusion)
+            result.occlusion.push_back(value.occlusion);
+        return result;
+    }
+
+private:
+    const PointTarget& target_;
+};
+
 }  // namespace
+
+std::unique_ptr<const CompareTarget> points_to_compare(const PointTarget& target)
+{
+    return std::make_unique<ComparedPoints>(target);
+}
 
 std::unique_ptr<const CompareTarget> vertices_to_compare(std::shared_ptr<const Mesh> mesh,
                                                          const TargetSettings& settings)

@@ -39,6 +39,10 @@ public:
     /// wrong.
     [[nodiscard]] virtual bool shows(std::uint32_t triangle) const = 0;
 
+    /// What is true, and where. settings: their measure leaves out where nothing is shown.
+    [[nodiscard]] virtual SurfaceTruth truth(const TruthSettings& settings,
+                                             const Progress& progress) const = 0;
+
     /// What exact answers would display. settings: those of the truth.
     [[nodiscard]] virtual Floor floor(const SurfaceTruth& truth, const TruthSettings& settings,
                                       const Progress& progress) const = 0;
@@ -51,6 +55,10 @@ public:
 /// mesh: made with settings.normals.
 [[nodiscard]] std::unique_ptr<const CompareTarget> vertices_to_compare(
     std::shared_ptr<const Mesh> mesh, const TargetSettings& settings);
+
+/// target: must outlive it. A point shows its own answer: there is no floor. Points of the truth
+/// have the numbers of the cloud's.
+[[nodiscard]] std::unique_ptr<const CompareTarget> points_to_compare(const PointTarget& target);
 
 /// settings: its offset counts. Bent normals are not part of the job.
 [[nodiscard]] std::unique_ptr<const CompareTarget> map_to_compare(std::shared_ptr<const Mesh> mesh,

@@ -85,11 +85,12 @@ private:
     /// First and number of the texels that are looked up between two coordinates along one side.
     static std::pair<int, int> texels(double low, double high, int side)
     {
-        const double first = std::floor(low * side - 0.5);
-        const double count = std::floor(high * side - 0.5) + 2.0 - first;
+        const double whole = std::floor(low);
+        const double first = std::floor((low - whole) * side - 0.5);
+        const double count = std::floor((high - whole) * side - 0.5) + 2.0 - first;
         if (!(count < side))
             return {0, side};
-        return {static_cast<int>(first - std::floor(first / side) * side), static_cast<int>(count)};
+        return {first < 0.0 ? side - 1 : static_cast<int>(first), static_cast<int>(count)};
     }
 
     /// In ranges that may go on at the other side.

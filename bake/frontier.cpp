@@ -52,6 +52,15 @@ Picture draw_texels(const Comparison& comparison, const std::vector<Rgb>& colors
     return picture;
 }
 
+/// colors: one per point.
+Picture draw_points(const PointTarget& target, const std::vector<Rgb>& colors)
+{
+    std::vector<Rgb> corners;
+    for (const std::uint32_t point : target.cloud.occluders)
+        corners.insert(corners.end(), 4, colors[point]);
+    return draw_vertices(target.squares, corners, kPictureWidth, kPictureHeight);
+}
+
 /// What the floor's values look like, and how far from them each engine's are at `good`.
 std::vector<std::pair<std::string, std::string>> pictures_of(const Comparison& comparison)
 {
@@ -59,9 +68,10 @@ std::vector<std::pair<std::string, std::string>> pictures_of(const Comparison& c
     const auto add = [&](std::string caption, const std::vector<Rgb>& colors) {
         pictures.emplace_back(
             std::move(caption),
-            png_of(comparison.texels ? draw_texels(comparison, colors)
-                                     : draw_vertices(comparison.mesh->geometry, colors,
-                                                     kPictureWidth, kPictureHeight)));
+            png_of(comparison.texels  ? draw_texels(comparison, colors)
+                   : comparison.cloud ? draw_points(*comparison.cloud, colors)
+                                      : draw_vertices(comparison.mesh->geometry, colors,
+                                                      kPictureWidth, kPictureHeight)));
     };
     std::vector<Rgb> colors;
     for (const float occlusion : comparison.reference) {
@@ -131,6 +141,7 @@ FrontierScene frontier_scene(Comparison comparison)
     scene.input = comparison.input;
     scene.pictures = pictures_of(comparison);
     comparison.mesh = nullptr;
+    comparison.cloud = nullptr;
     comparison.reference = {};
     for (CompareRow& row : comparison.rows)
         row.errors = {};

@@ -17,7 +17,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
+#include <numbers>
 #include <span>
 
 namespace surfelao {
@@ -159,6 +161,56 @@ void bake_for_notes(const std::shared_ptr<const Mesh>& mesh, const VertexTarget&
     info.notes = notes_of({*mesh, info.topology, definition, values, info.misfit});
 }
 
+/// A cloud, with what a bake with default settings would have to say.
+void look_at_points(const Scene& scene, const Progress& progress, Info& info)
+{
+    const PointTarget target = make_point_target(scene, {});
+    const Solution solution =
+        solve_points(prepare(target.cloud, target.squares), target, {}, progress);
+    info.parts = scene.parts;
+    info.vertices = scene.positions.size();
+    info.positions = info.vertices - target.cloud.counts.duplicates;
+    info.normals_in_file = !scene.normals.empty();
+    info.points = report_of(target);
+    info.receivers = info.vertices;
+    info.vertices_without_normal = target.cloud.counts.without_normal;
+    Box box;
+    for (const glm::dvec3& p : scene.positions)
+        box.include(p);
+    info.low = box.low;
+    info.high = box.high;
+    info.diagonal = target.cloud.frame.diagonal;
+    double area = 0.0, sum = 0.0;
+    for (const std::uint32_t i : target.cloud.occluders)
+        area += std::numbers::pi * double{target.cloud.radii[i]} * double{target.cloud.radii[i]};
+    info.area = area * info.diagonal * info.diagonal;
+    for (const Occlusion& answer : solution.occlusion)
+        sum += answer.occlusion;
+    info.mean_occlusion = sum / static_cast<double>(std::max<std::uint64_t>(
+                                    1, info.vertices - info.vertices_without_normal));
+    info.notes = scene.notes;
+    std::ranges::copy(point_notes(target), std::back_inserter(info.notes));
+}
+
+std::string points_text(const Info& info)
+{
+    const PointReport& points = *info.points;
+    std::string text = info.input.string() + "\n  " + count_text(info.vertices, "point") +
+                       ", no faces\n  box " + point_text(info.low) + " to " +
+                       point_text(info.high) + ", diagonal " + exact(info.diagonal) + "\n  about " +
+                       exact(static_cast<float>(points.spacing)) + " apart, noise " +
+                       fixed(points.noise, 2) + " of a point's radius, area about " +
+                       exact(static_cast<float>(info.area)) + "\n  ";
+    text += info.normals_in_file
+                ? "normals in the file at " + std::to_string(points.counts.from_file) + " points"
+                : "no normals in the file: fitted, their sides by " + name_of(points.orientation);
+    text += ", mean occlusion " + fixed(info.mean_occlusion, 4) + '\n';
+    text += info.notes.empty() ? "nothing odd\n" : "odd, but legal:\n";
+    for (const std::string& note : info.notes)
+        text += "  " + note + '\n';
+    return text;
+}
+
 std::string normals_text(const Info& info)
 {
     if (!info.normals_in_file)
@@ -217,10 +269,15 @@ std::string labels_text(const Info& info)
 Info inspect(const std::filesystem::path& input, const Progress& progress,
              const ReadOptions& reading)
 {
-    const auto mesh = std::make_shared<const Mesh>(read_mesh(input, {}, {}, reading));
-    const VertexTarget target(mesh, {});
     Info info;
     info.input = input;
+    Scene scene = read_scene(input, reading);
+    if (scene.triangles.empty()) {
+        look_at_points(scene, progress, info);
+        return info;
+    }
+    const auto mesh = std::make_shared<const Mesh>(mesh_of(std::move(scene), {}, {}, reading));
+    const VertexTarget target(mesh, {});
     look_at(*mesh, info);
     // the bake is the first half of the work, the rays are the second
     const auto half = [&](double begin) {
@@ -243,6 +300,8 @@ Info inspect(const std::filesystem::path& input, const Progress& progress,
 
 std::string text_of(const Info& info)
 {
+    if (info.points)
+        return points_text(info);
     const Topology& topology = info.topology;
     std::string text =
         info.input.string() + "\n  " + count_text(info.vertices, "vertex|vertices") + " at " +

@@ -1,6 +1,7 @@
 /// info.h: what a mesh file holds, and what is odd about it.
 #pragma once
 
+#include "bake/point_target.h"
 #include "bake/vertex_target.h"
 #include "files/scene_io.h"
 #include "surfels/half_edges.h"
@@ -48,6 +49,7 @@ struct Info {
     std::uint64_t corners_from_file = 0;  ///< corners of triangles that a bake shades so
     std::uint64_t replaced_corners = 0;   ///< the file's were not usable there
     std::vector<UvReport> uvs;            ///< sets that some triangle has
+    std::optional<PointReport> points;    ///< of a cloud: what else is of triangles is then 0
     std::uint64_t receivers = 0;          ///< places where a bake asks for occlusion
     std::uint64_t ill_defined = 0;        ///< of `examined`: reference/well_defined.h
     std::uint64_t examined = 0;           ///< receivers that were looked at

@@ -55,6 +55,10 @@ void add(Json& json, const TargetSettings& target)
     json["offset"] = Json();
     if (target.offset)
         json["offset"] = exact(target.offset->value) + (target.offset->percent ? "%" : "");
+    if (const auto& eye = target.viewpoint)
+        json["viewpoint"] = {eye->x, eye->y, eye->z};
+    if (const auto& spacing = target.occluder_spacing)
+        json["occluder_spacing"] = exact(spacing->value) + (spacing->percent ? "%" : "");
 }
 
 Json json_of(const std::optional<Misfit>& misfit)
@@ -107,6 +111,7 @@ Json json_of(const BakeReport& report, const TexelReport& texels)
             {"padding", report.settings.texels->padding},
             {"uv_set", texels.uv_set ? Json(*texels.uv_set) : Json()},
             {"tiles", texels.tiles},
+            {"materials", texels.materials},
             {"charts", texels.charts ? json_of(*texels.charts) : Json()},
             {"misses", texels.misses},
             {"high_triangles", texels.high_triangles},
@@ -123,6 +128,24 @@ Json json_of(const BakeReport& report, const TexelReport& texels)
             {"flat_triangles", texels.flat_triangles},
             {"outside_triangles", texels.outside_triangles},
             {"written", written}};
+}
+
+Json json_of(const PointReport& points)
+{
+    const PointCounts& counts = points.counts;
+    return {{"occluders", points.occluders},
+            {"spacing", points.spacing},
+            {"thinned_to", points.thinned_to ? Json(*points.thinned_to) : Json()},
+            {"noise", points.noise},
+            {"flattened", points.is_flattened},
+            {"orientation", name_of(points.orientation)},
+            {"normals_from_file", counts.from_file},
+            {"without_normal", counts.without_normal},
+            {"duplicates", counts.duplicates},
+            {"thinned", counts.thinned},
+            {"outliers", counts.outliers},
+            {"uneven", counts.uneven},
+            {"weak", counts.weak}};
 }
 
 Json json_of(const PartChoice& parts)
@@ -168,10 +191,10 @@ Json json_of(const BatchEntry& entry)
     json["settings"]["colors"] = name_of(report.settings.colors);
     json["settings"]["encoding"] = name_of(report.settings.encoding);
     json["seconds"] = {
-        {"read", seconds.read},       {"charts", seconds.charts}, {"raster", seconds.raster},
-        {"surfels", seconds.surfels}, {"tree", seconds.tree},     {"solve", seconds.solve},
-        {"fit", seconds.fit},         {"fill", seconds.fill},     {"check", seconds.check},
-        {"write", seconds.write},     {"total", seconds.total}};
+        {"read", seconds.read},     {"points", seconds.points},   {"charts", seconds.charts},
+        {"raster", seconds.raster}, {"surfels", seconds.surfels}, {"tree", seconds.tree},
+        {"solve", seconds.solve},   {"fit", seconds.fit},         {"fill", seconds.fill},
+        {"check", seconds.check},   {"write", seconds.write},     {"total", seconds.total}};
     json["receivers"] = report.receivers;
     json["corners_from_file"] = report.corners_from_file;
     json["replaced_corners"] = report.replaced_corners;
@@ -181,6 +204,7 @@ Json json_of(const BatchEntry& entry)
     json["misfit"] = json_of(report.misfit);
     json["error"] = json_of(report.error);
     json["texels"] = report.texels ? json_of(report, *report.texels) : Json();
+    json["points"] = report.points ? json_of(*report.points) : Json();
     if (const auto& part = report.settings.share)
         json["part"] = {{"share", part->share.index + 1},
                         {"shares", part->share.count},
@@ -252,6 +276,7 @@ Json json_object_of(const Comparison& comparison)
     json["triangles"] = comparison.triangles;
     json["dropped_triangles"] = comparison.dropped_triangles;
     json["receivers"] = comparison.receivers;
+    json["cloud"] = comparison.points_report ? json_of(*comparison.points_report) : Json();
     json["threads"] = comparison.threads;
     json["rounds"] = comparison.rounds;
     json["read_s"] = comparison.read_s;
@@ -363,6 +388,7 @@ std::string json_of(const Info& info)
                        {"corners_from_file", info.corners_from_file},
                        {"replaced_corners", info.replaced_corners},
                        {"uvs", uvs},
+                       {"points", info.points ? json_of(*info.points) : Json()},
                        {"receivers", info.receivers},
                        {"ill_defined", info.ill_defined},
                        {"examined", info.examined},

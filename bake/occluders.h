@@ -3,6 +3,7 @@
 
 #include "engines/engine.h"
 #include "surfels/geometry.h"
+#include "surfels/point_cloud.h"
 
 #include <map>
 
@@ -13,6 +14,10 @@ class Occluders {
 public:
     /// geometry must outlive it.
     explicit Occluders(const Geometry& geometry) : geometry_(geometry) {}
+    /// Of points; both must outlive it. squares: squares_of(cloud).
+    Occluders(const PointCloud& cloud, const Geometry& squares) : geometry_(squares), cloud_(&cloud)
+    {
+    }
 
     [[nodiscard]] const Geometry& geometry() const { return geometry_; }
     [[nodiscard]] bool has(Engine engine) const { return prepared_.contains(engine); }
@@ -23,6 +28,7 @@ public:
 
 private:
     const Geometry& geometry_;
+    const PointCloud* cloud_ = nullptr;
     std::map<Engine, Prepared> prepared_;
 };
 

@@ -161,7 +161,18 @@ std::vector<std::string> hints_by_name(const Mesh& mesh)
                         list_of(hulls) + "): " + options_for(hull_patterns) +
                         (hulls.size() == 1 ? " leaves it out" : " leaves them out"));
     std::set<std::string> coarse, coarse_patterns;
-    for (const auto& [base, of_base] : levels) {
+    std::map<std::string_view, const Label*> by_name;
+    for (const Label& label : mesh.scene.labels)
+        by_name.try_emplace(label.name, &label);
+    for (auto& [base, of_base] : levels) {
+        // rock and rock_LOD1: the finest has no number
+        const std::size_t stem =
+            base.find_last_not_of("_-. ", lower_case_of(base).rfind("lod") - 1);
+        if (stem != std::string::npos && lower_case_of(base).rfind("lod") > 0) {
+            const auto finest = by_name.find(std::string_view(base).substr(0, stem + 1));
+            if (finest != by_name.end() && is_baked(mesh, *finest->second))
+                of_base.try_emplace("", finest->second);
+        }
         const Box finest = box_of_label(mesh.scene, *of_base.begin()->second);
         for (const auto& [digits, label] : of_base) {
             if (label == of_base.begin()->second ||

@@ -113,9 +113,15 @@ ErrorCheck::ErrorCheck(const Mesh& mesh, std::span<const double> density, const 
 ErrorCheck::ErrorCheck(const Geometry& geometry, std::span<const double> density,
                        const ReceiversOf& receivers_of, const Geometry& occluders,
                        std::uint32_t count)
+    : ErrorCheck(triangle_areas(geometry), density, receivers_of, occluders, count)
+{
+}
+
+ErrorCheck::ErrorCheck(std::vector<double> measure, std::span<const double> density,
+                       const ReceiversOf& receivers_of, const Geometry& occluders,
+                       std::uint32_t count)
     : occluders_(occluders)
 {
-    std::vector<double> measure = triangle_areas(geometry);
     double whole = 0.0;
     for (std::size_t t = 0; t < measure.size(); ++t) {
         whole += density[t] > 0.0 ? measure[t] : 0.0;

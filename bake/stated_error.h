@@ -92,6 +92,11 @@ public:
     ErrorCheck(const Geometry& geometry, std::span<const double> density,
                const ReceiversOf& receivers_of, const Geometry& occluders, std::uint32_t count);
 
+    /// The same of places that are no triangles, as points of a cloud: SurfacePoint::triangle is
+    /// their number. measure: what each counts, one per place.
+    ErrorCheck(std::vector<double> measure, std::span<const double> density,
+               const ReceiversOf& receivers_of, const Geometry& occluders, std::uint32_t count);
+
     /// For values that are fitted: asks at samples of the target too, for the floor. target must
     /// outlive this; before trace().
     void add_floor(const VertexTarget& target, std::span<const double> density);

@@ -107,13 +107,19 @@ SurfaceTruth trace_truth(const Mesh& mesh, const TruthSettings& settings, const 
                                  : surface_points(settings.measure, settings.points);
     const std::vector<Receiver> receivers =
         receivers_at(mesh.geometry, mesh.surface, points, settings.offset);
-    const Reference reference =
-        trace_reference(mesh.occluding(), receivers,
-                        {settings.definition, settings.rays, settings.use_cache}, progress);
+    return trace_truth(mesh.occluding(), points, receivers, settings, progress);
+}
+
+SurfaceTruth trace_truth(const Geometry& geometry, std::span<const SurfacePoint> points,
+                         std::span<const Receiver> receivers, const TruthSettings& settings,
+                         const Progress& progress)
+{
+    const Reference reference = trace_reference(
+        geometry, receivers, {settings.definition, settings.rays, settings.use_cache}, progress);
     const std::vector<std::uint8_t> hidden =
-        settings.leave_out_hidden ? hidden_receivers(mesh.occluding(), receivers,
-                                                     reference.occlusion, settings.definition)
-                                  : std::vector<std::uint8_t>(receivers.size(), 0);
+        settings.leave_out_hidden
+            ? hidden_receivers(geometry, receivers, reference.occlusion, settings.definition)
+            : std::vector<std::uint8_t>(receivers.size(), 0);
     SurfaceTruth truth;
     truth.from_cache = reference.from_cache;
     double squares = 0.0;

@@ -81,6 +81,14 @@ struct SurfaceTruth {
 [[nodiscard]] SurfaceTruth trace_truth(const Mesh& mesh, const TruthSettings& settings,
                                        const Progress& progress = {});
 
+/// The same at points that are given, whatever numbers they have, with a receiver for each, which
+/// the geometry occludes.
+[[nodiscard]] SurfaceTruth trace_truth(const Geometry& geometry,
+                                       std::span<const SurfacePoint> points,
+                                       std::span<const Receiver> receivers,
+                                       const TruthSettings& settings,
+                                       const Progress& progress = {});
+
 /// What is seen at the points: occlusion interpolated, bent normals interpolated and normalised
 /// (zero where they cancel). values: one per vertex.
 [[nodiscard]] std::vector<Occlusion> displayed_at(const Geometry& geometry,

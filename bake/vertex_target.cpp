@@ -41,6 +41,8 @@ std::string name_of(NormalSource source)
             return "smooth";
         case NormalSource::flat:
             return "flat";
+        case NormalSource::up:
+            return "up";
     }
     throw SettingsError("normals must be auto, file, smooth or flat");
 }
@@ -58,6 +60,15 @@ std::string text_of(const TargetSettings& settings)
     if (settings.offset) {
         append_shortest(text += " offset=", settings.offset->value);
         text += settings.offset->percent ? "%" : "";
+    }
+    if (settings.viewpoint) {
+        append_shortest(text += " viewpoint=", settings.viewpoint->x);
+        append_shortest(text += ":", settings.viewpoint->y);
+        append_shortest(text += ":", settings.viewpoint->z);
+    }
+    if (settings.occluder_spacing) {
+        append_shortest(text += " occluder-spacing=", settings.occluder_spacing->value);
+        text += settings.occluder_spacing->percent ? "%" : "";
     }
     return text;
 }

@@ -36,9 +36,11 @@ struct Length {
 };
 
 struct TargetSettings {
-    NormalSettings normals;
+    NormalSettings normals = {};
     VertexValues values = VertexValues::fit;
-    std::optional<Length> offset;  ///< > 0; empty: local (surfels/surface.h)
+    std::optional<Length> offset = {};         ///< > 0; empty: local (surfels/surface.h)
+    std::optional<glm::dvec3> viewpoint = {};  ///< of clouds (surfels/point_cloud.h), as the next
+    std::optional<Length> occluder_spacing = {};
     bool operator==(const TargetSettings&) const = default;
 };
 
@@ -48,8 +50,8 @@ struct TargetSettings {
 /// The largest that a receiver then has.
 [[nodiscard]] float largest_offset_of(const TargetSettings& settings, const Frame& frame);
 
-/// "normals=auto crease=40 values=fit", and " offset=0.1%" where there is one: for marks and
-/// reports.
+/// "normals=auto crease=40 values=fit", and " offset=0.1%" and so on where there is one: for marks
+/// and reports.
 [[nodiscard]] std::string text_of(const TargetSettings& settings);
 [[nodiscard]] std::string name_of(NormalSource source);
 [[nodiscard]] std::string name_of(VertexValues values);

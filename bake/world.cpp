@@ -276,7 +276,8 @@ BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
             is_joined = is_joined || (own.is_baked(t) && !own.occludes(t));
         }
         if (!is_any_baked)
-            throw InputError(inputs[i].name + ": nothing of it is left to be baked");
+            throw InputError(inputs[i].name + ": nothing of it is left to be baked" +
+                             (inputs.size() > 1 ? ", --occluders is for what only occludes" : ""));
     }
     const Frame frame = common_frame(inputs, left_out);
 
@@ -312,16 +313,34 @@ BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
     return world;
 }
 
+namespace {
+
+std::vector<Scene> read_all(std::span<const std::filesystem::path> paths,
+                            const ReadOptions& reading)
+{
+    std::vector<Scene> scenes;
+    for (const std::filesystem::path& path : paths)
+        scenes.push_back(read_scene(path, reading));
+    return scenes;
+}
+
+}  // namespace
+
 BakeWorld read_world(std::span<const std::filesystem::path> inputs, const NormalSettings& normals,
                      const PartChoice& choice, const ReadOptions& reading)
 {
-    const auto read_all = [&](std::span<const std::filesystem::path> paths) {
-        std::vector<Scene> scenes;
-        for (const std::filesystem::path& path : paths)
-            scenes.push_back(read_scene(path, reading));
-        return scenes;
-    };
-    return make_world(read_all(inputs), read_all(choice.occluders), normals, choice);
+    return make_world(read_all(inputs, reading), read_all(choice.occluders, reading), normals,
+                      choice);
+}
+
+Mesh mesh_of(Scene scene, const NormalSettings& normals, const PartChoice& choice,
+             const ReadOptions& reading)
+{
+    std::vector<Scene> input;
+    input.push_back(std::move(scene));
+    return std::move(
+        make_world(std::move(input), read_all(choice.occluders, reading), normals, choice)
+            .meshes.front());
 }
 
 Mesh read_mesh(const std::filesystem::path& input, const NormalSettings& normals,

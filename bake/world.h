@@ -64,6 +64,10 @@ struct BakeWorld {
                                    const NormalSettings& normals, const PartChoice& choice,
                                    const ReadOptions& reading = {});
 
+/// Of a single input that was read; PartChoice::occluders are read too.
+[[nodiscard]] Mesh mesh_of(Scene scene, const NormalSettings& normals, const PartChoice& choice,
+                           const ReadOptions& reading = {});
+
 /// Of a single input.
 [[nodiscard]] Mesh read_mesh(const std::filesystem::path& input, const NormalSettings& normals,
                              const PartChoice& choice, const ReadOptions& reading = {});

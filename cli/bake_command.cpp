@@ -133,6 +133,8 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.check = options.check;
     settings.error = options.error;
     settings.texels = texel_settings_of(options.texels, job.output);
+    if (options.texels.at && *options.texels.at != "texels")
+        settings.at_points = options.texels.at == "points";
     settings.colors = colors_of(options.colors);
     settings.encoding = encoding_of(options.colors);
     settings.share = share_of(options);
@@ -157,6 +159,12 @@ bool run_jobs(const std::vector<BakeSettings>& settings, bool ask_before_replaci
         return true;
     } catch (const Cancelled&) {
         throw;
+    } catch (const SettingsError& error) {
+        if (label.empty())
+            throw UsageError(error.what());
+        std::cerr << "surfelao: " << error.what() << '\n';
+        for (BatchEntry& entry : entries)
+            entry.error = error.what();
     } catch (const std::exception& error) {
         std::cerr << "surfelao: " << error.what() << '\n';
         for (BatchEntry& entry : entries)
@@ -375,9 +383,9 @@ void add_bake_command(CLI::App& app, Work& work)
 {
     const auto options = std::make_shared<BakeOptions>();
     CLI::App* command = app.add_subcommand("bake",
-                                           "Occlusion and bent normals at every vertex, or as a "
-                                           "map: a mesh file in, the same mesh or a "
-                                           "picture out");
+                                           "Occlusion and bent normals at every vertex or point, "
+                                           "or as a map: a mesh or a cloud of points in, the same "
+                                           "or a picture out");
     add_options(command, options);
     command->callback([options, command, &work] {
         options->arguments = arguments_of(*command);

@@ -27,6 +27,9 @@ std::string question_of(const BakeReport& report)
             (report.texels->uv_set ? "texture coordinates " + std::to_string(*report.texels->uv_set)
                                    : charts_text(*report.texels->charts)) +
             ")";
+    else if (report.points)
+        text = name_of(settings.engine.engine) + ", " + setting_of(settings.engine) + ", at " +
+               count_text(report.receivers, "point");
     else if (settings.target.values == VertexValues::fit)
         text += " fitted to the vertices";
     if (!report.ground.empty())
@@ -47,6 +50,26 @@ std::string statement_of(const StatedError& error)
     text += "; " + std::to_string(error.points) + " points";
     if (error.ill_defined > 0)
         text += ", " + std::to_string(error.ill_defined) + " ill-defined left out";
+    return text;
+}
+
+/// "49980 occlude, about 0.42 apart, normals fitted, turned to where it is more open"
+std::string points_of(const PointReport& points)
+{
+    const PointCounts& counts = points.counts;
+    std::string text = std::to_string(points.occluders) + " occlude, about " +
+                       exact(static_cast<float>(points.spacing)) + " apart, normals " +
+                       (counts.from_file > 0 ? "of the file" : "fitted");
+    switch (points.orientation) {
+        case Orientation::file:
+            return text;
+        case Orientation::viewpoint:
+            return text + ", turned to the viewpoint";
+        case Orientation::openness:
+            return text + ", turned to where it is more open";
+        case Orientation::up:
+            return text + ", asked towards the sky";
+    }
     return text;
 }
 
@@ -78,14 +101,18 @@ void print_report(const BakeReport& report)
     const BakeSeconds& seconds = report.seconds;
     const auto time = [](double s) { return fixed(s, 3) + " s"; };
     std::cout << report.settings.input.string() << " -> " << report.settings.output.string() << '\n'
-              << "  " << report.vertices << " vertices, " << report.triangles << " triangles";
+              << "  ";
+    if (report.points)
+        std::cout << report.vertices << " points, " << points_of(*report.points);
+    else
+        std::cout << report.vertices << " vertices, " << report.triangles << " triangles";
     if (report.dropped_triangles > 0)
         std::cout << " (" << report.dropped_triangles << " without area dropped)";
     if (report.baked_triangles + report.dropped_triangles < report.triangles ||
         report.occluding_triangles != report.baked_triangles)
         std::cout << ", " << report.baked_triangles << " baked, " << report.occluding_triangles
                   << " occlude";
-    if (report.vertices_without_normal > 0)
+    if (report.vertices_without_normal > 0 && !report.points)
         std::cout << ", " << report.vertices_without_normal << " vertices without a normal";
     if (const auto& part = report.settings.share) {
         std::cout << "\n  " << question_of(report) << "\n  share " << part->share.index + 1
@@ -102,8 +129,11 @@ void print_report(const BakeReport& report)
     if (report.settings.error && report.error)
         std::cout << "\n  " << search_of(report);
     if (report.error)
-        std::cout << "\n  " << statement_of(*report.error);
+        std::cout << "\n  " << statement_of(*report.error)
+                  << (report.points ? ", against rays at the same squares" : "");
     std::cout << "\n  read " << time(seconds.read);
+    if (report.points)
+        std::cout << ", points " << time(seconds.points);
     if (report.texels && report.texels->charts)
         std::cout << ", charts " << time(seconds.charts);
     if (report.texels)

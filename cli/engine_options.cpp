@@ -51,6 +51,26 @@ Length length_of(std::string_view text, const std::string& option)
     return length;
 }
 
+namespace {
+
+/// "1.5:0:-2"
+glm::dvec3 place_of(std::string_view text, const std::string& option)
+{
+    glm::dvec3 place;
+    std::string_view rest = text;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t end = axis < 2 ? std::min(rest.find(':'), rest.size()) : rest.size();
+        const std::optional<double> value = number_of(rest.substr(0, end));
+        if (!value || (axis < 2 && end == rest.size()))
+            throw UsageError(option + ": \"" + std::string(text) + "\" is not X:Y:Z.");
+        place[axis] = *value;
+        rest.remove_prefix(std::min(rest.size(), end + 1));
+    }
+    return place;
+}
+
+}  // namespace
+
 void add_engine_options(CLI::App& command, EngineOptions& options)
 {
     command.add_option("--engine", options.engine, "Who computes")
@@ -140,9 +160,11 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options)
     command
         .add_option("--normals", options.normals,
                     "Corner normals: the file's where they are usable (auto) or wherever it has "
-                    "any (file), smooth within --crease, or flat")
-        ->check(CLI::IsMember({"auto", "file", "smooth", "flat"}))
-        ->type_name("auto|file|smooth|flat")
+                    "any (file), smooth within --crease, or flat. Of points: the file's or else "
+                    "fitted to the neighbours (auto), the file's (file), fitted (smooth), or up "
+                    "(z): 1 - occlusion is then the sky view factor")
+        ->check(CLI::IsMember({"auto", "file", "smooth", "flat", "up"}))
+        ->type_name("auto|file|smooth|flat|up")
         ->default_str("auto")
         ->group("What is measured");
     command
@@ -164,7 +186,19 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options)
         .add_option("--offset", options.offset,
                     "How far off the surface occlusion is asked: in the file's units, or with % of "
                     "the bounding box's diagonal (default: a hundredth of each triangle, at most "
-                    "0.01%)")
+                    "0.01%; of points, the radius of their share of the surface)")
+        ->type_name("D|P%")
+        ->group("What is measured");
+    command
+        .add_option("--viewpoint", options.viewpoint,
+                    "Of points: where the scanner stood, in the file's units; normals are turned "
+                    "to it (default: the file's normals or viewpoint, else where it is more open)")
+        ->type_name("X:Y:Z")
+        ->group("What is measured");
+    command
+        .add_option("--occluder-spacing", options.occluder_spacing,
+                    "Of points: one in each cube of this size occludes, in the file's units, or "
+                    "with % of the bounding box's diagonal (default: all, up to 20 million)")
         ->type_name("D|P%")
         ->group("What is measured");
 }
@@ -263,8 +297,8 @@ EngineSettings settings_of(const EngineOptions& options)
 TargetSettings target_settings_of(const SurfaceOptions& options)
 {
     TargetSettings settings;
-    for (const NormalSource source :
-         {NormalSource::automatic, NormalSource::file, NormalSource::smooth, NormalSource::flat}) {
+    for (const NormalSource source : {NormalSource::automatic, NormalSource::file,
+                                      NormalSource::smooth, NormalSource::flat, NormalSource::up}) {
         if (options.normals == name_of(source))
             settings.normals.source = source;
     }
@@ -275,6 +309,10 @@ TargetSettings target_settings_of(const SurfaceOptions& options)
         settings.values = VertexValues::point;
     if (options.offset)
         settings.offset = length_of(*options.offset, "--offset");
+    if (options.viewpoint)
+        settings.viewpoint = place_of(*options.viewpoint, "--viewpoint");
+    if (options.occluder_spacing)
+        settings.occluder_spacing = length_of(*options.occluder_spacing, "--occluder-spacing");
     return settings;
 }
 

@@ -42,6 +42,8 @@ struct SurfaceOptions {
     std::optional<float> crease;
     std::optional<std::string> values;
     std::optional<std::string> offset;
+    std::optional<std::string> viewpoint;
+    std::optional<std::string> occluder_spacing;
 };
 
 /// What a result's colours show.

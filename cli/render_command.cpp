@@ -18,6 +18,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -96,7 +97,7 @@ void solve_for(const Model& model, const EngineSettings& engine, const ViewOptio
     Stopwatch watch;
     shown.occlusion.resize(model.answer_count());
     if (needs_answer(view.colors))
-        shown.occlusion = solve_model(prepare(model.occluding(), engine), model, engine,
+        shown.occlusion = solve_model(prepare(model, engine), model, engine,
                                       {.ground = shows_ground(view)}, stage("solve"))
                               .values;
     shown.solve_s = watch.lap();
@@ -132,6 +133,34 @@ void solve_map_for(const Model& model, const TexelSettings& texels, const Engine
     shown.reference_s = watch.lap();
 }
 
+/// What was drawn, and how long it took: read_s, draw_s, write_s.
+void tell(const RenderCommandOptions& options, const Model& model, const EngineSettings& engine,
+          const Shown& shown, const std::array<double, 3>& seconds)
+{
+    const auto time = [](double s) { return fixed(s, 3) + " s"; };
+    std::cout << options.input << " -> " << options.output << ", " << options.width << " x "
+              << options.height << "\n  " << model.geometry().positions.size()
+              << (model.cloud ? " points, "
+                              : " vertices, " + std::to_string(model.geometry().triangles.size()) +
+                                    " triangles, ")
+              << name_of(engine.engine) << ", " << setting_of(engine);
+    if (engine.definition.ground)
+        std::cout << ", over a ground at "
+                  << text_of(*engine.definition.ground, model.geometry().frame);
+    std::cout << '\n';
+    if (shown.layout)
+        std::cout << "  " << text_of(*shown.layout) << '\n';
+    std::cout << "  read " << time(seconds[0]) << ", solve " << time(shown.solve_s)
+              << ", reference "
+              << (shown.reference_from_cache ? "from the cache" : time(shown.reference_s))
+              << ", draw " << time(seconds[1]) << ", write " << time(seconds[2]) << '\n';
+    if (shown.paint)
+        for (const std::string& note : shown.paint->notes)
+            std::cout << "  note: " << note << '\n';
+    const std::filesystem::path written[] = {options.output};
+    print_written(written, false);
+}
+
 int run(const RenderCommandOptions& options)
 {
     check_image_output(options.output);
@@ -156,16 +185,19 @@ int run(const RenderCommandOptions& options)
 
     Stopwatch watch;
     const TargetSettings target = target_settings_of(options.surface);
-    Mesh mesh =
-        read_mesh(options.input, target.normals, part_choice_of(options.parts), options.reading);
-    EngineSettings engine = settings_of(options.engine);
-    engine.definition = definition_of(distance_limit_of(options.measure),
-                                      kernel_of(options.measure), mesh.geometry.frame);
     const UpAxis up = up_axis_of(options.show);
-    const Model model = make_model(std::move(mesh), up, target, kLargestSplat,
-                                   ground_plane_of(options.measure, options.show.up));
-    engine.definition.ground = model.occluding_ground;
+    const Model model = model_of(read_scene(options.input, options.reading), up, target,
+                                 {.parts = part_choice_of(options.parts),
+                                  .ground = ground_plane_of(options.measure, options.show.up),
+                                  .reading = options.reading});
     const Frame& frame = model.geometry().frame;
+    EngineSettings engine = settings_of(options.engine);
+    engine.definition =
+        definition_of(distance_limit_of(options.measure), kernel_of(options.measure), frame);
+    engine.definition.ground = model.occluding_ground;
+    const auto texels = shown_texels_of(options.texels);
+    if (texels && model.cloud)
+        throw UsageError(options.input + ": has points only, no faces: --at points");
     const Camera camera = parse_camera(
         options.camera,
         {.points = model.seen,
@@ -174,12 +206,12 @@ int run(const RenderCommandOptions& options)
          .up = up,
          .aspect = static_cast<float>(options.width) / static_cast<float>(options.height)});
     Shown shown;
-    if (picture.view.colors == Colors::textured)
+    if (picture.view.colors == Colors::textured && !model.cloud)
         shown.paint = base_paint_of(*model.mesh);
     const double read_s = watch.lap();
 
     const std::uint32_t rays = options.show.reference_rays;
-    if (const auto texels = shown_texels_of(options.texels))
+    if (texels)
         solve_map_for(model, *texels, engine, picture.view, rays, stage, shown);
     else
         solve_for(model, engine, picture.view, rays, stage, shown);
@@ -192,24 +224,7 @@ int run(const RenderCommandOptions& options)
     const double draw_s = watch.lap();
     write_image(options.output, image);
 
-    const auto time = [](double s) { return fixed(s, 3) + " s"; };
-    std::cout << options.input << " -> " << options.output << ", " << image.width << " x "
-              << image.height << "\n  " << model.geometry().positions.size() << " vertices, "
-              << model.geometry().triangles.size() << " triangles, " << name_of(engine.engine)
-              << ", " << setting_of(engine);
-    if (engine.definition.ground)
-        std::cout << ", over a ground at " << text_of(*engine.definition.ground, frame);
-    std::cout << '\n';
-    if (shown.layout)
-        std::cout << "  " << text_of(*shown.layout) << '\n';
-    std::cout << "  read " << time(read_s) << ", solve " << time(shown.solve_s) << ", reference "
-              << (shown.reference_from_cache ? "from the cache" : time(shown.reference_s))
-              << ", draw " << time(draw_s) << ", write " << time(watch.lap()) << '\n';
-    if (shown.paint)
-        for (const std::string& note : shown.paint->notes)
-            std::cout << "  note: " << note << '\n';
-    const std::filesystem::path written[] = {options.output};
-    print_written(written, false);
+    tell(options, model, engine, shown, {read_s, draw_s, watch.lap()});
     return kDone;
 }
 

@@ -27,10 +27,11 @@ void add_layout_options(CLI::App& command, TexelOptions& options, const std::str
 {
     command
         .add_option("--at", options.at,
-                    "Where occlusion is asked: vertices, or texels of a map on the triangles "
-                    "(default: vertices; of bake, texels for pictures)")
-        ->check(CLI::IsMember({"vertices", "texels"}))
-        ->type_name("vertices|texels")
+                    "Where occlusion is asked: vertices, texels of a map on the triangles, or the "
+                    "points of a file without faces (default: points there, else vertices; of "
+                    "bake, texels for pictures)")
+        ->check(CLI::IsMember({"vertices", "texels", "points"}))
+        ->type_name("vertices|texels|points")
         ->group(group);
     command.add_option("--size", options.size, "Texels of each side of the map")
         ->check(CLI::Range(1u, kMostTexels))
@@ -179,8 +180,8 @@ std::optional<TexelSettings> texel_settings_of(const TexelOptions& options,
                                                const std::filesystem::path& output)
 {
     const bool picture = is_picture(output);
-    if (picture && options.at == "vertices")
-        throw UsageError("--at vertices needs a mesh file to write to, no picture.");
+    if (picture && (options.at == "vertices" || options.at == "points"))
+        throw UsageError("--at " + *options.at + " needs a mesh file to write to, no picture.");
     if (!picture && options.at != "texels") {
         if (has_texel_option(options))
             throw UsageError(

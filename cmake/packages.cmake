@@ -10,4 +10,5 @@ find_package(CLI11 2.1 CONFIG REQUIRED)
 find_package(nlohmann_json 3.11 CONFIG REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(Eigen3 3.4 CONFIG REQUIRED)  # sparse least squares
+find_package(nanoflann CONFIG REQUIRED)   # k-d trees over points
 find_package(PkgConfig REQUIRED)

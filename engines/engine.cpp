@@ -7,6 +7,7 @@
 #include "reference/rays.h"
 #include "surfels/errors.h"
 #include "surfels/number_text.h"
+#include "surfels/point_cloud.h"
 #include "surfels/stopwatch.h"
 #include "surfels/surfel.h"
 #include "surfels/topology.h"
@@ -131,7 +132,16 @@ std::uint64_t Prepared::surfel_count() const
     return impl_->surfel_count;
 }
 
-Prepared prepare(const Geometry& geometry, const EngineChoice& choice)
+namespace {
+
+struct Disks {
+    std::vector<Surfel> surfels;
+    std::vector<OccluderSide> sides;
+};
+
+/// make_disks: for the disk engine alone.
+Prepared prepare_with(const Geometry& geometry, const EngineChoice& choice,
+                      const std::function<Disks()>& make_disks)
 {
     auto impl = std::make_unique<Prepared::Impl>();
     impl->choice = choice;
@@ -154,11 +164,10 @@ Prepared prepare(const Geometry& geometry, const EngineChoice& choice)
             }
             break;
         case Engine::disks: {
-            const SurfelCloud cloud = surfels_of(geometry);
-            const std::vector<OccluderSide> sides = sides_of(cloud, analyse_topology(geometry));
-            impl->surfel_count = cloud.surfels.size();
+            const Disks disks = make_disks();
+            impl->surfel_count = disks.surfels.size();
             impl->seconds.surfels = watch.lap();
-            impl->disks = build_octree(cloud.surfels, sides);
+            impl->disks = build_octree(disks.surfels, disks.sides);
             if (on_gpu)
                 impl->gpu_disks.emplace(*impl->context(), *impl->disks);
             break;
@@ -171,6 +180,25 @@ Prepared prepare(const Geometry& geometry, const EngineChoice& choice)
     }
     impl->seconds.tree = watch.lap();
     return Prepared(std::move(impl));
+}
+
+}  // namespace
+
+Prepared prepare(const Geometry& geometry, const EngineChoice& choice)
+{
+    return prepare_with(geometry, choice, [&]() -> Disks {
+        SurfelCloud cloud = surfels_of(geometry);
+        std::vector<OccluderSide> sides = sides_of(cloud, analyse_topology(geometry));
+        return {std::move(cloud.surfels), std::move(sides)};
+    });
+}
+
+Prepared prepare(const PointCloud& cloud, const Geometry& squares, const EngineChoice& choice)
+{
+    return prepare_with(squares, choice, [&]() -> Disks {
+        return {disks_of(cloud),
+                std::vector<OccluderSide>(cloud.occluders.size(), OccluderSide::both)};
+    });
 }
 
 namespace {

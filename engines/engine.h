@@ -28,6 +28,7 @@
 namespace surfelao {
 
 class GlContext;
+struct PointCloud;
 
 enum class Engine {
     masks,  ///< visibility as bits (tree/masks/masks.h): the default
@@ -117,6 +118,10 @@ struct Solution {
 /// std::runtime_error where the processor lacks the instructions asked for, there is no device, or
 /// the scene does not fit it.
 [[nodiscard]] Prepared prepare(const Geometry& geometry, const EngineChoice& choice = {});
+
+/// The same of points, which are disks without having to be made so. squares: squares_of(cloud).
+[[nodiscard]] Prepared prepare(const PointCloud& cloud, const Geometry& squares,
+                               const EngineChoice& choice = {});
 
 /// One answer per receiver, in their order: kUnsolved for those of other shares. Throws
 /// SettingsError for settings out of their ranges, InputError for a receiver that is not finite,

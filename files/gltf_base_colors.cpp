@@ -107,13 +107,13 @@ private:
             color.picture = picture_of(image.get<std::size_t>());
         if (texture.is_object())
             set_transform(texture, color);
-        const json& name = member(material, "name");
-        color.name = name.is_string() ? name.get<std::string>() : std::string();
         color.opacity = opacity_of(material);
         color.alpha_picture = color.picture;
         if (factor.is_array() && factor.size() == 4)
-            color.alpha = std::clamp(static_cast<float>(number_of(factor[3], 1.0)), 0.0f, 1.0f);
-        color.cutoff = static_cast<float>(number_of(member(material, "alphaCutoff"), 0.5));
+            color.alpha = static_cast<float>(std::clamp(number_of(factor[3], 1.0), 0.0, 1.0));
+        constexpr double kMostCutoff = 2.0;  // above 1 all is gone
+        color.cutoff = static_cast<float>(
+            std::clamp(number_of(member(material, "alphaCutoff"), 0.5), 0.0, kMostCutoff));
         return color;
     }
 

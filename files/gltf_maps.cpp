@@ -155,6 +155,36 @@ Covered with_new_places(json& document, const GltfAsset& asset, const Scene& sce
     return covered;
 }
 
+/// From a material (null: none) to its page; pages: OcclusionMap::pages.
+std::map<json, std::size_t> pages_of_materials(const json& document, const GltfAsset& asset,
+                                               std::span<const std::uint32_t> pages)
+{
+    std::map<json, std::size_t> found;
+    for (const GltfPart& part : asset.parts) {
+        const json& primitives =
+            member(entry(document, "meshes", asset.uses[part.use].mesh), "primitives");
+        for (const GltfTriangles& triangles : part.primitives)
+            if (!pages.empty() && triangles.count > 0)
+                found.emplace(member(primitives.at(triangles.primitive), "material"),
+                              pages[triangles.first]);
+    }
+    return found;
+}
+
+/// The primitives of each page.
+std::vector<std::vector<Occluded>> by_page(std::span<const Occluded> primitives,
+                                           const std::map<json, std::size_t>& page_of)
+{
+    std::vector<std::vector<Occluded>> pages;
+    for (const Occluded& occluded : primitives) {
+        const auto found = page_of.find(member(*occluded.primitive, "material"));
+        const std::size_t page = found == page_of.end() ? 0 : found->second;
+        pages.resize(std::max(pages.size(), page + 1));
+        pages[page].push_back(occluded);
+    }
+    return pages;
+}
+
 }  // namespace
 
 std::vector<std::string> add_map(json& document, const GltfAsset& asset, const Scene& scene,
@@ -169,16 +199,24 @@ std::vector<std::string> add_map(json& document, const GltfAsset& asset, const S
         fail_gltf(asset.path, "",
                   "has no primitive with " + (map.uvs ? "a place in the map" : own) +
                       ", which a map is to lie over");
-    json image = {{"mimeType", "image/png"}};
-    if (const std::optional<std::filesystem::path> file = map_file_of(path))
-        image["uri"] = encode_uri(file->filename().string());
-    else
-        image["bufferView"] = added.add_bytes(map.png);
     // a file's own coordinates may lie beyond [0, 1]: that map repeats
     const json repeating = {{"magFilter", kLinearFilter}, {"minFilter", kLinearMipmapLinear}};
-    const std::size_t texture =
-        add_occlusion_texture(document, image, map.uvs ? clamping_sampler() : repeating);
-    const std::size_t replaced = show_occlusion_texture(document, texture, covered.primitives);
+    const std::optional<std::filesystem::path> file = map_file_of(path);
+    const std::vector<std::vector<Occluded>> pages =
+        by_page(covered.primitives, pages_of_materials(document, asset, map.pages));
+    std::size_t replaced = 0;
+    for (std::size_t page = 0; page < pages.size(); ++page) {
+        if (pages[page].empty())
+            continue;
+        json image = {{"mimeType", "image/png"}};
+        if (file && map.more_pngs.empty())
+            image["uri"] = encode_uri(file->filename().string());
+        else
+            image["bufferView"] = added.add_bytes(page == 0 ? map.png : map.more_pngs[page - 1]);
+        const std::size_t texture =
+            add_occlusion_texture(document, image, map.uvs ? clamping_sampler() : repeating);
+        replaced += show_occlusion_texture(document, texture, pages[page]);
+    }
 
     std::vector<std::string> notes;
     if (replaced > 0)

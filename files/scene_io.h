@@ -78,6 +78,11 @@ struct OcclusionMap {
     /// New ones, in place of uv_set: finite, one for each corner or vertex (UvSet). As they are in
     /// files they are floats.
     std::optional<UvSet> uvs = {};
+    /// Maps of the pages behind the first, over the same coordinates: in glTF only, without uvs.
+    std::vector<std::string> more_pngs = {};
+    /// Of each scene triangle: its page, 0 for `png`; the same for all triangles of a material.
+    /// Empty: all lie on the first.
+    std::vector<std::uint32_t> pages = {};
 };
 
 /// Where the map of a result at `output` stands: STEM.ao.png beside a .gltf, .obj or .ply; nothing

@@ -24,6 +24,7 @@ flat in float v_radius;
 flat in vec4 v_normal_level;
 flat in vec4 v_own;
 flat in vec4 v_reference;
+flat in vec3 v_paint;
 out vec4 out_color;
 
 void main()
@@ -34,5 +35,5 @@ void main()
         discard;
     float z = v_center_depth + dz * v_radius;
     gl_FragDepth = 0.5 - 0.5 * (u_projection[2][2] * z + u_projection[3][2]) / z;
-    out_color = vec4(shade(v_normal_level, v_own, v_reference), 1.0);
+    out_color = vec4(v_paint * shade(v_normal_level, v_own, v_reference), 1.0);
 }

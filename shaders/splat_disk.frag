@@ -18,6 +18,7 @@ in vec3 v_inside;
 flat in vec4 v_normal_level;
 flat in vec4 v_own;
 flat in vec4 v_reference;
+flat in vec3 v_paint;
 out vec4 out_color;
 
 void main()
@@ -26,5 +27,5 @@ void main()
     if (r2 > 1.0 || any(lessThan(v_inside, vec3(0.0))))
         discard;
     float weight = exp(-3.0 * r2);  // 0.05 at the rim: no visible step, and no pixel without weight
-    out_color = weight * vec4(shade(v_normal_level, v_own, v_reference), 1.0);
+    out_color = weight * vec4(v_paint * shade(v_normal_level, v_own, v_reference), 1.0);
 }

@@ -28,13 +28,13 @@ enum class Opacity {
 };
 
 struct BaseColor {
+    std::string name = {};   ///< in the file; may be empty
     glm::vec3 factor{1.0f};  ///< linear light; multiplies the picture
     std::optional<std::uint32_t> picture;
     std::uint32_t uv_set = 0;  ///< Scene::uvs, where the picture's top row is v = 0
-    glm::dmat2 uv_matrix{
-        1.0};  ///< times the coordinates, and the offset, gives those of the picture
+    /// The picture is looked up at uv_matrix * coordinates + uv_offset.
+    glm::dmat2 uv_matrix{1.0};
     glm::dvec2 uv_offset{0.0};
-    std::string name = {};
     Opacity opacity = Opacity::solid;
     float alpha = 1.0f;   ///< multiplies that of the picture
     float cutoff = 0.5f;  ///< Opacity::cut

@@ -29,6 +29,7 @@ enum class NormalSource {
     file,       ///< the file's whichever way they point, else smooth
     smooth,     ///< the mean over the faces around, within the crease angle
     flat,       ///< the face's own
+    up,         ///< clouds of points alone: one direction for all (point_cloud.h)
 };
 
 struct NormalSettings {

@@ -7,6 +7,7 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace surfelao {
 namespace {
@@ -21,6 +22,19 @@ std::uint64_t spread(std::uint64_t x)
     x = (x | x << 8) & 0x100F00F00F00F00Full;
     x = (x | x << 4) & 0x10C30C30C30C30C3ull;
     return (x | x << 2) & 0x1249249249249249ull;
+}
+
+/// Beyond twice the unit frame lengths count by their logarithm: a terrain a million times as large
+/// as the scene would leave it a single cell.
+double drawn_in(float x)
+{
+    const double far = std::abs(static_cast<double>(x));
+    return far <= 1.0 ? x : std::copysign(1.0 + std::log(far), x);
+}
+
+glm::dvec3 drawn_in(glm::vec3 point)
+{
+    return {drawn_in(point.x), drawn_in(point.y), drawn_in(point.z)};
 }
 
 std::uint64_t cell(double offset, double cells_per_length)
@@ -40,7 +54,7 @@ std::vector<MortonKey> morton_order(std::span<const glm::vec3> points)
         low = glm::min(low, point);
         high = glm::max(high, point);
     }
-    const glm::dvec3 size = glm::dvec3(high) - glm::dvec3(low);
+    const glm::dvec3 begin = drawn_in(low), size = drawn_in(high) - begin;
     const double side = std::max({size.x, size.y, size.z});
     const double cells_per_length = side > 0.0 ? kCells / side : 0.0;
 
@@ -48,7 +62,7 @@ std::vector<MortonKey> morton_order(std::span<const glm::vec3> points)
     using Range = tbb::blocked_range<std::size_t>;
     tbb::parallel_for(Range(0, points.size(), 4096), [&](const Range& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const glm::dvec3 offset = glm::dvec3(points[i]) - glm::dvec3(low);
+            const glm::dvec3 offset = drawn_in(points[i]) - begin;
             keys[i].code = spread(cell(offset.x, cells_per_length)) |
                            spread(cell(offset.y, cells_per_length)) << 1 |
                            spread(cell(offset.z, cells_per_length)) << 2;

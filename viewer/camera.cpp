@@ -132,6 +132,12 @@ void orbit(Camera& camera, float azimuth_deg, float elevation_deg)
     camera.eye = camera.target + distance * towards_eye(camera.up, direction);
 }
 
+void move_frame(Camera& camera, glm::vec3 offset, float scale)
+{
+    camera.eye = scale * camera.eye + offset;
+    camera.target = scale * camera.target + offset;
+}
+
 void pan(Camera& camera, glm::vec2 share)
 {
     const CameraAxes axes = camera_axes(camera);

@@ -62,6 +62,10 @@ void pan(Camera& camera, glm::vec2 share);
 /// Multiplies the distance to the target; factor > 0. The distance stays between 1e-4 and 1e3.
 void zoom(Camera& camera, float factor);
 
+/// The same view when lengths become `scale` times what they were and then move by `offset`: the
+/// frame of the model is another one.
+void move_frame(Camera& camera, glm::vec3 offset, float scale);
+
 /// What a camera's description is about.
 struct CameraWishes {
     std::span<const glm::vec3> points;  ///< to be seen; unit frame

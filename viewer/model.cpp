@@ -6,6 +6,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +23,9 @@ constexpr float kGroundGap =
 /// to be larger than covering_radii to meet.
 constexpr float kSplatMargin = 1.2f;
 constexpr float kInsideMargin = 1.05f;  ///< inside of a triangle nothing bends
+/// Of a point's own area: with less there are holes between points that lie at random, which the
+/// masks close but a picture does not.
+constexpr float kPointSplat = 2.2f;
 constexpr std::size_t kMostSplatsInside = 400'000;
 
 /// See covering_radii. Squared sides: a2 is opposite to corner A.
@@ -164,6 +168,25 @@ void make_splats(Model& model, float largest)
     }
 }
 
+/// The square that shows the shadow, in the height of the ground that occludes, if any.
+void add_ground(Model& model, const Offset& offset)
+{
+    std::optional<float> height_of_ground;
+    if (model.occluding_ground)
+        height_of_ground = model.occluding_ground->height;
+    model.ground = make_ground(model.seen, up_direction(model.up), height_of_ground);
+    const float height = offset.value_or(kMostOffset);
+    const ShadowSquare& ground = model.ground;
+    for (int y = 0; y <= kGroundCells; ++y) {
+        for (int x = 0; x <= kGroundCells; ++x) {
+            const float cell = 1.0f / static_cast<float>(kGroundCells);
+            const glm::vec3 place = ground.corner + static_cast<float>(x) * cell * ground.axis_x +
+                                    static_cast<float>(y) * cell * ground.axis_y;
+            model.ground_receivers.push_back({place + height * ground.up, ground.up, height});
+        }
+    }
+}
+
 }  // namespace
 
 glm::vec2 level_range(const Model& model)
@@ -228,21 +251,47 @@ Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings, float lar
     model.ground_plane = plane;
     model.occluding_ground =
         ground_of(plane, {g, model.occluding()}, largest_offset_of(settings, g.frame));
-    std::optional<float> height_of_ground;
-    if (model.occluding_ground)
-        height_of_ground = model.occluding_ground->height;
-    model.ground = make_ground(model.seen, up_direction(up), height_of_ground);
-    const float height = offset.value_or(kMostOffset);
-    const ShadowSquare& ground = model.ground;
-    for (int y = 0; y <= kGroundCells; ++y) {
-        for (int x = 0; x <= kGroundCells; ++x) {
-            const float cell = 1.0f / static_cast<float>(kGroundCells);
-            const glm::vec3 place = ground.corner + static_cast<float>(x) * cell * ground.axis_x +
-                                    static_cast<float>(y) * cell * ground.axis_y;
-            model.ground_receivers.push_back({place + height * ground.up, ground.up, height});
-        }
-    }
+    add_ground(model, offset);
     return model;
+}
+
+Model make_cloud_model(Scene scene, UpAxis up, const TargetSettings& settings,
+                       const std::optional<GroundPlane>& plane)
+{
+    Model model;
+    auto target = std::make_shared<const PointTarget>(make_point_target(scene, settings));
+    const PointCloud& cloud = target->cloud;
+    model.mesh = std::make_shared<const Mesh>(point_mesh(std::move(scene), target));
+    model.cloud = target;
+    model.settings = settings;
+    model.up = up;
+    model.seen = cloud.positions;
+    const Geometry& geometry = model.geometry();
+    // lone points are drawn as wide as others
+    const auto usual =
+        static_cast<float>(cloud.spacing / cloud.frame.diagonal / std::sqrt(glm::pi<double>()));
+    const float least = cloud.spacing > 0.0 ? 0.0f : kLargestSplat;
+    for (std::uint32_t i = 0; i < cloud.positions.size(); ++i) {
+        if (geometry.areas[i] > 0.0f)
+            model.surfels.push_back(i);
+        const float radius = std::min(cloud.radii[i], kOutlier * usual);
+        model.splats.push_back({glm::uvec3(i), 0});
+        model.splat_radii.push_back(std::max(kPointSplat * radius, least));
+    }
+    model.levels = leaf_levels(build_octree(surfels_at_vertices(geometry)));
+    model.ground_plane = plane;
+    model.occluding_ground = ground_below(*target, plane);
+    add_ground(model, target->offset);
+    return model;
+}
+
+Model model_of(Scene scene, UpAxis up, const TargetSettings& settings, const ModelChoice& choice)
+{
+    check_target(scene, settings, choice.parts);
+    if (scene.triangles.empty())
+        return make_cloud_model(std::move(scene), up, settings, choice.ground);
+    return make_model(mesh_of(std::move(scene), settings.normals, choice.parts, choice.reading), up,
+                      settings, kLargestSplat, choice.ground);
 }
 
 }  // namespace surfelao

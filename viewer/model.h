@@ -5,6 +5,7 @@
 /// that occludes, the square lies in it.
 #pragma once
 
+#include "bake/point_target.h"
 #include "bake/vertex_target.h"
 #include "engines/engine.h"
 #include "surfels/geometry.h"
@@ -51,9 +52,11 @@ struct Splat {
 inline constexpr float kLargestSplat = 0.01f;
 
 struct Model {
+    /// Of a cloud: its scene, and in its geometry and surface its points without a triangle.
     std::shared_ptr<const Mesh> mesh;
+    std::shared_ptr<const PointTarget> cloud;    ///< null: a mesh
     TargetSettings settings;                     ///< that it was made with
-    std::shared_ptr<const VertexTarget> target;  ///< of the mesh's vertices
+    std::shared_ptr<const VertexTarget> target;  ///< of the mesh's vertices; null for a cloud
     std::vector<glm::vec3> seen;         ///< positions that triangles use: what a camera frames
     std::vector<std::uint32_t> surfels;  ///< vertices that are: surfels_at_vertices' order
     std::vector<float> levels;       ///< one per surfel: its leaf's depth in the octree, 0 = root
@@ -63,7 +66,8 @@ struct Model {
     std::optional<Ground> occluding_ground;   ///< the same in the unit frame
     ShadowSquare ground;
     std::vector<Receiver> ground_receivers;
-    std::vector<SurfacePoint> points;  ///< kModelPoints, all over the surface; none without area
+    /// kModelPoints, all over the surface; none without area, and none of a cloud
+    std::vector<SurfacePoint> points;
     std::vector<Receiver> point_receivers;
     UpAxis up = UpAxis::y;
 
@@ -83,6 +87,22 @@ struct Model {
 [[nodiscard]] Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings = {},
                                float largest_splat = kLargestSplat,
                                const std::optional<GroundPlane>& ground = {});
+
+/// A cloud: each point is a surfel, drawn wide enough to meet its neighbours.
+[[nodiscard]] Model make_cloud_model(Scene scene, UpAxis up, const TargetSettings& settings = {},
+                                     const std::optional<GroundPlane>& ground = {});
+
+/// What else a user says of a scene.
+struct ModelChoice {
+    PartChoice parts = {};
+    std::optional<GroundPlane> ground = {};
+    ReadOptions reading = {};  ///< of PartChoice::occluders
+};
+
+/// Of a scene that was read, whichever it is. Throws as make_mesh() and make_point_target(), and
+/// SettingsError as check_target() (bake/point_target.h).
+[[nodiscard]] Model model_of(Scene scene, UpAxis up, const TargetSettings& settings,
+                             const ModelChoice& choice = {});
 
 /// The lowest and the highest level, at least 1 apart: what the ends of a colour scale stand for.
 [[nodiscard]] glm::vec2 level_range(const Model& model);

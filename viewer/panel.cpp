@@ -275,7 +275,8 @@ void Panel::widgets(PanelState& state, const Session& session, const PanelFigure
                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse);
     ImGui::PushItemWidth(-100.0f * ImGui::GetIO().FontGlobalScale);
     if (shown_state.model)
-        ImGui::Text("%s\n%zu vertices, %zu triangles", shown_state.path.filename().c_str(),
+        ImGui::Text(shown_state.model->cloud ? "%s\n%zu points" : "%s\n%zu vertices, %zu triangles",
+                    shown_state.path.filename().c_str(),
                     shown_state.model->geometry().positions.size(),
                     shown_state.model->geometry().triangles.size());
     else if (!session.opening())

@@ -337,13 +337,13 @@ void legend(const char* title, float low, float high)
     const float scale = ImGui::GetIO().FontGlobalScale;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const ImVec2 size(220.0f * scale, 14.0f * scale);
-    constexpr int kSteps = 32;
-    for (int i = 0; i < kSteps; ++i) {
+    constexpr int kBars = 32;
+    for (int i = 0; i < kBars; ++i) {
         const auto at = [&](int step) {
-            return corner.x + size.x * static_cast<float>(step) / kSteps;
+            return corner.x + size.x * static_cast<float>(step) / kBars;
         };
         const auto color = [](int step) {
-            return ImGui::GetColorU32(shown(heat_color(static_cast<float>(step) / kSteps)));
+            return ImGui::GetColorU32(shown(heat_color(static_cast<float>(step) / kBars)));
         };
         ImGui::GetWindowDrawList()->AddRectFilledMultiColor(
             ImVec2(at(i), corner.y), ImVec2(at(i + 1), corner.y + size.y), color(i), color(i + 1),

@@ -50,7 +50,10 @@ std::vector<glm::vec4> occlusion_texels(std::span<const Occlusion> values)
 
 /// What depends on the model alone.
 struct Upload {
-    Upload(const GlContext& context, const Model& model)
+    Upload(const GlContext& context, const Model& model) : Upload(context, model, own_colors(model))
+    {
+    }
+    Upload(const GlContext& context, const Model& model, const std::vector<glm::vec4>& own)
         : positions(texels(context, model.geometry().positions)),
           surfels(texels(context, surfel_texels(model))),
           wedge_normals(texels(context, model.mesh->surface.normals)),
@@ -58,8 +61,10 @@ struct Upload {
                          view(at_least_one(model.mesh->surface.extra_vertices))),
           occlusion(texels(context, open(model))),
           splats(context, TexelFormat::rgba32ui, view(at_least_one(model.splats))),
+          paint(texels(context, own)),
+          has_paint(!own.empty()),
           radii(context, TexelFormat::r32f, view(at_least_one(model.splat_radii))),
-          corners(context, TexelFormat::r32ui, view(model.mesh->surface.corners)),
+          corners(context, TexelFormat::r32ui, view(at_least_one(model.mesh->surface.corners))),
           triangles(context),
           index_count(3 * model.geometry().triangles.size()),
           splat_count(model.splats.size()),
@@ -108,6 +113,13 @@ struct Upload {
             values.emplace_back(geometry.normals[v], level_at[geometry.welded[v]]);
         return values;
     }
+    /// Of points; meshes have a BasePaint. Empty where there are none.
+    static std::vector<glm::vec4> own_colors(const Model& model)
+    {
+        if (!model.cloud || !model.mesh->scene.asset)
+            return {};
+        return model.mesh->scene.asset->own_colors();
+    }
     static std::vector<glm::vec4> open(const Model& model)
     {
         std::vector<glm::vec4> values;
@@ -120,7 +132,9 @@ struct Upload {
 
     TextureBuffer positions, surfels, wedge_normals, extra_vertices, occlusion;
     std::optional<TextureBuffer> reference;
-    TextureBuffer splats, radii, corners;
+    TextureBuffer splats, paint;
+    bool has_paint;
+    TextureBuffer radii, corners;
     VertexArray triangles;
     std::size_t vertex_count = 0, index_count, splat_count;
     ShadowSquare ground;
@@ -222,6 +236,13 @@ struct Renderer::Impl {
         program.set("u_projection", frame.projection);
     }
 
+    void set_paint(Program& program, const Frame& frame)
+    {
+        const bool is_shown = upload->has_paint && frame.options.colors == Colors::textured;
+        program.set("u_paint", upload->paint);
+        program.set("u_is_painted", is_shown ? 1 : 0);
+    }
+
     void draw_background(const Frame& frame)
     {
         const glm::mat4 to_world = glm::inverse(frame.projection * frame.view);
@@ -267,6 +288,7 @@ struct Renderer::Impl {
         set_shading(program, frame);
         set_model_texels(program);
         set_splats(program, frame);
+        set_paint(program, frame);
         draw(frame.target, program, nothing, {.count = 6 * upload->splat_count},
              {.depth = DepthTest::less});
     }
@@ -293,6 +315,7 @@ struct Renderer::Impl {
         set_shading(disks, frame);
         set_model_texels(disks);
         set_splats(disks, frame);
+        set_paint(disks, frame);
         draw(*splat_target, disks, nothing, call,
              {.depth = DepthTest::read_only, .blend = Blend::add});
 
@@ -442,7 +465,10 @@ void Renderer::draw_frame(const Framebuffer& target, const Camera& camera,
     if (shows_ground(options))
         impl_->draw_ground(frame);
     if (impl_->upload->splat_count > 0) {
-        switch (impl_->split.has_layout() ? Shape::triangles : options.surface) {
+        Shape shape = impl_->split.has_layout() ? Shape::triangles : options.surface;
+        if (shape == Shape::triangles && impl_->upload->index_count == 0)
+            shape = Shape::splats;
+        switch (shape) {
             case Shape::triangles:
                 impl_->draw_triangles(frame);
                 break;

@@ -1,6 +1,7 @@
 #include "viewer/session.h"
 
 #include "bake/bake.h"
+#include "bake/texel_layout.h"
 #include "files/file_type.h"
 #include "files/scene_io.h"
 #include "gpu/context.h"
@@ -26,15 +27,6 @@ EngineSettings draft_of(EngineSettings settings)
     else
         settings.quality = std::min(settings.quality, kDraft);
     return settings;
-}
-
-Mesh mesh_of(Scene scene, const NormalSettings& normals, const PartChoice& parts)
-{
-    std::vector<Scene> input, others;
-    input.push_back(std::move(scene));
-    for (const std::filesystem::path& file : parts.occluders)
-        others.push_back(read_scene(file));
-    return std::move(make_world(std::move(input), others, normals, parts).meshes.front());
 }
 
 }  // namespace
@@ -101,7 +93,7 @@ struct Session::Engines {
         if (model != wanted)
             layout.reset();
         model = wanted;
-        prepared.emplace(prepare(wanted->occluding(), choice));
+        prepared.emplace(surfelao::prepare(*wanted, choice));
         untold_s = prepared->seconds().surfels + prepared->seconds().tree;
     }
 
@@ -144,8 +136,8 @@ void Session::start_making(Making making)
             if (scene.free_vertices)  // make_mesh splits them, for these normals alone
                 made->scene = making.scene ? making.scene : std::make_shared<const Scene>(scene);
             made->model = std::make_shared<const Model>(
-                make_model(mesh_of(std::move(scene), making.target.normals, making.parts),
-                           making.up, making.target, kLargestSplat, making.ground));
+                model_of(std::move(scene), making.up, making.target,
+                         {.parts = making.parts, .ground = making.ground}));
             const std::shared_ptr<const Mesh>& mesh = made->model->mesh;
             if (!made->scene)
                 made->scene = std::shared_ptr<const Scene>(mesh, &mesh->scene);
@@ -412,17 +404,17 @@ void Session::save(const std::filesystem::path& path) const
 
 void Session::save_map(const std::filesystem::path& path, const std::string& mark) const
 {
-    if (state_.map->visibility.size() > 1)
+    const std::vector<Map>& pages = state_.map->visibility;
+    const bool is_picture = type_of(path) == FileType::unknown;
+    if (pages.size() > 1 && (is_picture || state_.layout->layout.materials.empty()))
         throw InputError(path.string() + ": holds a map of one page");
-    const Map& map = state_.map->visibility[0];
-    if (type_of(path) == FileType::unknown) {
-        write_map(path, map, MapDepth::byte, mark);
+    if (is_picture) {
+        write_map(path, pages[0], MapDepth::byte, mark);
         return;
     }
     check_output_with_map(state_.path, path);
-    OcclusionMap picture{map_bytes(map, MapDepth::byte), state_.layout->uv_set.value_or(0), {}};
-    if (!state_.layout->uv_set)
-        picture.uvs = state_.layout->layout.pages[0];
+    const OcclusionMap picture =
+        occlusion_map_of(state_.layout->layout, state_.layout->uv_set, pages, MapDepth::byte);
     static_cast<void>(write_scene_with_map(path, state_.model->mesh->scene, picture,
                                            {.mark = mark, .unbaked = state_.model->mesh->unbaked}));
 }

@@ -23,6 +23,26 @@ void append(std::vector<Occlusion>& values, std::span<const Occlusion> more)
     values.insert(values.end(), more.begin(), more.end());
 }
 
+std::vector<Receiver> receivers_of(const Model& model)
+{
+    if (model.cloud)
+        return receivers_at(model.cloud->cloud, model.cloud->cloud.order, model.cloud->offset);
+    const std::span<const Receiver> receivers = model.target->receivers();
+    return {receivers.begin(), receivers.end()};
+}
+
+/// answers: at receivers_of().
+std::vector<Occlusion> values_of(const Model& model, std::span<const Occlusion> answers)
+{
+    if (!model.cloud)
+        return model.target->values(answers);
+    std::vector<Occlusion> values(answers.size());
+    const std::vector<std::uint32_t>& order = model.cloud->cloud.order;
+    for (std::size_t i = 0; i < order.size(); ++i)
+        values[order[i]] = answers[i];
+    return values;
+}
+
 bool is_same(const SurfacePoint& a, const SurfacePoint& b)
 {
     return a.triangle == b.triangle && a.at == b.at;
@@ -30,12 +50,19 @@ bool is_same(const SurfacePoint& a, const SurfacePoint& b)
 
 }  // namespace
 
+Prepared prepare(const Model& model, const EngineChoice& choice)
+{
+    return model.cloud ? prepare(model.cloud->cloud, model.cloud->squares, choice)
+                       : prepare(model.occluding(), choice);
+}
+
 ModelAnswer solve_model(const Prepared& prepared, const Model& model, const SolveSettings& settings,
                         const SolveWith& with, const Progress& progress)
 {
     std::vector<std::span<const Receiver>> lists(1);
+    std::vector<Receiver> asked;
     if (with.vertices)
-        lists[0] = model.target->receivers();
+        lists[0] = asked = receivers_of(model);
     if (with.ground)
         lists.push_back(model.ground_receivers);
     if (with.points)
@@ -49,7 +76,7 @@ ModelAnswer solve_model(const Prepared& prepared, const Model& model, const Solv
         found.pop_back();
     }
     if (with.vertices)
-        answer.values = model.target->values(found.front().occlusion);
+        answer.values = values_of(model, found.front().occlusion);
     else
         answer.values.resize(model.geometry().positions.size());
     if (with.ground) {
@@ -65,21 +92,23 @@ ModelAnswer solve_model(const Prepared& prepared, const Model& model, const Solv
 ModelReference reference_of(const Model& model, const Definition& definition, std::uint32_t rays,
                             const Progress& progress)
 {
-    const std::span<const Receiver> asked = model.target->receivers();
-    std::vector<Receiver> receivers(asked.begin(), asked.end());
+    std::vector<Receiver> receivers = receivers_of(model);
+    const std::size_t asked = receivers.size();
     receivers.insert(receivers.end(), model.ground_receivers.begin(), model.ground_receivers.end());
     const Reference traced = trace_reference(
         model.occluding(), receivers,
         {.definition = definition, .rays = rays, .find_ill_defined = false}, progress);
     const std::span<const Occlusion> answers = traced.occlusion;
-    ModelReference reference{model.target->values(answers.first(asked.size())), traced.from_cache};
-    append(reference.values, answers.subspan(asked.size()));
+    ModelReference reference{values_of(model, answers.first(asked)), traced.from_cache};
+    append(reference.values, answers.subspan(asked));
     return reference;
 }
 
 ModelTruth truth_of(const Model& model, const Definition& definition, std::uint32_t rays,
                     const Progress& progress)
 {
+    if (model.cloud)
+        return {reference_of(model, definition, rays, progress), {}, {}};
     const Geometry& geometry = model.geometry();
     const TruthSettings settings = {.definition = definition,
                                     .offset = offset_of(model.settings, geometry.frame),

@@ -29,7 +29,10 @@ struct ModelAnswer {
     double seconds = 0.0;              ///< with the fit
 };
 
-/// prepared: of what occludes this model. Throws as solve().
+/// What occludes in the model, for an engine. Throws as prepare() of engines/engine.h.
+[[nodiscard]] Prepared prepare(const Model& model, const EngineChoice& choice);
+
+/// prepared: of this model. Throws as solve().
 [[nodiscard]] ModelAnswer solve_model(const Prepared& prepared, const Model& model,
                                       const SolveSettings& settings, const SolveWith& with = {},
                                       const Progress& progress = {});
@@ -51,6 +54,7 @@ struct ModelTruth {
     Floor floor;
 };
 
+/// Of a cloud the reference alone, without points of a surface.
 /// rays: a point of the surface and of the ground; receivers of the fit may get fewer
 /// (find_floor). Throws as trace_reference().
 [[nodiscard]] ModelTruth truth_of(const Model& model, const Definition& definition,

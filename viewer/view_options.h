@@ -5,10 +5,10 @@ namespace surfelao {
 
 /// What stands for the surface.
 enum class Shape {
-    triangles,
-    splats,  ///< surfels as disks: perspective-correct, blended where they overlap
-    affine,  ///< surfels as Engleson's report draws them: affinely projected, without blending
-    points,  ///< surfels as plain squares that face the camera
+    triangles,  ///< of points: splats
+    splats,     ///< surfels as disks: perspective-correct, blended where they overlap
+    affine,     ///< surfels as Engleson's report draws them: affinely projected, without blending
+    points,     ///< surfels as plain squares that face the camera
 };
 
 /// What its colour tells. The numbers are known to shaders/shading.glsl.

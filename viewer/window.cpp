@@ -129,6 +129,7 @@ private:
         try {
             if (changes.model) {
                 renderer_.set_model(*state.model);
+                keep_view(state.model->geometry().frame);
                 shown_layout_.reset();
                 paint_.reset();
             }
@@ -152,6 +153,15 @@ private:
         } catch (const std::exception& error) {
             note_ = error.what();
         }
+    }
+
+    /// Other parts of a file have another frame: what is seen stays where it is.
+    void keep_view(const Frame& frame)
+    {
+        const double scale = frame_.diagonal / frame.diagonal;
+        move_frame(camera_, glm::vec3((frame_.centre - frame.centre) / frame.diagonal),
+                   static_cast<float>(scale));
+        frame_ = frame;
     }
 
     /// The answer's map, or that it has none.
@@ -442,6 +452,7 @@ private:
     PanelState panel_state_;
     Panel panel_;
     Camera camera_;
+    Frame frame_;  ///< that the camera is in
     std::vector<Pane> panes_;
     std::shared_ptr<const ModelLayout> shown_layout_;  ///< that the renderer has
     std::optional<BasePaint> paint_;                   ///< of the model; empty until it is wanted

@@ -283,6 +283,11 @@ TEST(PartHints, NameWhatIsBetterLeftOut)
           "out"},
          ""},
         {{{"a_LOD0", lid}, {"a_LOD1", aside}}, {}, ""},
+        {{{"rock", lid}, {"rock_lod2", lid}, {"LOD0", aside}},
+         {"levels of detail lie in each other (rock_lod2): --exclude '*lod2' leaves the coarse "
+          "ones "
+          "out"},
+         ""},
     };
     for (const auto& row : rows) {
         const Mesh mesh = mesh_of(named(row.parts), {});

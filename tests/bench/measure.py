@@ -2,7 +2,8 @@
 """measure.py: what README.md and docs/ tell in figures, measured anew into docs/figures/*.json.
 
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
-                                    readers stated demo viewers atlas maps map_frontier;
+                                    readers stated demo viewers atlas maps map_frontier
+                                    clouds clouds_pcv;
                                     default: all, about an hour on two quiet cores
 
 Every part is one file that says what command made it, of which version and commit, on what
@@ -369,11 +370,61 @@ def part_map_frontier(build):
     return {**provenance(build, command), "scenes": scenes}
 
 
+CLOUD_MODELS = ("bunny", "stanford_bunny", "spot", "skull", "stanford_dragon_res2", "data/blob.off")
+THIN_MODEL = "FlightHelmet"
+LARGE_CLOUD = 20_000 if TRIAL else 1_000_000
+
+
+def part_clouds(build):
+    """Clouds sampled from closed scans, from thin layers, and of generated scenes; a large one."""
+    tables = build / "bin/cloud_tables"
+    paths = {name: path for path, name, _ in models()}
+    names = list(paths) if TRIAL else CLOUD_MODELS
+    count = 2_000 if TRIAL else 50_000
+    rows = json.loads(run(tables, "rows", count, *[paths[name] for name in names]))
+    for row, name in zip(rows, [name for name in names for _ in range(len(rows) // len(names))]):
+        row["model"] = name
+    thin = [] if TRIAL else [row for points in (100_000, 400_000)
+                             for row in json.loads(run(tables, "rows", points, paths[THIN_MODEL]))]
+    family = {} if TRIAL else {half: json.loads(run(tables, "family", half))
+                               for half in ("choosing", "judging")}
+    large = []
+    with tempfile.TemporaryDirectory() as folder:
+        for normals in ("normals", "none"):
+            cloud = pathlib.Path(folder) / "cloud.ply"
+            run(tables, "sample", paths[names[0]], LARGE_CLOUD, 0, normals, cloud)
+            reports = [json.loads(run(build / "bin/surfelao", "bake", cloud, "-o",
+                                      pathlib.Path(folder) / "out.ply", "--json", "-"))
+                       for _ in range(ROUNDS)]
+            report = sorted(reports, key=lambda report: report["seconds"]["total"])[ROUNDS // 2]
+            large.append({"points": LARGE_CLOUD, "normals": normals == "normals",
+                          "mib": report["peak_rss_bytes"] / 2**20, **report["seconds"]})
+    return {**provenance(build, "cloud_tables; surfelao bake"), "rows": rows, "thin": thin,
+            "family": family, "large": large}
+
+
+def part_clouds_pcv(build):
+    """CloudCompare's PCV beside us."""
+    paths = {name: path for path, name, _ in models()}
+    mesh = paths[next(iter(paths)) if TRIAL else "bunny"]
+    rows = []
+    for noise, normals in ((0, "normals"), (0.3, "none")):
+        try:
+            rows.append(json.loads(run(ROOT / "tests/bench/clouds/pcv.py", build, mesh,
+                                       2_000 if TRIAL else 50_000, noise, normals)))
+        except subprocess.CalledProcessError as fault:
+            if fault.returncode == 77:
+                raise Absent("no CloudCompare, or no xvfb-run") from fault
+            raise
+    return {**provenance(build, "tests/bench/clouds/pcv.py"), "rows": rows}
+
+
 PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scaling": part_scaling,
          "stability": part_stability, "gpu": part_gpu, "drawing": part_drawing,
          "readers": part_readers, "stated": part_stated, "demo": part_demo,
          "viewers": part_viewers, "atlas": part_atlas, "maps": part_maps,
-         "map_frontier": part_map_frontier}
+         "map_frontier": part_map_frontier, "clouds": part_clouds,
+         "clouds_pcv": part_clouds_pcv}
 
 
 def main(arguments):

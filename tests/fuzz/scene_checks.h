@@ -31,6 +31,17 @@ inline void check_invariants(const Scene& scene)
     }
     SURFELAO_CHECK(vertices == scene.positions.size() && triangles == scene.triangles.size());
     check_scene(scene);  // the normals too
+    for (const Label& label : scene.labels) {
+        SURFELAO_CHECK(!label.name.empty() && !label.ranges.empty());
+        std::uint64_t end = 0;
+        for (const Label::Range& range : label.ranges) {
+            SURFELAO_CHECK(range.count > 0 && (end == 0 || range.first > end));
+            end = std::uint64_t{range.first} + range.count;
+        }
+        SURFELAO_CHECK(end <= triangles);
+    }
+    if (scene.asset && scene.asset->has_openings())
+        SURFELAO_CHECK(scene.asset->base_colors().triangles.size() == triangles);
 }
 
 /// What stands right behind the readers takes any scene.

@@ -46,6 +46,19 @@ TEST(Morton, EqualPointsHaveEqualCodesEvenWhereAllAreOne)
     EXPECT_TRUE(morton_order({}).empty());
 }
 
+TEST(Morton, WhatLiesFarAwayLeavesTheRestItsCells)
+{
+    std::vector<glm::vec3> points;
+    for (int i = 0; i < 8; ++i)
+        points.emplace_back(0.001f * float(i & 1), 0.001f * float(i >> 1 & 1),
+                            0.001f * float(i >> 2));
+    points.emplace_back(1e6f, -1e6f, 1e6f);
+    std::vector<std::uint64_t> codes;
+    for (const MortonKey& key : morton_order(points))
+        codes.push_back(key.code);
+    EXPECT_EQ(std::unique(codes.begin(), codes.end()) - codes.begin(), 9);
+}
+
 TEST(Octree, NodesAreInPreorderAndTheirSurfelsPartitionEachRange)
 {
     const std::vector<Surfel> surfels = bumpy_surfels(60);  // more than one thread's job

@@ -37,6 +37,20 @@ TEST(Camera, FieldOfViewIsFromTheUpperToTheLowerEdge)
     EXPECT_NEAR(on_screen(camera, 2.0f, {6, 0, 0}).x, 1.0f, 1e-5f);
 }
 
+TEST(Camera, SeesTheSameInAnotherFrame)
+{
+    const Camera camera = frame_points(kBox, UpAxis::z, 1.5f);
+    Camera moved = camera;
+    const glm::vec3 offset(5, -2, 1);
+    move_frame(moved, offset, 0.5f);
+    for (const glm::vec3& point : kBox) {
+        const glm::vec2 before = on_screen(camera, 1.5f, point);
+        const glm::vec2 after = on_screen(moved, 1.5f, 0.5f * point + offset);
+        EXPECT_NEAR(before.x, after.x, 1e-4f);
+        EXPECT_NEAR(before.y, after.y, 1e-4f);
+    }
+}
+
 TEST(Camera, AzimuthTurnsCounterClockwiseSeenFromAbove)
 {
     const Camera front =

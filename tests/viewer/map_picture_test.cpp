@@ -185,7 +185,7 @@ TEST(MapPicture, LooksAsItDidWhenItWasLookedAt)
     const ModelMap map = solve_map(model, places, engine, 2).map;
     // stripes along the map
     BasePaint paint;
-    paint.materials.push_back({.picture = 0});
+    paint.materials.emplace_back().picture = 0;
     paint.pictures.emplace_back(2, 1, glm::vec4(1.0f));
     paint.pictures[0].at(1, 0) = glm::vec4(0.8f, 0.2f, 0.1f, 1.0f);
     paint.triangles.resize(model.geometry().triangles.size());

@@ -1,7 +1,10 @@
 #include "viewer/model.h"
 
+#include "sampled_cloud.h"
 #include "scenes.h"
+#include "surfels/errors.h"
 #include "surfels/surfel.h"
+#include "viewer/solve_model.h"
 
 #include <glm/geometric.hpp>
 
@@ -188,6 +191,22 @@ TEST(Model, AlsoOfOneTriangleAndOfNoneWithArea)
     EXPECT_EQ(none.splats.size(), 0u);
     EXPECT_FALSE(none.seen.empty());
     EXPECT_EQ(level_range(none), glm::vec2(0.0f, 1.0f));
+}
+
+TEST(CloudModel, PointsAreSurfelsWithTheBakesOwnAnswers)
+{
+    const Mesh mesh = make_mesh(scenes::sphere({0, 0, 0}, 1.0, 8));
+    const Scene cloud = scenes::sampled(mesh, {.points = 500, .has_normals = false}).cloud;
+    const Model model = model_of(cloud, UpAxis::y, {});
+    ASSERT_TRUE(model.cloud);
+    EXPECT_EQ(model.splats.size(), 500u);
+    EXPECT_EQ(model.surfels.size(), 500u);
+    EXPECT_EQ(model.answer_count(), 500u + kGroundReceivers);
+    const std::vector<Occlusion> baked = bake_points(*model.cloud, {}, 0).values;
+    const std::vector<Occlusion> shown = solve_model(prepare(model, {}), model, {}).values;
+    for (std::size_t i = 0; i < baked.size(); ++i)
+        EXPECT_EQ(shown[i].occlusion, baked[i].occlusion);
+    EXPECT_THROW(model_of(mesh.scene, UpAxis::y, {.viewpoint = glm::dvec3(0.0)}), SettingsError);
 }
 
 }  // namespace

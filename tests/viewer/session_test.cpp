@@ -103,6 +103,38 @@ TEST_F(SessionTest, ReadsAFileAndSolvesIt)
     EXPECT_FALSE(state.error.has_value());
 }
 
+// What is saved is what bake() writes for these parts; a pattern that means nothing is told, and
+// the model stays.
+TEST_F(SessionTest, OtherPartsMakeAnotherModel)
+{
+    const std::filesystem::path plain = ball();
+    const std::filesystem::path input =
+        folder_.file("parts.obj", "o ball\n" + contents_of(plain) +
+                                      "o lid\nv -9 -9 3\nv 9 -9 3\nv 0 9 3\nf -3 -2 -1\n");
+    Session session;
+    session.open(input, UpAxis::y);
+    ASSERT_TRUE(wait_for_whole_answer(session));
+    SessionSettings settings;
+    settings.parts.receivers = {"ball"};
+    session.solve(settings);
+    ASSERT_TRUE(wait_for(session, [](const Session::Changes& changes) { return changes.model; }));
+    ASSERT_TRUE(wait_for_whole_answer(session));
+    const Model& model = *session.state().model;
+    EXPECT_EQ(model.geometry().triangles.size() + 1, model.occluding().triangles.size());
+    session.save(folder_ / "saved.ply");
+    BakeSettings bake_settings;
+    bake_settings.input = input;
+    bake_settings.output = folder_ / "baked.ply";
+    bake_settings.parts = settings.parts;
+    static_cast<void>(bake(bake_settings));
+    EXPECT_EQ(contents_of(folder_ / "saved.ply"), contents_of(folder_ / "baked.ply"));
+
+    settings.parts.receivers = {"gone"};
+    session.solve(settings);
+    EXPECT_TRUE(wait_for(session, [&] { return !session.state().message.empty(); }));
+    EXPECT_EQ(session.state().model.get(), &model);
+}
+
 TEST_F(SessionTest, EqualSettingsSolveNothing)
 {
     Session session;

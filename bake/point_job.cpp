@@ -1,0 +1,60 @@
+#include "bake/point_job.h"
+
+#include "bake/point_target.h"
+#include "files/scene_io.h"
+#include "surfels/errors.h"
+#include "surfels/progress.h"
+#include "surfels/stopwatch.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace surfelao {
+
+void check_points(const BakeSettings& settings, const Scene& scene)
+{
+    const bool is_cloud = scene.triangles.empty();
+    const bool wants_points = settings.at_points.value_or(is_cloud);
+    require(is_cloud || !wants_points,
+            scene.name + ": has faces, --at points is for files without");
+    require(!is_cloud || !settings.texels, scene.name + ": has no faces for a map to lie on");
+    require(!is_cloud || wants_points, scene.name + ": has points only, no faces: --at points");
+    check_target(scene, settings.target, settings.parts);
+}
+
+void bake_at_points(const Scene& scene, BakeReport& report, const StageProgress& progress)
+{
+    const BakeSettings& settings = report.settings;
+    const PointTarget target = make_point_target(scene, settings.target, progress);
+    report.settings.engine.definition =
+        definition_of(settings.max_distance, settings.kernel, target.cloud.frame);
+    report.settings.engine.definition.ground = ground_below(target, settings.ground);
+    if (const auto& ground = report.settings.engine.definition.ground)
+        report.ground = text_of(*ground, target.cloud.frame);
+    report.points = report_of(target);
+    report.receivers = scene.positions.size();
+    report.vertices_without_normal = target.cloud.counts.without_normal;
+    VertexBake baked = settings.error
+                           ? bake_points_to_error(target, settings.engine, *settings.error,
+                                                  settings.check, progress)
+                           : bake_points(target, settings.engine, settings.check, progress);
+    take(baked, report);
+    report.seconds.points = target.seconds;
+
+    if (progress && !progress("write", 0.0))
+        throw Cancelled();
+    Stopwatch stage;
+    report.notes = scene.notes;
+    for (const auto& notes : {point_notes(target),
+                              write_scene(settings.output, scene, baked.values,
+                                          {settings.colors, settings.encoding, mark_of(settings)})})
+        report.notes.insert(report.notes.end(), notes.begin(), notes.end());
+    double sum = 0.0;
+    for (const Occlusion& value : baked.values)
+        sum += value.occlusion;
+    report.mean_occlusion = sum / static_cast<double>(std::max<std::uint64_t>(
+                                      1, scene.positions.size() - report.vertices_without_normal));
+    report.seconds.write = stage.lap();
+}
+
+}  // namespace surfelao
