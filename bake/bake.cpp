@@ -56,19 +56,76 @@ struct Job {
     Occluders* occluders = nullptr;
 };
 
+/// Throws InputError where the answers are not those of this mesh.
+VertexBake bake_merged(const Mesh& mesh, const VertexTarget& target, const BakeSettings& settings,
+                       const Offset& offset, const StageProgress& progress)
+{
+    const MergedAnswers& merged = *settings.merged;
+    std::vector<Occlusion> answers = merged.answers;
+    if (answers.size() != target.receivers().size() ||
+        question_of(mesh.occluding(), target.receivers()) != merged.question)
+        throw InputError(settings.input.string() + ": is not as it was when its parts were baked");
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+        if (target.receivers()[i].normal == glm::vec3(0.0f))
+            answers[i] = {};
+        else if (answers[i] == kUnsolved)
+            throw InputError(settings.input.string() + ": no part answers receiver " +
+                             std::to_string(i));
+    }
+    VertexBake bake = bake_answers(mesh, target, settings.engine, offset, settings.check,
+                                   std::move(answers), progress);
+    bake.surfels = merged.surfels;
+    bake.residual = merged.residual;
+    return bake;
+}
+
 VertexBake answer(const Job& job, const VertexTarget& target, const StageProgress& progress,
                   BakeReport& report)
 {
     const BakeSettings& settings = report.settings;
     const Mesh& mesh = *job.mesh;
     const Offset offset = offset_of(settings.target, mesh.geometry.frame);
-    VertexBake bake = settings.error
+    VertexBake bake = settings.merged ? bake_merged(mesh, target, settings, offset, progress)
+                      : settings.error
                           ? bake_to_error(mesh, target, settings.engine, offset, *settings.error,
                                           settings.check, progress, job.occluders)
                           : bake_vertices(mesh, target, settings.engine, offset, settings.check,
                                           progress, job.occluders);
     take(bake, report);
     return bake;
+}
+
+/// Solves a share and writes its file.
+void bake_part(const Mesh& mesh, const VertexTarget& target, BakeReport& report,
+               const StageProgress& progress)
+{
+    const BakeSettings& settings = report.settings;
+    const VertexBake solved = solve_share(mesh, target, settings.engine, progress);
+    report.surfels = solved.surfels;
+    report.residual = solved.residual;
+    static_cast<VertexBakeSeconds&>(report.seconds) = solved.seconds;
+    PartFile part{.mark = mark_of(settings),
+                  .input = fs::absolute(settings.input),
+                  .output = fs::absolute(settings.output),
+                  .arguments = settings.share->arguments,
+                  .share = settings.share->share,
+                  .question = question_of(mesh.occluding(), target.receivers()),
+                  .receivers = target.receivers().size(),
+                  .surfels = solved.surfels,
+                  .residual = solved.residual,
+                  .solved = {},
+                  .answers = {}};
+    for (std::uint32_t i = 0; i < solved.answers.size(); ++i) {
+        if (solved.answers[i] == kUnsolved || target.receivers()[i].normal == glm::vec3(0.0f))
+            continue;
+        part.solved.push_back(i);
+        part.answers.push_back(solved.answers[i]);
+    }
+    report.solved = part.solved.size();
+    enter(progress, "write");
+    Stopwatch watch;
+    write_part(part_path(settings.output, settings.share->share), part);
+    report.seconds.write = watch.lap();
 }
 
 /// Solves, writes the output, and fills in the report what is of the values.
@@ -80,6 +137,8 @@ void bake_at_vertices(const Job& job, BakeReport& report, const StageProgress& p
     const VertexTarget target(mesh, settings.target);
     report.receivers = target.receivers().size();
     report.seconds.read += stage.lap();
+    if (settings.share)
+        return bake_part(*mesh, target, report, progress);
     const VertexBake baked = answer(job, target, progress, report);
 
     enter(progress, "write");
@@ -174,6 +233,8 @@ BakeReport bake_one(const Job& job, const BakeSettings& settings, double read_se
     report.settings.engine.definition =
         definition_of(report.settings.max_distance, report.settings.kernel, geometry.frame);
     set_ground({geometry, mesh.occluding()}, report);
+    if (settings.share)
+        report.settings.engine.share = settings.share->share;
     if (report.settings.texels)
         bake_texels(mesh, job.occluders, report, progress);
     else
@@ -206,6 +267,8 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
             mesh_of(std::move(scene), settings.target.normals, settings.parts, settings.reading))};
         return bake_one(job, settings, watch.lap(), progress);
     }
+    if (settings.share)
+        throw InputError(settings.input.string() + ": has points only, --part is for faces");
     BakeReport report;
     report.settings = settings;
     report.threads = thread_count();

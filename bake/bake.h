@@ -3,6 +3,7 @@
 
 #include "atlas/seams.h"
 #include "bake/map_bake.h"
+#include "bake/part_file.h"
 #include "bake/point_target.h"
 #include "bake/texel_layout.h"
 #include "bake/vertex_bake.h"
@@ -21,6 +22,12 @@
 #include <vector>
 
 namespace surfelao {
+
+/// A share of a bake on one machine of several.
+struct BakeShare {
+    Share share;
+    std::vector<std::string> arguments;  ///< PartFile::arguments
+};
 
 struct BakeSettings {
     std::filesystem::path input;
@@ -43,6 +50,11 @@ struct BakeSettings {
     VertexColors colors = VertexColors::automatic;
     Encoding encoding = Encoding::automatic;
     ReadOptions reading = {};  ///< of the input
+    /// Only this share is solved; in place of the output stands its file, part_path(output). For
+    /// values at vertices by an engine on the CPU.
+    std::optional<BakeShare> share = {};
+    /// The answers of all shares, in place of an engine's.
+    std::shared_ptr<const MergedAnswers> merged = {};
 };
 
 /// Wall-clock seconds of each stage.
@@ -100,6 +112,7 @@ struct BakeReport {
     std::optional<PointReport> points;
     std::vector<Trial> trials;       ///< of settings.error
     bool is_met = false;             ///< settings.error is kept
+    std::uint64_t solved = 0;        ///< of a part: receivers of its share
     std::vector<std::string> notes;  ///< bake/notes.h, then those of write_scene()
 };
 

@@ -296,7 +296,7 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     Definition definition = definition_of(settings.max_distance, settings.kernel, geometry.frame);
     definition.ground = comparison.cloud
                             ? ground_below(*comparison.cloud, settings.ground)
-                            : ground_of(settings.ground, {geometry},
+                            : ground_of(settings.ground, {geometry, comparison.mesh->occluding()},
                                         largest_offset_of(settings.target, geometry.frame));
     if (definition.ground)
         comparison.ground = text_of(*definition.ground, geometry.frame);

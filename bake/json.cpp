@@ -205,6 +205,11 @@ Json json_of(const BatchEntry& entry)
     json["error"] = json_of(report.error);
     json["texels"] = report.texels ? json_of(report, *report.texels) : Json();
     json["points"] = report.points ? json_of(*report.points) : Json();
+    if (const auto& part = report.settings.share)
+        json["part"] = {{"share", part->share.index + 1},
+                        {"shares", part->share.count},
+                        {"solved", report.solved},
+                        {"file", part_path(report.settings.output, part->share).string()}};
     json["asked"] = report.settings.error ? search_json_of(report) : Json();
     json["notes"] = report.notes;
     return json;

@@ -26,6 +26,14 @@ public:
     /// The seconds are those of all calls so far.
     VertexBake bake(const EngineSettings& engine)
     {
+        VertexBake bake = solved(engine);
+        finish(bake);
+        return bake;
+    }
+
+    /// Answers without values.
+    VertexBake solved(const EngineSettings& engine)
+    {
         const Prepared& prepared = prepared_for(engine, seconds_.surfels, seconds_.tree);
         VertexBake bake;
         bake.engine = engine;
@@ -34,17 +42,22 @@ public:
         Solution solution = solve(prepared, target_.receivers(), engine, progress_in("solve"));
         seconds_.solve += solution.seconds;
         bake.residual = solution.residual;
+        bake.answers = std::move(solution.occlusion);
+        bake.seconds = seconds_;
+        return bake;
+    }
 
+    /// Values of the answers, and their error.
+    void finish(VertexBake& bake)
+    {
         enter("fit");
         Stopwatch watch;
-        bake.values = target_.values(solution.occlusion);
+        bake.values = target_.values(bake.answers);
         seconds_.fit += watch.lap();
-        bake.answers = std::move(solution.occlusion);
         if (count_ > 0)
             bake.error = error_of(bake);
         seconds_.check += watch.lap();
         bake.seconds = seconds_;
-        return bake;
     }
 
     /// Measures what has been baked last at four times as many points; false where they are enough.
@@ -94,6 +107,23 @@ VertexBake bake_vertices(const Mesh& mesh, const VertexTarget& target, const Eng
                          Occluders* occluders)
 {
     return Baker(mesh, target, offset, check, progress, occluders).bake(engine);
+}
+
+VertexBake solve_share(const Mesh& mesh, const VertexTarget& target, const EngineSettings& engine,
+                       const StageProgress& progress)
+{
+    return Baker(mesh, target, {}, 0, progress, nullptr).solved(engine);
+}
+
+VertexBake bake_answers(const Mesh& mesh, const VertexTarget& target, const EngineSettings& engine,
+                        const Offset& offset, std::uint32_t check, std::vector<Occlusion> answers,
+                        const StageProgress& progress)
+{
+    VertexBake bake;
+    bake.engine = engine;
+    bake.answers = std::move(answers);
+    Baker(mesh, target, offset, check, progress, nullptr).finish(bake);
+    return bake;
 }
 
 VertexBake bake_to_error(const Mesh& mesh, const VertexTarget& target, const EngineSettings& engine,

@@ -45,6 +45,18 @@ struct VertexBake {
                                        std::uint32_t check, const StageProgress& progress = {},
                                        Occluders* occluders = nullptr);
 
+/// A share of the answers (settings.share of `engine`), without values: what is neither fitted nor
+/// judged before all are there. Throws as bake_vertices().
+[[nodiscard]] VertexBake solve_share(const Mesh& mesh, const VertexTarget& target,
+                                     const EngineSettings& engine,
+                                     const StageProgress& progress = {});
+
+/// What bake_vertices() makes of answers that are at hand.
+[[nodiscard]] VertexBake bake_answers(const Mesh& mesh, const VertexTarget& target,
+                                      const EngineSettings& engine, const Offset& offset,
+                                      std::uint32_t check, std::vector<Occlusion> answers,
+                                      const StageProgress& progress = {});
+
 /// By the cheapest of masks at any quality and rays at any number whose error is below `error` with
 /// its whole interval. Costs are those that settings have on the median model, so that equal input
 /// takes the same one everywhere. Where values at these vertices cannot be so exact, whoever

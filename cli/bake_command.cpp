@@ -1,3 +1,5 @@
+#include "cli/bake_command.h"
+
 #include "bake/bake.h"
 #include "cli/bake_text.h"
 #include "cli/commands.h"
@@ -16,6 +18,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -42,6 +45,8 @@ struct BakeOptions {
     std::optional<double> error;
     bool resume = false;
     bool overwrite = false;
+    std::optional<std::string> part;     ///< "3/7"
+    std::vector<std::string> arguments;  ///< what of the command line a part's file holds
     std::optional<std::string> json;
     std::optional<int> threads;
 };
@@ -92,6 +97,22 @@ std::vector<Job> jobs_of(const BakeOptions& options)
     return jobs;
 }
 
+/// Throws UsageError for what is no share.
+std::optional<BakeShare> share_of(const BakeOptions& options)
+{
+    if (!options.part)
+        return std::nullopt;
+    std::uint32_t numbers[2] = {};
+    const char* const end = options.part->data() + options.part->size();
+    const auto first = std::from_chars(options.part->data(), end, numbers[0]);
+    const bool has_second = first.ec == std::errc() && first.ptr != end && *first.ptr == '/';
+    const auto second = has_second ? std::from_chars(first.ptr + 1, end, numbers[1]) : first;
+    if (!has_second || second.ec != std::errc() || second.ptr != end || numbers[0] < 1 ||
+        numbers[0] > numbers[1] || numbers[1] > kMostShares)
+        throw UsageError("--part: \"" + *options.part + "\" is not K/N with K from 1 to N.");
+    return BakeShare{{numbers[0] - 1, numbers[1]}, options.arguments};
+}
+
 BakeSettings settings_for(const BakeOptions& options, const Job& job)
 {
     BakeSettings settings;
@@ -116,6 +137,7 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
         settings.at_points = options.texels.at == "points";
     settings.colors = colors_of(options.colors);
     settings.encoding = encoding_of(options.colors);
+    settings.share = share_of(options);
     settings.reading = options.reading;
     return settings;
 }
@@ -153,6 +175,10 @@ bool run_jobs(const std::vector<BakeSettings>& settings, bool ask_before_replaci
 
 void add_written(const BatchEntry& entry, std::vector<fs::path>& written)
 {
+    if (const auto& part = entry.report->settings.share) {
+        written.push_back(part_path(entry.output, part->share));
+        return;
+    }
     if (!entry.report->texels || type_of(entry.output) != FileType::unknown)
         written.push_back(entry.output);
     if (entry.report->texels)
@@ -214,6 +240,23 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
     return failed > 0 ? kFailed : kDone;
 }
 
+/// Throws UsageError for what cannot be done in shares.
+void check_part(const BakeOptions& options, const EngineSettings& engine)
+{
+    if (!share_of(options))
+        return;
+    if (options.inputs.size() != 1 || is_folder(options))
+        throw UsageError("--part is for a single file.");
+    if (options.error)
+        throw UsageError("--part is a share of a known engine's work: leave out --error.");
+    if (engine.device != Device::cpu)
+        throw UsageError("--part is for --device cpu.");
+    if (texel_settings_of(options.texels, options.output))
+        throw UsageError("--part is for values at vertices.");
+    if (options.resume)
+        throw UsageError("--resume knows no parts: leave it or --part out.");
+}
+
 /// Throws UsageError for what contradicts itself.
 void check_options(const BakeOptions& options)
 {
@@ -233,17 +276,11 @@ void check_options(const BakeOptions& options)
             "With --high nothing else occludes: leave out --occluders and --together.");
     if (options.resume && options.texels.udim)
         throw UsageError("--resume knows no tiles: leave it or --udim out.");
+    check_part(options, engine);
 }
 
-}  // namespace
-
-void add_bake_command(CLI::App& app, Work& work)
+void add_options(CLI::App* command, const std::shared_ptr<BakeOptions>& options)
 {
-    const auto options = std::make_shared<BakeOptions>();
-    CLI::App* command = app.add_subcommand("bake",
-                                           "Occlusion and bent normals at every vertex or point, "
-                                           "or as a map: a mesh or a cloud of points in, the same "
-                                           "or a picture out");
     command->add_option("IN", options->inputs, kMeshOrCloud)->required()->type_name("");
     command
         ->add_option(
@@ -296,8 +333,62 @@ void add_bake_command(CLI::App& app, Work& work)
                      "Write what was done and how long it took; - = "
                      "standard output; a list for several files")
         ->type_name("FILE");
+    command
+        ->add_option("--part", options->part,
+                     "Only the K-th of N equal shares of the work, for one machine of N: writes "
+                     "OUT.K-of-N.part; `surfelao merge` makes OUT of all of them")
+        ->type_name("K/N");
     add_thread_option(*command, options->threads);
-    command->callback([options, &work] {
+}
+
+/// What `merge` needs of the command line to say the same settings again: not where it reads and
+/// writes, nor what concerns this machine alone.
+std::vector<std::string> arguments_of(const CLI::App& command)
+{
+    std::vector<std::string> arguments;
+    for (const CLI::Option* option : command.get_options()) {
+        const std::string name = option->get_name();
+        if (option->count() == 0 || option->get_positional() || name == "--output" ||
+            name == "--part" || name == "--threads" || name == "--json" || name == "--overwrite")
+            continue;
+        arguments.push_back(name);
+        if (option->get_items_expected_max() > 0)
+            arguments.insert(arguments.end(), option->results().begin(), option->results().end());
+    }
+    return arguments;
+}
+
+}  // namespace
+
+BakeSettings bake_settings_of(const fs::path& input, const fs::path& output,
+                              std::span<const std::string> arguments)
+{
+    const auto options = std::make_shared<BakeOptions>();
+    CLI::App command;
+    add_options(&command, options);
+    std::vector<std::string> line(arguments.rbegin(), arguments.rend());  // as parse() takes it
+    line.insert(line.end(), {output.string(), "-o", input.string()});
+    try {
+        command.parse(std::move(line));
+        check_options(*options);
+    } catch (const CLI::ParseError&) {
+        throw InputError(input.string() + ": its parts have options that no bake has");
+    } catch (const UsageError&) {
+        throw InputError(input.string() + ": its parts have options that contradict each other");
+    }
+    return settings_for(*options, {input, output});
+}
+
+void add_bake_command(CLI::App& app, Work& work)
+{
+    const auto options = std::make_shared<BakeOptions>();
+    CLI::App* command = app.add_subcommand("bake",
+                                           "Occlusion and bent normals at every vertex or point, "
+                                           "or as a map: a mesh or a cloud of points in, the same "
+                                           "or a picture out");
+    add_options(command, options);
+    command->callback([options, command, &work] {
+        options->arguments = arguments_of(*command);
         check_options(*options);
         work = [options, jobs = jobs_of(*options)] { return run(*options, jobs); };
     });

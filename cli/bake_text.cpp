@@ -114,6 +114,14 @@ void print_report(const BakeReport& report)
                   << " occlude";
     if (report.vertices_without_normal > 0 && !report.points)
         std::cout << ", " << report.vertices_without_normal << " vertices without a normal";
+    if (const auto& part = report.settings.share) {
+        std::cout << "\n  " << question_of(report) << "\n  share " << part->share.index + 1
+                  << " of " << part->share.count << ": " << report.solved << " places; read "
+                  << time(seconds.read) << ", build " << time(seconds.surfels + seconds.tree)
+                  << ", solve " << time(seconds.solve) << ", write " << time(seconds.write) << "; "
+                  << report.threads << (report.threads == 1 ? " thread" : " threads") << '\n';
+        return;
+    }
     std::cout << "\n  " << question_of(report) << ": mean occlusion "
               << fixed(report.mean_occlusion, 4);
     if (report.residual)

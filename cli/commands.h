@@ -19,6 +19,7 @@ using Work = std::function<int()>;
 void add_bake_command(CLI::App& app, Work& work);
 void add_compare_command(CLI::App& app, Work& work);
 void add_info_command(CLI::App& app, Work& work);
+void add_merge_command(CLI::App& app, Work& work);
 void add_render_command(CLI::App& app, Work& work);
 void add_view_command(CLI::App& app, Work& work);
 

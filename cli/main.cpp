@@ -26,7 +26,7 @@ int run(int argument_count, char** arguments)
     app.require_subcommand(1);
     Work work;
     for (const auto& add : {add_bake_command, add_compare_command, add_info_command,
-                            add_render_command, add_view_command})
+                            add_merge_command, add_render_command, add_view_command})
         add(app, work);
 
     try {

@@ -208,6 +208,7 @@ MaskOptions mask_options(const EngineChoice& choice, const SolveSettings& settin
     MaskOptions options;
     options.definition = settings.definition;
     options.quality = settings.quality;
+    options.share = settings.share;
     options.kernel = kernel_set_of(choice.instructions);
     return options;
 }
@@ -219,6 +220,7 @@ DiskOptions disk_options(const SolveSettings& settings)
     options.opening = opening_at(settings.quality);
     options.passes = settings.passes;
     options.strength = settings.strength;
+    options.share = settings.share;
     return options;
 }
 
@@ -298,6 +300,7 @@ Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
         options.definition = settings.definition;
         options.rays = settings.rays;
         options.seed = settings.seed;
+        options.share = settings.share;
         solution.occlusion = trace_occlusion(*impl.rays, receivers, options, progress);
     }
     solution.seconds = watch.lap();
@@ -343,6 +346,9 @@ void check_settings(const EngineChoice& choice, const SolveSettings& settings)
     check_definition(settings.definition);
     require(knows_kernel(choice.engine, settings.definition.kernel),
             name_of(choice.engine) + " know the cosine kernel only");
+    require(settings.share.index < settings.share.count, "the share must be one of all");
+    require(settings.share.count == 1 || choice.device == Device::cpu,
+            "shares of receivers are solved on the CPU only");
     if (choice.engine == Engine::rays) {
         require(settings.rays >= 1 && settings.rays <= kMostRays,
                 "rays must be between 1 and " + std::to_string(kMostRays));

@@ -13,6 +13,7 @@
 #include "surfels/occlusion.h"
 #include "surfels/progress.h"
 #include "surfels/receiver.h"
+#include "surfels/share.h"
 
 #include <cstdint>
 #include <functional>
@@ -72,6 +73,7 @@ struct SolveSettings {
     float strength = 1.0f;     ///< disks: >= 0
     std::uint32_t rays = 256;  ///< rays: 1 to kMostRays
     std::uint32_t seed = 0;    ///< rays: another seed, another independent estimate
+    Share share = {};          ///< cpu: only these receivers, as the whole list would be solved
     bool operator==(const SolveSettings&) const = default;
 };
 
@@ -121,10 +123,10 @@ struct Solution {
 [[nodiscard]] Prepared prepare(const PointCloud& cloud, const Geometry& squares,
                                const EngineChoice& choice = {});
 
-/// One answer per receiver, in their order. Throws SettingsError for settings out of their ranges,
-/// InputError for a receiver that is not finite, farther than kFarthestReceiver, or whose normal is
-/// neither of unit length (to kUnitLength) nor zero, Cancelled, and std::runtime_error where the
-/// device refuses.
+/// One answer per receiver, in their order: kUnsolved for those of other shares. Throws
+/// SettingsError for settings out of their ranges, InputError for a receiver that is not finite,
+/// farther than kFarthestReceiver, or whose normal is neither of unit length (to kUnitLength) nor
+/// zero, Cancelled, and std::runtime_error where the device refuses.
 [[nodiscard]] Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
                              const SolveSettings& settings = {}, const Progress& progress = {});
 

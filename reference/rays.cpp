@@ -320,10 +320,17 @@ std::vector<Occlusion> trace_all(RTCScene scene, std::span<const Receiver> recei
     const SobolPoints points = sobol_points_by_cell(options.rays);
     const std::vector<std::uint32_t> order = morton_order(receivers);
     std::vector<Occlusion> results(receivers.size());
-    ProgressMeter meter(progress, receivers.size());
-
     const std::size_t run_count = (order.size() + kPacket - 1) / kPacket;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, run_count, 4), [&](const auto& range) {
+    const ShareRange share = range_of(options.share, run_count);
+    ProgressMeter meter(progress, (share.end - share.begin) * kPacket);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const std::size_t run = i / kPacket;
+        if ((run < share.begin || run >= share.end) &&
+            receivers[order[i]].normal != glm::vec3(0.0f))
+            results[order[i]] = kUnsolved;
+    }
+    const tbb::blocked_range<std::size_t> runs(share.begin, share.end, 4);
+    tbb::parallel_for(runs, [&](const auto& range) {
         const FlushDenormals flush;
         RunTracer<width> tracer(scene, receivers, options, points, results);
         for (std::size_t run = range.begin(); run < range.end(); ++run) {

@@ -16,6 +16,7 @@
 #include "surfels/occlusion.h"
 #include "surfels/progress.h"
 #include "surfels/receiver.h"
+#include "surfels/share.h"
 
 #include <cstdint>
 #include <memory>
@@ -56,6 +57,8 @@ struct RayOptions {
     Definition definition = {};
     std::uint32_t rays = 256;  ///< per receiver, 1 to kMostRays; powers of two are the most exact
     std::uint32_t seed = 0;    ///< another seed, another independent estimate
+    Share share = {};          ///< of the runs of neighbours; others but those without a normal get
+                               ///< kUnsolved
 };
 
 inline constexpr std::uint32_t kMostRays = 1u << 20;

@@ -3,6 +3,7 @@
 #include "reference/rays.h"
 #include "reference/well_defined.h"
 #include "surfels/atomic_file.h"
+#include "surfels/content_hash.h"
 #include "surfels/errors.h"
 
 #include <glm/geometric.hpp>
@@ -16,7 +17,6 @@
 #include <fstream>
 #include <optional>
 #include <string>
-#include <type_traits>
 
 namespace surfelao {
 namespace {
@@ -32,33 +32,6 @@ constexpr std::uint32_t kFirstSeed = 0x51A7E001, kSecondSeed = 0x51A7E002;
 
 /// What placement_change costs, in rays a receiver; for an even progress only.
 constexpr double kPlacementRays = 1280.0;
-
-/// 128 bits over words of 64: two multiplicative hashes with different odd constants.
-class ContentHash {
-public:
-    template <class T>
-    void add(std::span<const T> values)
-    {
-        static_assert(std::is_trivially_copyable_v<T>);
-        add_word(values.size_bytes());
-        const char* bytes = reinterpret_cast<const char*>(values.data());
-        for (std::size_t at = 0; at < values.size_bytes(); at += 8) {
-            std::uint64_t word = 0;
-            std::memcpy(&word, bytes + at, std::min<std::size_t>(8, values.size_bytes() - at));
-            add_word(word);
-        }
-    }
-    void add_word(std::uint64_t word)
-    {
-        high_ = std::rotl((high_ ^ word) * 0x9E3779B97F4A7C15u, 31);
-        low_ = std::rotl((low_ ^ word) * 0xD6E8FEB86659FD93u, 29);
-    }
-    std::uint64_t high() const { return high_ ^ high_ >> 32; }
-    std::uint64_t low() const { return low_ ^ low_ >> 32; }
-
-private:
-    std::uint64_t high_ = 0x243F6A8885A308D3u, low_ = 0x13198A2E03707344u;  // digits of pi
-};
 
 ContentHash key_of(const Geometry& geometry, std::span<const Receiver> receivers,
                    const ReferenceOptions& options)

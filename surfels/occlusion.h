@@ -40,7 +40,11 @@ namespace surfelao {
 struct Occlusion {
     float occlusion = 0.0f;       ///< in [0, 1]: 0 = open, 1 = closed
     glm::vec3 bent_normal{0.0f};  ///< unit length; zero only where the receiver has no normal
+    bool operator==(const Occlusion&) const = default;
 };
+
+/// In place of the answer of a receiver that belongs to another share (share.h).
+inline constexpr Occlusion kUnsolved{-1.0f, glm::vec3(0.0f)};
 
 /// How directions are weighted.
 enum class Kernel {

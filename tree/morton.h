@@ -20,8 +20,8 @@ struct MortonKey {
 };
 
 /// One key per point, sorted by code, equal codes by index. The curve fills the smallest cube with
-/// the box's lower corner that holds all points, with lengths beyond 1 drawn in; equal points have equal codes. Points must be
-/// finite. O(n log n), all cores, same bytes for any number of threads.
+/// the box's lower corner that holds all points, with lengths beyond 1 drawn in; equal points have
+/// equal codes. Points must be finite. O(n log n), all cores, same bytes for any number of threads.
 [[nodiscard]] std::vector<MortonKey> morton_order(std::span<const glm::vec3> points);
 
 }  // namespace surfelao

@@ -249,7 +249,8 @@ Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings, float lar
     model.point_receivers = receivers_at(g, model.mesh->surface, model.points, offset);
 
     model.ground_plane = plane;
-    model.occluding_ground = ground_of(plane, {g}, largest_offset_of(settings, g.frame));
+    model.occluding_ground =
+        ground_of(plane, {g, model.occluding()}, largest_offset_of(settings, g.frame));
     add_ground(model, offset);
     return model;
 }

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
@@ -174,6 +175,41 @@ TEST(Engines, DistanceLimitsOfAUserAreRefusedByName)
         SettingsError);
     EXPECT_THROW(static_cast<void>(definition_of({.value = 1e-60}, Kernel::cosine, frame)),
                  InputError);
+}
+
+TEST(Engines, SharesAreTheBytesOfTheWhole)
+{
+    const World world;
+    std::vector<Receiver> receivers = world.receivers[0];
+    receivers[7].normal = glm::vec3(0.0f);
+    for (const Engine engine : {Engine::masks, Engine::disks, Engine::rays}) {
+        const Prepared prepared = prepare(world.geometry, {.engine = engine});
+        for (SolveSettings settings : kSettings) {
+            settings.share = {};
+            const std::vector<Occlusion> whole = solve(prepared, receivers, settings).occlusion;
+            std::vector<Occlusion> joined(receivers.size(), kUnsolved);
+            std::vector<std::size_t> solved;
+            for (settings.share = {0, 7}; settings.share.index < 7; ++settings.share.index) {
+                const std::vector<Occlusion> part = solve(prepared, receivers, settings).occlusion;
+                solved.push_back(0);
+                for (std::size_t i = 0; i < part.size(); ++i) {
+                    if (part[i] == kUnsolved || i == 7)
+                        continue;
+                    EXPECT_EQ(joined[i], kUnsolved) << name_of(engine) << ", " << i;
+                    joined[i] = part[i];
+                    ++solved.back();
+                }
+                EXPECT_EQ(part[7], Occlusion{}) << name_of(engine);  // everywhere
+            }
+            joined[7] = {};
+            EXPECT_TRUE(same_bytes(joined, whole)) << name_of(engine);
+            const auto [least, most] = std::ranges::minmax(solved);
+            EXPECT_LE(most - least, 32u) << name_of(engine);
+        }
+        EXPECT_THROW(static_cast<void>(solve(prepared, receivers, {.share = {7, 7}})),
+                     SettingsError);
+    }
+    EXPECT_THROW(check_settings({.device = Device::gpu}, {.share = {0, 2}}), SettingsError);
 }
 
 TEST(Engines, AGroundOfAUserLiesWhereItWasAskedForOrBelowAll)

@@ -24,11 +24,12 @@ using Range = tbb::blocked_range<std::size_t>;
 /// Groups that one thread takes at a time: some tens of microseconds each.
 constexpr std::size_t kGroupsPerTask = 16;
 
+/// leaves: those of the groups that are asked.
 void gather_all(const Octree& octree, const EmitterVisibility& visibility,
-                const ReceiverGroups& groups, const GatherSettings& settings,
-                std::span<DiskSum> sums, ProgressMeter& meter)
+                const ReceiverGroups& groups, const ShareRange& leaves,
+                const GatherSettings& settings, std::span<DiskSum> sums, ProgressMeter& meter)
 {
-    tbb::parallel_for(Range(0, groups.leaves.size(), kGroupsPerTask), [&](const Range& range) {
+    tbb::parallel_for(Range(leaves.begin, leaves.end, kGroupsPerTask), [&](const Range& range) {
         gather_disks(octree, visibility, groups,
                      std::span(groups.leaves).subspan(range.begin(), range.size()), settings, sums);
         meter.add(range.size());
@@ -120,6 +121,19 @@ void add_ground(const Definition& definition, std::span<const Receiver> receiver
     });
 }
 
+/// kUnsolved for the receivers of all but these leaves.
+void mark_others(const ReceiverGroups& groups, const ShareRange& leaves,
+                 std::vector<Occlusion>& occlusion)
+{
+    for (std::size_t leaf = 0; leaf < groups.leaves.size(); ++leaf) {
+        if (leaf >= leaves.begin && leaf < leaves.end)
+            continue;
+        const ReceiverGroup& group = groups.groups[groups.leaves[leaf]];
+        for (std::uint32_t i = group.begin; i < group.end; ++i)
+            occlusion[groups.order[i]] = kUnsolved;
+    }
+}
+
 Occlusion to_occlusion(const DiskSum& sum, const glm::vec3& normal, float strength)
 {
     const DiskSum s = capped(sum);
@@ -208,7 +222,8 @@ std::vector<DiskResult> solve_disk_lists(const Octree& octree,
     std::vector<double> residuals;
     for (int pass = 1; pass < options.passes; ++pass) {
         for (FarSide& side : sides)
-            gather_all(octree, visibility, side.groups, beyond, side.sums, meter);
+            gather_all(octree, visibility, side.groups, {0, side.groups.leaves.size()}, beyond,
+                       side.sums, meter);
         const float weight = pass == 1 ? 1.0f : kDamping;
         double change = sides[0].update(octree, weight, visibility.surfel_front);
         if (two_sided)
@@ -228,7 +243,8 @@ std::vector<DiskResult> solve_disk_lists(const Octree& octree,
     for (std::size_t list = 0; list < lists.size(); ++list) {
         const std::span<const Receiver> receivers = lists[list];
         std::vector<DiskSum> sums(receivers.size());
-        gather_all(octree, visibility, groups[list], settings, sums, meter);
+        const ShareRange leaves = range_of(options.share, groups[list].leaves.size());
+        gather_all(octree, visibility, groups[list], leaves, settings, sums, meter);
         DiskResult& result = results.emplace_back();
         result.residuals = residuals;
         result.occlusion.resize(receivers.size());
@@ -236,6 +252,7 @@ std::vector<DiskResult> solve_disk_lists(const Octree& octree,
             add_ground(definition, receivers, sums);
         for (std::size_t i = 0; i < receivers.size(); ++i)
             result.occlusion[i] = to_occlusion(sums[i], receivers[i].normal, options.strength);
+        mark_others(groups[list], leaves, result.occlusion);
     }
     return results;
 }

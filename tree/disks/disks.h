@@ -35,6 +35,7 @@
 #include "surfels/occlusion.h"
 #include "surfels/progress.h"
 #include "surfels/receiver.h"
+#include "surfels/share.h"
 #include "surfels/surfel.h"
 #include "surfels/topology.h"
 #include "tree/disks/octree.h"
@@ -58,6 +59,9 @@ struct DiskOptions {
                                    ///< receiver is always opened
     int passes = 2;         ///< >= 1: 1 = plain sum; each further one corrects over-occlusion
     float strength = 1.0f;  ///< >= 0: occlusion is multiplied by it, then cut to [0, 1]
+    /// Of the groups of receivers, of each list; the others get kUnsolved, but for those without a
+    /// normal. The emitters are corrected all the same.
+    Share share = {};
 };
 
 struct DiskResult {

@@ -155,8 +155,9 @@ public:
           receivers_(receivers),
           groups_(group_receivers(receivers, kMaskFrame)),
           limits_(distance_limits(options.definition)),
+          share_(range_of(options.share, groups_.leaves.size())),
           skies_(options.definition, receivers),
-          progress_(progress, groups_.order.size() * limits_.size()),
+          progress_(progress, groups_.leaves.size() * limits_.size() / options.share.count),
           answers_(receivers.size())
     {
     }
@@ -170,9 +171,12 @@ public:
                 visit(0, &root, has_triangles_ ? 1 : 0, MaskShared{}, 0);
             }
         }
+        mark_unsolved();
         const float weight = 1.0f / static_cast<float>(limits_.size());
         tbb::parallel_for(std::size_t{0}, answers_.size(), [&](std::size_t i) {
             Occlusion& answer = answers_[i];
+            if (answer == kUnsolved)
+                return;
             answer.occlusion *= weight;
             // a row vector times a rotation: turned back
             answer.bent_normal =
@@ -182,10 +186,29 @@ public:
     }
 
 private:
+    /// Whether any of its leaves is one of the share: they stand in the order of their receivers.
+    bool is_shared(const ReceiverGroup& group) const
+    {
+        return group.begin < share_.end * kGroupSize && group.end > share_.begin * kGroupSize;
+    }
+
+    void mark_unsolved()
+    {
+        for (std::size_t leaf = 0; leaf < groups_.leaves.size(); ++leaf) {
+            const ReceiverGroup& group = groups_.groups[groups_.leaves[leaf]];
+            if (is_shared(group))
+                continue;
+            for (std::uint32_t i = group.begin; i < group.end; ++i)
+                answers_[groups_.order[i]] = kUnsolved;
+        }
+    }
+
     void visit(std::uint32_t index, const std::uint32_t* in, std::size_t in_count,
                const MaskShared& from_above, std::size_t level)
     {
         const ReceiverGroup& group = groups_.groups[index];
+        if (!is_shared(group))
+            return;
         if (group.first_child == 0) {
             solve_leaf(group, in, in_count, from_above);
             return;
@@ -239,7 +262,7 @@ private:
             answers_[index].bent_normal +=
                 glm::vec3(found.bent[0][i], found.bent[1][i], found.bent[2][i]);
         }
-        progress_.add(columns.count);
+        progress_.add(1);
     }
 
     const MaskKernel& kernel_;
@@ -248,6 +271,7 @@ private:
     std::span<const Receiver> receivers_;
     ReceiverGroups groups_;
     std::vector<float> limits_;
+    ShareRange share_;  ///< of the leaves
     MaskSkies skies_;
     ProgressMeter progress_;
     std::vector<Occlusion> answers_;

@@ -14,6 +14,7 @@
 #include "surfels/occlusion.h"
 #include "surfels/progress.h"
 #include "surfels/receiver.h"
+#include "surfels/share.h"
 
 #include <cstdint>
 #include <memory>
@@ -65,6 +66,9 @@ struct MaskOptions {
     /// The oracle: every triangle drawn for every receiver, nothing shared, nothing filled. O(n)
     /// per receiver. `quality` is then without effect.
     bool exact = false;
+
+    /// Of the groups of receivers; the others get kUnsolved, but for those without a normal.
+    Share share = {};
 
     MaskKernelSet kernel = MaskKernelSet::best;  ///< one of available_mask_kernels(), or best
 };
