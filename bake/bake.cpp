@@ -33,16 +33,24 @@ void enter(const StageProgress& progress, std::string_view stage)
         throw Cancelled();
 }
 
-/// What the engine built is gone afterwards: what follows needs the memory.
-VertexBake answer(const Mesh& mesh, const VertexTarget& target, const StageProgress& progress,
+/// One file of a world, and the engines of the whole; null where it is the only one: then what they
+/// built is gone as soon as they have answered, for what follows needs the memory.
+struct Job {
+    std::shared_ptr<const Mesh> mesh;
+    Occluders* occluders = nullptr;
+};
+
+VertexBake answer(const Job& job, const VertexTarget& target, const StageProgress& progress,
                   BakeReport& report)
 {
     const BakeSettings& settings = report.settings;
+    const Mesh& mesh = *job.mesh;
     const Offset offset = offset_of(settings.target, mesh.geometry.frame);
-    VertexBake bake = settings.error ? bake_to_error(mesh, target, settings.engine, offset,
-                                                     *settings.error, settings.check, progress)
-                                     : bake_vertices(mesh, target, settings.engine, offset,
-                                                     settings.check, progress);
+    VertexBake bake = settings.error
+                          ? bake_to_error(mesh, target, settings.engine, offset, *settings.error,
+                                          settings.check, progress, job.occluders)
+                          : bake_vertices(mesh, target, settings.engine, offset, settings.check,
+                                          progress, job.occluders);
     report.settings.engine = bake.engine;
     report.surfels = bake.surfels;
     report.residual = bake.residual;
@@ -54,15 +62,15 @@ VertexBake answer(const Mesh& mesh, const VertexTarget& target, const StageProgr
 }
 
 /// Solves, writes the output, and fills in the report what is of the values.
-void bake_at_vertices(const std::shared_ptr<const Mesh>& mesh, BakeReport& report,
-                      const StageProgress& progress)
+void bake_at_vertices(const Job& job, BakeReport& report, const StageProgress& progress)
 {
     const BakeSettings& settings = report.settings;
+    const std::shared_ptr<const Mesh>& mesh = job.mesh;
     Stopwatch stage;
     const VertexTarget target(mesh, settings.target);
     report.receivers = target.receivers().size();
     report.seconds.read += stage.lap();
-    const VertexBake baked = answer(*mesh, target, progress, report);
+    const VertexBake baked = answer(job, target, progress, report);
 
     enter(progress, "write");
     stage.lap();
@@ -70,7 +78,10 @@ void bake_at_vertices(const std::shared_ptr<const Mesh>& mesh, BakeReport& repor
     tbb::parallel_invoke(
         [&] {
             written_notes = write_scene(settings.output, mesh->scene, baked.values,
-                                        {settings.colors, settings.encoding, mark_of(settings)});
+                                        {.colors = settings.colors,
+                                         .encoding = settings.encoding,
+                                         .mark = mark_of(settings),
+                                         .unbaked = mesh->unbaked});
         },
         [&] {  // a writer leaves cores idle
             report.misfit = target.misfit(baked.answers, baked.values);
@@ -96,44 +107,87 @@ std::vector<fs::path> files_beside(const BakeSettings& settings)
     return files;
 }
 
-}  // namespace
-
-BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
+void check_before_work(const BakeSettings& settings, bool is_alone)
 {
-    BakeReport report;
-    report.settings = settings;
-    report.threads = thread_count();
-    Stopwatch whole, stage;
     if (settings.texels)
         check_texel_output(settings);
     else
         check_output(settings.input, settings.output);
+    const bool has_high = settings.texels && !settings.texels->high.empty();
+    if (has_high && !(is_alone && settings.parts.occluders.empty()))
+        throw InputError(settings.output.string() +
+                         ": with a high mesh nothing but it occludes, no other files");
+}
 
-    enter(progress, "read");
-    const auto mesh = std::make_shared<const Mesh>(
-        make_mesh(read_scene(settings.input, settings.reading), settings.target.normals));
-    const Scene& scene = mesh->scene;
-    const Geometry& geometry = mesh->geometry;
-    EngineSettings& engine = report.settings.engine;
-    engine.definition = definition_of(settings.max_distance, settings.kernel, geometry.frame);
-    if (!settings.texels)
-        check_output(scene, settings.output);
-    report.seconds.read = stage.lap();
-    if (settings.texels)
-        bake_texels(*mesh, report, progress);
+/// One file of the world.
+BakeReport bake_one(const Job& job, const BakeSettings& settings, double read_seconds,
+                    const StageProgress& progress)
+{
+    BakeReport report;
+    report.settings = settings;
+    report.threads = thread_count();
+    report.seconds.read = read_seconds;
+    Stopwatch whole;
+    const Mesh& mesh = *job.mesh;
+    const Geometry& geometry = mesh.geometry;
+    report.settings.engine.definition =
+        definition_of(report.settings.max_distance, report.settings.kernel, geometry.frame);
+    if (report.settings.texels)
+        bake_texels(mesh, job.occluders, report, progress);
     else
-        bake_at_vertices(mesh, report, progress);
+        bake_at_vertices(job, report, progress);
 
-    report.vertices = scene.positions.size();
-    report.triangles = scene.triangles.size();
+    report.vertices = mesh.scene.positions.size();
+    report.triangles = mesh.scene.triangles.size();
     report.dropped_triangles = geometry.dropped_triangles;
+    report.baked_triangles = geometry.triangles.size();
+    report.occluding_triangles = mesh.occluding().triangles.size();
     report.vertices_without_normal = static_cast<std::uint64_t>(
-        std::count(mesh->surface.normals.begin(), mesh->surface.normals.end(), glm::vec3(0.0f)));
-    report.corners_from_file = mesh->surface.corners_from_file;
-    report.replaced_corners = mesh->surface.replaced_corners;
-    report.seconds.total = whole.lap();
+        std::count(mesh.surface.normals.begin(), mesh.surface.normals.end(), glm::vec3(0.0f)));
+    report.corners_from_file = mesh.surface.corners_from_file;
+    report.replaced_corners = mesh.surface.replaced_corners;
+    report.seconds.total = read_seconds + whole.lap();
     report.peak_rss_bytes = peak_rss_bytes();
     return report;
+}
+
+}  // namespace
+
+BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
+{
+    return std::move(bake_together(std::vector{settings}, progress).front());
+}
+
+std::vector<BakeReport> bake_together(const std::vector<BakeSettings>& settings,
+                                      const StageProgress& progress)
+{
+    const bool is_alone = settings.size() == 1;
+    Stopwatch watch;
+    std::vector<fs::path> inputs;
+    for (const BakeSettings& of_file : settings) {
+        check_before_work(of_file, is_alone);
+        inputs.push_back(of_file.input);
+    }
+    enter(progress, "read");
+    World world = read_world(inputs, settings.front().target.normals, settings.front().parts,
+                             settings.front().reading);
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+        if (!settings[i].texels)
+            check_output(world.meshes[i].scene, settings[i].output);
+    }
+    double read_seconds = watch.lap();
+    const std::shared_ptr<const Geometry> occluding = world.meshes.front().occluders;
+    std::optional<Occluders> occluders;
+    if (!is_alone)
+        occluders.emplace(*occluding);
+    std::vector<BakeReport> reports;
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+        const Job job{std::make_shared<const Mesh>(std::move(world.meshes[i])),
+                      occluders ? &*occluders : nullptr};
+        reports.push_back(bake_one(job, settings[i], read_seconds, progress));
+        read_seconds = 0.0;
+    }
+    return reports;
 }
 
 fs::path output_in_folder(const fs::path& input, const fs::path& folder)
@@ -174,7 +228,9 @@ std::string mark_of(const BakeSettings& settings)
         text += " max_distance=none";
     text += std::isfinite(limit.value) && limit.percent ? "%" : "";
     text += limit.falloff == Falloff::smooth ? " falloff=smooth" : " falloff=none";
-    text += " " + text_of(settings.target);
+    text += " " + text_of(settings.target) + text_of(settings.parts);
+    for (const fs::path& other : settings.beside)
+        text += " beside=" + other.filename().string();
     if (const auto& texels = settings.texels) {
         text += " " + text_of(*texels);
         return make_mark("bake", text);
@@ -202,12 +258,15 @@ bool is_finished(const BakeSettings& settings)
             return fs::exists(file, ignored);
         }))
         return false;
-    std::vector<fs::path> sources;
+    std::vector<fs::path> sources = settings.parts.occluders;
+    sources.insert(sources.end(), settings.beside.begin(), settings.beside.end());
     if (settings.texels)
-        sources = settings.texels->high;
-    if (type_of(settings.input) == FileType::gltf)
-        std::ranges::copy(sidecars_of(settings.input), std::back_inserter(sources));
+        std::ranges::copy(settings.texels->high, std::back_inserter(sources));
     sources.push_back(settings.input);
+    for (std::size_t i = 0, count = sources.size(); i < count; ++i) {
+        if (type_of(sources[i]) == FileType::gltf)
+            std::ranges::copy(sidecars_of(sources[i]), std::back_inserter(sources));
+    }
     return std::ranges::all_of(sources, [&](const fs::path& source) {
         std::error_code missing;
         const fs::file_time_type changed = fs::last_write_time(source, missing);

@@ -6,6 +6,7 @@
 #include "bake/texel_layout.h"
 #include "bake/vertex_bake.h"
 #include "bake/vertex_target.h"
+#include "bake/world.h"
 #include "engines/engine.h"
 #include "files/scene_io.h"
 
@@ -27,6 +28,9 @@ struct BakeSettings {
     DistanceLimit max_distance;
     Kernel kernel = Kernel::cosine;
     TargetSettings target;
+    PartChoice parts = {};  ///< who occludes, who is baked
+    /// The other files that are baked together with it (bake_together): for marks.
+    std::vector<std::filesystem::path> beside = {};
     std::uint32_t check = kCheckPoints;  ///< points at which the result is measured; 0: not at all
     /// The engine is then the cheapest whose stated error lies below it (bake_to_error): > 0, and
     /// check >= 1. Of `engine` only the instructions count.
@@ -71,6 +75,8 @@ struct BakeReport {
     std::uint64_t vertices = 0;
     std::uint64_t triangles = 0;
     std::uint64_t dropped_triangles = 0;        ///< without area: they occlude nothing
+    std::uint64_t baked_triangles = 0;          ///< with an area, of the parts that are baked
+    std::uint64_t occluding_triangles = 0;      ///< of all files, with an area
     std::uint64_t vertices_without_normal = 0;  ///< they get occlusion 0
     std::uint64_t surfels = 0;
     int threads = 0;
@@ -93,6 +99,13 @@ struct BakeReport {
 /// file is still there untouched. Throws InputError, std::runtime_error, Cancelled.
 /// An output that cannot be written is refused before any work.
 [[nodiscard]] BakeReport bake(const BakeSettings& settings, const StageProgress& progress = {});
+
+/// Several files as one scene: all occlude each other, each is written by itself. Equal parts and
+/// normals, which are those of the first. All are read and an engine is prepared once; what that
+/// takes is told with the first. Normals are smoothed within a file. Throws as bake(), with the
+/// results of earlier files written; settings with a high mesh are refused (InputError).
+[[nodiscard]] std::vector<BakeReport> bake_together(const std::vector<BakeSettings>& settings,
+                                                    const StageProgress& progress = {});
 
 /// One file of a batch: done, failed (`error` says why) or, with neither, skipped.
 struct BatchEntry {

@@ -135,11 +135,12 @@ void write_pictures(const std::filesystem::path& path, const std::vector<Map>& p
 }
 
 /// The mesh with its map; adds the files beside it.
-std::vector<std::string> write_mesh(const BakeSettings& settings, const Scene& scene,
+std::vector<std::string> write_mesh(const BakeSettings& settings, const Mesh& mesh,
                                     const TexelLayout& place, const std::vector<Map>& pages,
                                     std::vector<std::filesystem::path>& written)
 {
-    const WriteOptions options{.mark = mark_of(settings)};
+    const Scene& scene = mesh.scene;
+    const WriteOptions options{.mark = mark_of(settings), .unbaked = mesh.unbaked};
     const std::vector<UvSet>& uvs = place.layout.pages;
     const auto bytes = [&](std::size_t page) {
         return map_bytes(pages[page], settings.texels->depth);
@@ -189,7 +190,8 @@ void check_texel_output(const BakeSettings& settings)
         throw InputError(settings.output.string() + ": a map of a mesh has 8 or 16 bits");
 }
 
-void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& progress)
+void bake_texels(const Mesh& mesh, Occluders* occluders, BakeReport& report,
+                 const StageProgress& progress)
 {
     const BakeSettings& settings = report.settings;
     const TexelSettings& texels = *settings.texels;
@@ -227,9 +229,10 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
     const Offset offset = offset_of(settings.target, frame);
     const HighDetail* detail = high ? &high->detail : nullptr;
     const MapBake map =
-        settings.error ? bake_map_to_error(mesh, layout, map_settings, engine, offset,
-                                           *settings.error, progress, detail)
-                       : bake_map(mesh, layout, map_settings, engine, offset, progress, detail);
+        settings.error
+            ? bake_map_to_error(mesh, layout, map_settings, engine, offset, *settings.error,
+                                progress, detail, occluders)
+            : bake_map(mesh, layout, map_settings, engine, offset, progress, detail, occluders);
     report_map(map, report);
     check_overlap(settings, told);
     add_notes(report, mesh.geometry.triangles.size(), report.notes);
@@ -243,7 +246,7 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
         write_pictures(settings.output, map.visibility, report, told.written);
     } else {
         const std::vector<std::string> notes =
-            write_mesh(settings, mesh.scene, place, map.visibility, told.written);
+            write_mesh(settings, mesh, place, map.visibility, told.written);
         report.notes.insert(report.notes.end(), notes.begin(), notes.end());
     }
     report.seconds.write = watch.lap();

@@ -10,16 +10,6 @@
 namespace surfelao {
 namespace {
 
-/// What stands behind the cursor on its line, without blanks at the end.
-std::string_view rest_of_line(TextCursor& cursor, std::string_view text)
-{
-    if (cursor.at_line_end())
-        return {};
-    std::string_view rest = text.substr(cursor.offset());
-    rest = rest.substr(0, rest.find_first_of("\r\n"));
-    return rest.substr(0, rest.find_last_not_of(" \t") + 1);
-}
-
 /// Materials by name, each with Kd and map_Kd; the options of a map count as words before its name.
 class MaterialFiles {
 public:
@@ -32,7 +22,7 @@ public:
         while (cursor.next_line()) {
             const std::string_view statement = cursor.word();
             if (statement == "newmtl") {
-                by_name_.insert_or_assign(std::string(rest_of_line(cursor, text)),
+                by_name_.insert_or_assign(std::string(cursor.rest_of_line()),
                                           static_cast<std::uint32_t>(colors_.materials.size()));
                 colors_.materials.emplace_back();
             } else if (statement == "Kd" && !by_name_.empty()) {
@@ -41,7 +31,7 @@ public:
                     colors_.materials.back().factor[k] = number ? linear_of(*number) : 1.0f;
                 }
             } else if (statement == "map_Kd" && !by_name_.empty()) {
-                add_picture(path.parent_path(), rest_of_line(cursor, text));
+                add_picture(path.parent_path(), cursor.rest_of_line());
             }
         }
     }
@@ -81,7 +71,7 @@ BaseColors ObjSource::base_colors() const
     while (cursor.next_line()) {
         const std::string_view statement = cursor.word();
         if (statement == "mtllib") {
-            for (const NamedFile& named : files_named(folder, rest_of_line(cursor, text))) {
+            for (const NamedFile& named : files_named(folder, cursor.rest_of_line())) {
                 try {
                     if (!named.file.empty())
                         files.read(named.file);
@@ -89,7 +79,7 @@ BaseColors ObjSource::base_colors() const
                 }
             }
         } else if (statement == "usemtl") {
-            material = files.number_of(rest_of_line(cursor, text));
+            material = files.number_of(cursor.rest_of_line());
         } else if (statement == "f" || statement == "fo") {
             std::size_t corners = 0;
             for (; !cursor.at_line_end(); ++corners)

@@ -7,8 +7,9 @@
 /// v/vt/vn, counted from 1 or backwards from the last vertex, texture coordinate or normal so far;
 /// comments, continued lines, any line ends. A face may use vertices, texture coordinates and
 /// normals that come later, and have the latter two at some corners only. Points, lines, curves,
-/// groups, materials and unknown statements are no surface and are passed over (a material file
-/// need not be there).
+/// and unknown statements are no surface and are passed over (a material file need not be there).
+/// Names behind `o`, `g` (several on a line: the faces have all of them) and `usemtl` become
+/// Scene::labels.
 ///
 /// Passed over and counted in Scene::notes: faces of fewer than three corners (unless the file ends
 /// within: it may be cut), normals and texture coordinates of corners that the file does not have,

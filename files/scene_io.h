@@ -41,6 +41,10 @@ struct WriteOptions {
     VertexColors colors = VertexColors::automatic;  ///< vertex_colors.h
     Encoding encoding = Encoding::automatic;        ///< of the colours that are written
     std::string mark = {};  ///< who made the file, and how (maker_mark.h); empty: it says nothing
+    /// Scene triangles that were not baked; empty: all were. glTF keeps primitives of such alone
+    /// exactly as they are. In other formats a vertex has its occlusion in any case: there it is
+    /// what the answers say, 0 for what nobody asked.
+    std::vector<bool> unbaked = {};
 };
 
 /// A result as the writers of the formats make it.

@@ -134,6 +134,15 @@ std::string_view TextCursor::word()
     return {first, static_cast<std::size_t>(at_ - first)};
 }
 
+std::string_view TextCursor::rest_of_line()
+{
+    if (at_line_end())
+        return {};
+    std::string_view rest(at_, remaining());
+    rest = rest.substr(0, rest.find_first_of("\r\n"));
+    return rest.substr(0, rest.find_last_not_of(" \t") + 1);
+}
+
 template <bool kFinite>
 double TextCursor::parse(std::string_view what)
 {

@@ -45,6 +45,9 @@ public:
     /// The next word on this line; empty at its end.
     std::string_view word();
 
+    /// What stands on this line from the next word on, without blanks at the end; it is not taken.
+    [[nodiscard]] std::string_view rest_of_line();
+
     /// The next word as a finite number. `what` names it in the sentence when it is missing.
     double number(std::string_view what);
 

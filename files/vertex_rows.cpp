@@ -17,6 +17,9 @@ constexpr std::string_view kColor[] = {"red", "green", "blue"};
 constexpr std::string_view kOwnColor[] = {"own_red", "own_green", "own_blue"};
 constexpr std::string_view kPacked = "rgb", kOwnPacked = "own_rgb";
 
+/// Columns that another format gets of a cloud's own: ours have room beside them.
+constexpr std::size_t kMostOthers = kMostColumns - 2 * kResultColumns;
+
 bool names(std::span<const std::string_view> properties, std::string_view name)
 {
     return std::ranges::find(properties, name) != properties.end();
@@ -188,7 +191,8 @@ Others read_others(const RowSource& source)
         const Property& property = points.properties[p];
         kept[p] = roles[p].kind == Role::none && !property.count_type && !property.is_second &&
                   property.name.find_first_not_of("-_") != property.name.npos &&
-                  !names(kMeasured, property.name) && !names_color(property.name);
+                  !names(kMeasured, property.name) && !names_color(property.name) &&
+                  others.columns.size() < kMostOthers;
         if (kept[p])
             others.columns.push_back({property.type, property.name});
     }

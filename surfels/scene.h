@@ -47,7 +47,9 @@ struct Part {
 enum class LabelKind { node, mesh, object, group, material };
 
 /// Triangles that have a name in the file in common. Those of different kinds overlap: a triangle
-/// has a node, a mesh and a material. Labels of one kind and name are one.
+/// has a node, a mesh and a material, and of nodes (glTF) also all that its node lies below. Labels
+/// of one kind and name are one. OBJ has objects (o), groups (g) and materials (usemtl), text STL
+/// objects (solid), PLY and OFF nothing (labels.h).
 struct Label {
     struct Range {
         std::uint32_t first = 0, count = 0;
