@@ -119,6 +119,18 @@ void check_before_work(const BakeSettings& settings, bool is_alone)
                          ": with a high mesh nothing but it occludes, no other files");
 }
 
+/// As the settings ask, below all of these.
+void set_ground(std::initializer_list<std::reference_wrapper<const Geometry>> geometries,
+                BakeReport& report)
+{
+    const Frame& frame = geometries.begin()->get().frame;
+    std::optional<Ground>& ground = report.settings.engine.definition.ground;
+    ground = ground_of(report.settings.ground, geometries,
+                       largest_offset_of(report.settings.target, frame));
+    if (ground)
+        report.ground = text_of(*ground, frame);
+}
+
 /// One file of the world.
 BakeReport bake_one(const Job& job, const BakeSettings& settings, double read_seconds,
                     const StageProgress& progress)
@@ -130,8 +142,11 @@ BakeReport bake_one(const Job& job, const BakeSettings& settings, double read_se
     Stopwatch whole;
     const Mesh& mesh = *job.mesh;
     const Geometry& geometry = mesh.geometry;
+    if (!settings.texels)
+        check_output(mesh.scene, settings.output);
     report.settings.engine.definition =
         definition_of(report.settings.max_distance, report.settings.kernel, geometry.frame);
+    set_ground({geometry, mesh.occluding()}, report);
     if (report.settings.texels)
         bake_texels(mesh, job.occluders, report, progress);
     else
@@ -169,12 +184,8 @@ std::vector<BakeReport> bake_together(const std::vector<BakeSettings>& settings,
         inputs.push_back(of_file.input);
     }
     enter(progress, "read");
-    World world = read_world(inputs, settings.front().target.normals, settings.front().parts,
-                             settings.front().reading);
-    for (std::size_t i = 0; i < settings.size(); ++i) {
-        if (!settings[i].texels)
-            check_output(world.meshes[i].scene, settings[i].output);
-    }
+    BakeWorld world = read_world(inputs, settings.front().target.normals, settings.front().parts,
+                                 settings.front().reading);
     double read_seconds = watch.lap();
     const std::shared_ptr<const Geometry> occluding = world.meshes.front().occluders;
     std::optional<Occluders> occluders;
@@ -228,6 +239,8 @@ std::string mark_of(const BakeSettings& settings)
         text += " max_distance=none";
     text += std::isfinite(limit.value) && limit.percent ? "%" : "";
     text += limit.falloff == Falloff::smooth ? " falloff=smooth" : " falloff=none";
+    if (const auto& ground = settings.ground)
+        text += " ground=" + text_of(*ground);
     text += " " + text_of(settings.target) + text_of(settings.parts);
     for (const fs::path& other : settings.beside)
         text += " beside=" + other.filename().string();
@@ -264,7 +277,8 @@ bool is_finished(const BakeSettings& settings)
         std::ranges::copy(settings.texels->high, std::back_inserter(sources));
     sources.push_back(settings.input);
     for (std::size_t i = 0, count = sources.size(); i < count; ++i) {
-        if (type_of(sources[i]) == FileType::gltf)
+        const FileType type = type_of(sources[i]);
+        if (type == FileType::gltf || type == FileType::obj)  // whose alpha counts too
             std::ranges::copy(sidecars_of(sources[i]), std::back_inserter(sources));
     }
     return std::ranges::all_of(sources, [&](const fs::path& source) {

@@ -27,6 +27,7 @@ struct BakeSettings {
     EngineSettings engine;  ///< its definition is made from the members below
     DistanceLimit max_distance;
     Kernel kernel = Kernel::cosine;
+    std::optional<GroundPlane> ground = {};
     TargetSettings target;
     PartChoice parts = {};  ///< who occludes, who is baked
     /// The other files that are baked together with it (bake_together): for marks.
@@ -84,6 +85,7 @@ struct BakeReport {
     std::uint64_t peak_rss_bytes = 0;
     std::optional<double> residual;       ///< of the disk engine's correction
     double mean_occlusion = 0.0;          ///< over vertices with a normal
+    std::string ground;                   ///< where it lies, "y = -0.25"; empty: there is none
     std::uint64_t receivers = 0;          ///< where occlusion was asked
     std::uint64_t corners_from_file = 0;  ///< corners shaded with the file's normals
     std::uint64_t replaced_corners = 0;   ///< the file's were not usable there
@@ -115,7 +117,8 @@ struct BatchEntry {
     std::string error;
 };
 
-/// Keys input, output, vertices, triangles, dropped_triangles, vertices_without_normal, surfels,
+/// Keys input, output, vertices, triangles, dropped_triangles, vertices_without_normal,
+/// baked_triangles, occluding_triangles, surfels,
 /// engine, settings, seconds{read, surfels, tree, solve, fit, write, total}, receivers,
 /// corners_from_file, replaced_corners, peak_rss_bytes, residual, mean_occlusion, misfit{rms,
 /// share}, error, asked, texels, notes. What an engine or a target does not have is null. Failed:
@@ -135,14 +138,16 @@ struct BatchEntry {
                                                      const std::filesystem::path& folder);
 
 /// The mark of the result (files/maker_mark.h): all settings on which its bytes depend, as they
-/// were asked for; neither the input nor threads. Of what only another engine has, nothing.
+/// were asked for; neither the input nor threads, but what occludes it. Of what only another engine
+/// has, nothing.
 ///
 ///     surfelao 0.1.0 bake: engine=masks device=cpu quality=1 kernel=cosine max_distance=none
 ///     falloff=none normals=auto crease=40 values=fit colors=auto encoding=auto
 [[nodiscard]] std::string mark_of(const BakeSettings& settings);
 
 /// Whether the output exists with the mark that a bake would give it now and is not older than its
-/// input and the files that a .gltf refers to. Outputs are complete when they exist.
+/// input, the files that occlude or are baked beside it, and those that a .gltf or .obj of these
+/// refers to. Outputs are complete when they exist.
 [[nodiscard]] bool is_finished(const BakeSettings& settings);
 
 }  // namespace surfelao

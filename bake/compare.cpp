@@ -2,7 +2,6 @@
 
 #include "bake/compare_target.h"
 #include "engines/threads.h"
-#include "files/scene_io.h"
 #include "gpu/context.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
@@ -262,15 +261,19 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     static_cast<void>(stage("read"));
     Stopwatch watch;
     comparison.mesh = std::make_shared<const Mesh>(
-        make_mesh(read_scene(settings.input, settings.reading), settings.target.normals));
+        read_mesh(settings.input, settings.target.normals, settings.parts, settings.reading));
     std::unique_ptr<const CompareTarget> target = target_of(settings, comparison);
     comparison.read_s = watch.lap();
     comparison.vertices = comparison.mesh->scene.positions.size();
     comparison.triangles = comparison.mesh->scene.triangles.size();
     comparison.dropped_triangles = comparison.mesh->geometry.dropped_triangles;
     comparison.receivers = target->receivers();
-    const Definition definition =
-        definition_of(settings.max_distance, settings.kernel, comparison.mesh->geometry.frame);
+    const Geometry& geometry = comparison.mesh->geometry;
+    Definition definition = definition_of(settings.max_distance, settings.kernel, geometry.frame);
+    definition.ground =
+        ground_of(settings.ground, {geometry}, largest_offset_of(settings.target, geometry.frame));
+    if (definition.ground)
+        comparison.ground = text_of(*definition.ground, geometry.frame);
     const TruthSettings truth_settings =
         truth_settings_of(settings, definition, *comparison.mesh, *target);
     SurfaceTruth truth = trace_truth(*comparison.mesh, truth_settings, stage("reference"));

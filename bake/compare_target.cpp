@@ -45,16 +45,16 @@ public:
                 const Progress& progress) const override
     {
         if (settings_.values == VertexValues::fit)
-            return find_floor(target_, mesh_->geometry, truth, settings, progress);
+            return find_floor(target_, *mesh_, truth, settings, progress);
         TargetSettings fitted = settings_;
         fitted.values = VertexValues::fit;
-        return find_floor(VertexTarget(mesh_, fitted), mesh_->geometry, truth, settings, progress);
+        return find_floor(VertexTarget(mesh_, fitted), *mesh_, truth, settings, progress);
     }
 
     JobResult run(const EngineSettings& engine, const SurfaceTruth* truth,
                   const Progress& progress) const override
     {
-        const Prepared prepared = prepare(mesh_->geometry, engine);
+        const Prepared prepared = prepare(mesh_->occluding(), engine);
         const Solution solution = solve(prepared, target_.receivers(), engine, progress);
         Stopwatch fitting;
         const std::vector<Occlusion> values = target_.values(solution.occlusion);
@@ -152,7 +152,7 @@ public:
         if (truth == nullptr)
             return result;
         result.displayed = displayed(bake, *truth);
-        result.answers = answers_at_points(prepare(mesh_->geometry, engine), receivers_, *truth,
+        result.answers = answers_at_points(prepare(mesh_->occluding(), engine), receivers_, *truth,
                                            engine, progress);
         result.occlusion = occlusion_of(bake);
         return result;

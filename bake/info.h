@@ -37,6 +37,7 @@ inline constexpr MapSize kUvMap{1024, 1024};
 struct Info {
     std::filesystem::path input;
     std::vector<Part> parts;
+    std::vector<Label> labels;  ///< names by which --exclude and its like know triangles
     std::uint64_t vertices = 0;
     std::uint64_t triangles = 0;
     std::uint64_t positions = 0;                ///< different places: vertices without seams

@@ -226,6 +226,12 @@ void bake_texels(const Mesh& mesh, Occluders* occluders, BakeReport& report,
     const Frame& frame = high ? high->mesh.geometry.frame : mesh.geometry.frame;
     EngineSettings engine = settings.engine;
     engine.definition = definition_of(settings.max_distance, settings.kernel, frame);
+    engine.definition.ground = settings.engine.definition.ground;
+    if (high && settings.ground) {  // it has a frame of its own
+        engine.definition.ground = ground_of(settings.ground, {high->mesh.geometry},
+                                             largest_offset_of(settings.target, frame));
+        report.ground = text_of(*engine.definition.ground, frame);
+    }
     const Offset offset = offset_of(settings.target, frame);
     const HighDetail* detail = high ? &high->detail : nullptr;
     const MapBake map =

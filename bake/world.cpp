@@ -1,10 +1,13 @@
 #include "bake/world.h"
 
+#include "bake/cut_out.h"
 #include "files/scene_io.h"
 #include "surfels/errors.h"
 #include "surfels/labels.h"
+#include "surfels/number_text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <utility>
 
@@ -14,6 +17,7 @@ namespace {
 /// What the triangles of a scene do; empty lists: all of them.
 struct Roles {
     std::vector<bool> occlude, baked;
+    CutOut cut;  ///< of what occludes
 
     [[nodiscard]] bool occludes(std::size_t triangle) const
     {
@@ -78,6 +82,75 @@ std::vector<Roles> roles_of(Scenes inputs, Scenes others, const PartChoice& choi
     return roles;
 }
 
+/// "material Glass", "materials Glass, Water and 3 more"
+std::string materials_text(const BaseColors& colors, const std::vector<bool>& which)
+{
+    constexpr std::size_t kNamed = 3;
+    std::string names;
+    std::size_t count = 0;
+    for (std::size_t m = 0; m < which.size(); ++m) {
+        if (!which[m] || ++count > kNamed)
+            continue;
+        const std::string& name = colors.materials[m].name;
+        names += (names.empty() ? "" : ", ") + (name.empty() ? "without a name" : name);
+    }
+    if (count > kNamed)
+        names += " and " + std::to_string(count - kNamed) + " more";
+    return (count == 1 ? "material " : "materials ") + names;
+}
+
+std::string cut_text(const CutOut& cut, const std::string& materials)
+{
+    const std::string pieces = count_text(cut.pieces.size(), "piece");
+    return "holes by the alpha of " + materials + " occlude nothing: " + pieces +
+           (cut.pieces.size() == 1 ? " occludes" : " occlude") + " in place of " +
+           count_text(cut.triangles.size(), "triangle") +
+           (cut.is_coarse ? ", the most there may be: coarser than the picture" : "");
+}
+
+/// Takes from what occludes where light goes through, and says so.
+void open_materials(const Scene& scene, ClearSurfaces clear, Roles& roles,
+                    std::vector<std::string>& notes)
+{
+    if (!scene.asset || !scene.asset->has_openings())
+        return;
+    BaseColors colors = scene.asset->base_colors();
+    for (BaseColor& material : colors.materials) {
+        if (material.opacity == Opacity::clear && clear == ClearSurfaces::cut)
+            material.opacity = Opacity::cut;
+    }
+    if (colors.triangles.size() != scene.triangles.size())
+        return;
+    std::vector<bool> clears(colors.materials.size(), false), cuts(colors.materials.size(), false);
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+        const std::uint32_t material = colors.triangles[t];
+        const Opacity opacity = colors.materials[material].opacity;
+        if (opacity == Opacity::solid || !roles.occludes(t))
+            continue;
+        (opacity == Opacity::cut ? cuts : clears)[material] = true;
+        if (opacity == Opacity::cut || clear == ClearSurfaces::solid)
+            continue;
+        if (roles.baked.empty())
+            roles.baked = std::vector<bool>(scene.triangles.size(), true);
+        if (roles.occlude.empty())
+            roles.occlude = std::vector<bool>(scene.triangles.size(), true);
+        roles.occlude[t] = false;
+    }
+    if (std::ranges::find(clears, true) != clears.end())
+        notes.push_back(materials_text(colors, clears) +
+                        (clear == ClearSurfaces::open
+                             ? ", which light goes through, occludes nothing"
+                             : ", which light goes through, occludes as if it were solid "
+                               "(--transparent open: not at all; cut: where its alpha is at "
+                               "least half)"));
+    if (std::ranges::find(cuts, true) == cuts.end())
+        return;
+    roles.cut = cut_out(scene, colors, roles.occlude);
+    if (!roles.cut.triangles.empty())
+        notes.push_back(cut_text(roles.cut, materials_text(colors, cuts)));
+    notes.insert(notes.end(), roles.cut.notes.begin(), roles.cut.notes.end());
+}
+
 /// Puts triangles together that are to occlude.
 class OccluderScene {
 public:
@@ -90,10 +163,13 @@ public:
                     " vertices or triangles together");
         scene_.positions.insert(scene_.positions.end(), scene.positions.begin(),
                                 scene.positions.end());
+        const std::vector<bool>& cut = roles.cut.replaced;
         for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
-            if (roles.occludes(t))
+            if (roles.occludes(t) && (cut.empty() || !cut[t]))
                 scene_.triangles.push_back(scene.triangles[t] + first);
         }
+        for (const CutOut::Piece& piece : roles.cut.pieces)
+            add(scene, piece);
     }
 
     [[nodiscard]] std::shared_ptr<const Geometry> geometry(const Frame& frame) const
@@ -102,6 +178,16 @@ public:
     }
 
 private:
+    void add(const Scene& scene, const CutOut::Piece& piece)
+    {
+        const glm::uvec3 t = scene.triangles[piece.triangle];
+        const auto first = static_cast<std::uint32_t>(scene_.positions.size());
+        for (const glm::dvec2 at : piece.corners)
+            scene_.positions.push_back((1.0 - at.x - at.y) * scene.positions[t.x] +
+                                       at.x * scene.positions[t.y] + at.y * scene.positions[t.z]);
+        scene_.triangles.emplace_back(first, first + 1, first + 2);
+    }
+
     Scene scene_;
 };
 
@@ -119,12 +205,27 @@ Frame common_frame(std::span<const Scene> inputs, std::span<const std::vector<bo
     return frame_of(all);
 }
 
+/// Those that the scene, which may have been in another world before, does not have.
+void add_notes(const std::vector<std::string>& notes, Scene& scene)
+{
+    for (const std::string& note : notes) {
+        if (std::ranges::find(scene.notes, note) == scene.notes.end())
+            scene.notes.push_back(note);
+    }
+}
+
 bool has(const std::vector<bool>& list, bool value)
 {
     return std::ranges::find(list, value) != list.end();
 }
 
 }  // namespace
+
+std::string name_of(ClearSurfaces clear)
+{
+    constexpr const char* kNames[] = {"solid", "open", "cut"};
+    return kNames[static_cast<int>(clear)];
+}
 
 std::string text_of(const PartChoice& choice)
 {
@@ -138,15 +239,30 @@ std::string text_of(const PartChoice& choice)
         add("receivers", pattern);
     for (const std::filesystem::path& file : choice.occluders)
         add("occluders", file.filename().string());
+    if (choice.clear != ClearSurfaces::solid)
+        add("transparent", name_of(choice.clear));
     return text;
 }
 
-World make_world(std::vector<Scene> inputs, std::span<const Scene> others,
-                 const NormalSettings& normals, const PartChoice& choice)
+BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
+                     const NormalSettings& normals, const PartChoice& choice)
 {
-    const std::vector<Roles> roles = roles_of(inputs, others, choice);
+    std::vector<Roles> roles = roles_of(inputs, others, choice);
     std::vector<std::vector<bool>> left_out(inputs.size());
     bool is_joined = inputs.size() > 1 || !others.empty();
+    std::vector<std::string> notes_of_others;
+    for (std::size_t i = 0; i < roles.size(); ++i) {
+        const bool is_input = i < inputs.size();
+        std::vector<std::string> notes;
+        const Scene& scene = is_input ? inputs[i] : others[i - inputs.size()];
+        open_materials(scene, choice.clear, roles[i], notes);
+        is_joined = is_joined || !roles[i].cut.triangles.empty();
+        if (is_input)
+            add_notes(notes, inputs[i]);
+        for (const std::string& note : notes)
+            if (!is_input)
+                notes_of_others.push_back(scene.name + ": " + note);
+    }
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         const Roles& own = roles[i];
         if (own.occlude.empty() && own.baked.empty())
@@ -164,7 +280,7 @@ World make_world(std::vector<Scene> inputs, std::span<const Scene> others,
     }
     const Frame frame = common_frame(inputs, left_out);
 
-    World world;
+    BakeWorld world;
     OccluderScene occluders;
     world.meshes.reserve(inputs.size());
     for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -187,31 +303,31 @@ World make_world(std::vector<Scene> inputs, std::span<const Scene> others,
             throw InputError(others[i].name + ": has points only, no faces: it occludes nothing");
         occluders.add(others[i], roles[world.meshes.size() + i]);
     }
-    if (is_joined) {
-        const std::shared_ptr<const Geometry> joined = occluders.geometry(frame);
-        for (Mesh& mesh : world.meshes)
+    const std::shared_ptr<const Geometry> joined = is_joined ? occluders.geometry(frame) : nullptr;
+    for (Mesh& mesh : world.meshes) {
+        if (joined)
             mesh.occluders = joined;
+        add_notes(notes_of_others, mesh.scene);
     }
     return world;
 }
 
-World read_world(std::span<const std::filesystem::path> inputs, const NormalSettings& normals,
-                 const PartChoice& choice, const ReadOptions& reading)
+BakeWorld read_world(std::span<const std::filesystem::path> inputs, const NormalSettings& normals,
+                     const PartChoice& choice, const ReadOptions& reading)
 {
-    const auto read_all = [](std::span<const std::filesystem::path> paths,
-                             const ReadOptions& options) {
+    const auto read_all = [&](std::span<const std::filesystem::path> paths) {
         std::vector<Scene> scenes;
         for (const std::filesystem::path& path : paths)
-            scenes.push_back(read_scene(path, options));
+            scenes.push_back(read_scene(path, reading));
         return scenes;
     };
-    return make_world(read_all(inputs, reading), read_all(choice.occluders, {}), normals, choice);
+    return make_world(read_all(inputs), read_all(choice.occluders), normals, choice);
 }
 
 Mesh read_mesh(const std::filesystem::path& input, const NormalSettings& normals,
-               const PartChoice& choice)
+               const PartChoice& choice, const ReadOptions& reading)
 {
-    return std::move(read_world({&input, 1}, normals, choice).meshes.front());
+    return std::move(read_world({&input, 1}, normals, choice, reading).meshes.front());
 }
 
 }  // namespace surfelao

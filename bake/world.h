@@ -1,7 +1,9 @@
 /// world.h: from files to what is asked and what occludes it: several meshes in one frame.
 ///
 /// Of every file a user may say which parts occlude and which are baked, by the names that they
-/// have there (surfels/labels.h). By default all do both, and one file is its own world.
+/// have there (surfels/labels.h). By default all do both, and one file is its own world. Holes that
+/// a texture's alpha cuts do not occlude (cut_out.h): that is always so, and for what is asked it
+/// changes nothing: values are those of the whole surface.
 ///
 /// The frame is that of the files that are baked, without what is left out of them: files that only
 /// occlude (PartChoice::occluders) do not enter it, however large they are, so that neither offsets
@@ -18,6 +20,16 @@
 
 namespace surfelao {
 
+/// What surfaces are to rays that let light through all over (Opacity::clear).
+enum class ClearSurfaces {
+    solid,  ///< they occlude as any other
+    open,   ///< they do not occlude; they are baked all the same
+    cut,    ///< they occlude where their alpha is at least half: leaves painted on BLEND cards
+};
+
+/// "solid", "open", "cut"
+[[nodiscard]] std::string name_of(ClearSurfaces clear);
+
 /// What takes part, and how.
 struct PartChoice {
     /// Patterns of names (is_called): these parts of any of the files take no part: they neither
@@ -28,30 +40,32 @@ struct PartChoice {
     std::vector<std::string> receivers = {};
     /// Files in the same coordinates that occlude, but are not baked.
     std::vector<std::filesystem::path> occluders = {};
+    ClearSurfaces clear = ClearSurfaces::solid;
     bool operator==(const PartChoice&) const = default;
 };
 
-/// " exclude=... receivers=... occluders=...", each where it is not the default: for marks.
+/// " exclude=... receivers=... occluders=... transparent=open", each where it is not the default:
+/// for marks.
 [[nodiscard]] std::string text_of(const PartChoice& choice);
 
-struct World {
-    /// One per input, in one frame: the geometry of what is baked, and what occludes it.
+struct BakeWorld {
+    /// One per input, in one frame: the geometry of what is baked, and what occludes it. Notes of
+    /// the scenes say what was cut, and what lets light through, but occludes.
     std::vector<Mesh> meshes;
 };
 
 /// inputs: baked. others: PartChoice::occluders, read. Throws InputError for a pattern that means
 /// no name, where nothing of an input is left to be baked, and as make_mesh().
-[[nodiscard]] World make_world(std::vector<Scene> inputs, std::span<const Scene> others,
-                               const NormalSettings& normals, const PartChoice& choice);
+[[nodiscard]] BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
+                                   const NormalSettings& normals, const PartChoice& choice);
 
-/// Reads the files, all inputs by `reading`, and makes the world of them. Throws as read_scene()
-/// too.
-[[nodiscard]] World read_world(std::span<const std::filesystem::path> inputs,
-                               const NormalSettings& normals, const PartChoice& choice,
-                               const ReadOptions& reading = {});
+/// Reads the files and makes the world of them. Throws as read_scene() too.
+[[nodiscard]] BakeWorld read_world(std::span<const std::filesystem::path> inputs,
+                                   const NormalSettings& normals, const PartChoice& choice,
+                                   const ReadOptions& reading = {});
 
 /// Of a single input.
 [[nodiscard]] Mesh read_mesh(const std::filesystem::path& input, const NormalSettings& normals,
-                             const PartChoice& choice);
+                             const PartChoice& choice, const ReadOptions& reading = {});
 
 }  // namespace surfelao

@@ -31,6 +31,7 @@ struct BakeOptions {
     ReadOptions reading;
     EngineOptions engine;
     MeasureOptions measure;
+    std::string up = "y";
     SurfaceOptions surface;
     ColorOptions colors;
     TexelOptions texels;
@@ -98,6 +99,7 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.engine = settings_of(options.engine);
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
+    settings.ground = ground_plane_of(options.measure, options.up);
     settings.target = target_settings_of(options.surface);
     settings.parts = part_choice_of(options.parts);
     if (options.together) {
@@ -208,6 +210,7 @@ void check_options(const BakeOptions& options)
 {
     const EngineSettings engine = settings_of(options.engine);
     static_cast<void>(distance_limit_of(options.measure));
+    static_cast<void>(ground_plane_of(options.measure, options.up));
     static_cast<void>(target_settings_of(options.surface));
     check_kernel(engine.engine, kernel_of(options.measure));
     if (options.error && options.check == 0)
@@ -247,6 +250,7 @@ void add_bake_command(CLI::App& app, Work& work)
     add_read_options(*command, options->reading);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
+    add_up_option(*command, options->up, "What is measured");
     add_surface_options(*command, options->surface);
     add_color_options(*command, options->colors);
     add_texel_options(*command, options->texels);

@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/output.h"
+#include "cli/part_options.h"
 #include "cli/progress_bar.h"
 #include "cli/read_options.h"
 #include "cli/texel_options.h"
@@ -35,8 +36,10 @@ struct CompareOptions {
     std::vector<std::string> devices = {"cpu"};
     std::optional<std::vector<std::string>> qualities;
     MeasureOptions measure;
+    std::string up = "y";
     SurfaceOptions surface;
     TexelOptions texels;
+    PartOptions parts;
     std::uint32_t reference_rays = 4096;
     std::uint64_t sample = kSurfacePoints;
     int rounds = 3;
@@ -52,7 +55,9 @@ CompareSettings common_settings(const CompareOptions& options)
     CompareSettings settings;
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
+    settings.ground = ground_plane_of(options.measure, options.up);
     settings.target = target_settings_of(options.surface);
+    settings.parts = part_choice_of(options.parts);
     settings.texels = shown_texels_of(options.texels);
     settings.reference_rays = options.reference_rays;
     settings.sample = options.sample;
@@ -219,8 +224,9 @@ void check(const CompareOptions& options)
     for (const EngineSettings& candidate : settings.candidates)
         check_kernel(candidate.engine, settings.kernel);
     FilePlan files;
-    for (const std::string& input : options.inputs)
-        files.reads(input);
+    for (const auto* inputs : {&options.inputs, &options.parts.occluders})
+        for (const std::string& input : *inputs)
+            files.reads(input);
     for (const fs::path& file : own_names(options))
         files.writes(file, file.filename().string());
     files.writes_report(options.json, "--json");
@@ -273,8 +279,10 @@ void add_compare_command(CLI::App& app, Work& work)
         ->type_name("Q,...")
         ->default_str("draft,good,best");
     add_measure_options(*command, options->measure);
+    add_up_option(*command, options->up, "What is measured");
     add_surface_options(*command, options->surface);
     add_layout_options(*command, options->texels, kShownMaps);
+    add_part_options(*command, options->parts);
     command
         ->add_option("--reference-rays", options->reference_rays,
                      "Rays per surface point of the reference, an even number")

@@ -26,6 +26,15 @@ void add_part_options(CLI::App& command, PartOptions& options)
                     "a terrain; any size")
         ->type_name("FILE...")
         ->group(kGroup);
+    command
+        .add_option("--transparent", options.transparent,
+                    "What light goes through (alphaMode BLEND, transmission, d below 1 in .mtl) "
+                    "occludes as solid, not at all, or where its alpha is at least half (leaves on "
+                    "BLEND cards); holes by alpha (MASK, map_d) never occlude")
+        ->check(CLI::IsMember({"solid", "open", "cut"}))
+        ->type_name("solid|open|cut")
+        ->capture_default_str()
+        ->group(kGroup);
 }
 
 PartChoice part_choice_of(const PartOptions& options)
@@ -34,6 +43,9 @@ PartChoice part_choice_of(const PartOptions& options)
     choice.exclude = options.exclude;
     choice.receivers = options.receivers;
     choice.occluders.assign(options.occluders.begin(), options.occluders.end());
+    for (const ClearSurfaces clear : {ClearSurfaces::open, ClearSurfaces::cut})
+        if (options.transparent == name_of(clear))
+            choice.clear = clear;
     return choice;
 }
 

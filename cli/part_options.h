@@ -16,6 +16,7 @@ struct PartOptions {
     std::vector<std::string> exclude;
     std::vector<std::string> receivers;
     std::vector<std::string> occluders;
+    std::string transparent = "solid";
 };
 
 void add_part_options(CLI::App& command, PartOptions& options);

@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/interrupt.h"
+#include "cli/part_options.h"
 #include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "cli/view_options.h"
@@ -28,6 +29,7 @@ struct ViewCommandOptions {
     MeasureOptions measure;
     SurfaceOptions surface;
     TexelOptions texels;
+    PartOptions parts;
     bool atlas = false;
     std::optional<int> threads;
 };
@@ -51,8 +53,12 @@ int run(const ViewCommandOptions& options)
     if (!options.input.empty() && !std::filesystem::exists(options.input))
         throw InputError(options.input + ": no such file");
 
-    window.panel.settings = {settings_of(options.engine), distance_limit_of(options.measure),
-                             target_settings_of(options.surface), shown_texels_of(options.texels)};
+    window.panel.settings = {
+        settings_of(options.engine),         distance_limit_of(options.measure),
+        target_settings_of(options.surface), shown_texels_of(options.texels),
+        part_choice_of(options.parts),       ground_plane_of(options.measure, options.show.up)};
+    window.other_inputs.insert(window.other_inputs.end(), options.parts.occluders.begin(),
+                               options.parts.occluders.end());
     window.panel.shows_atlas = options.atlas;
     window.keep_open = [] { return caught_signal() == 0; };
     for (const std::filesystem::path& file : show_window(window))
@@ -80,6 +86,7 @@ void add_view_command(CLI::App& app, Work& work)
     add_read_options(*command, options->reading);
     add_show_options(*command, options->show);
     add_layout_options(*command, options->texels, kShownMaps);
+    add_part_options(*command, options->parts);
     add_atlas_option(*command, options->atlas);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
@@ -90,6 +97,7 @@ void add_view_command(CLI::App& app, Work& work)
         check_shown_map(view_options_of(options->show),
                         shown_texels_of(options->texels).has_value(), options->atlas);
         static_cast<void>(target_settings_of(options->surface));
+        static_cast<void>(ground_plane_of(options->measure, options->show.up));
         const DistanceLimit distance = distance_limit_of(options->measure);
         if (std::isfinite(distance.value) && !distance.percent)
             throw UsageError("--max-distance of a window is in % of the diagonal (10%).");

@@ -94,6 +94,7 @@ struct GltfAsset : SourceAsset {
     /// Per use, whether something of it was baked.
     [[nodiscard]] std::vector<bool> baked_uses(const std::vector<bool>& unbaked) const;
     [[nodiscard]] BaseColors base_colors() const override;  // gltf_base_colors.cpp
+    [[nodiscard]] bool has_openings() const override;       // the same
     [[nodiscard]] std::optional<std::uint32_t> occlusion_uvs() const override;  // the same
 };
 

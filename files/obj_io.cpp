@@ -217,6 +217,8 @@ Scene read_obj(const std::string& file_name, std::string contents)
             reader.normals.values.push_back(read_normal(cursor));
         } else if (statement == "vt") {
             reader.uvs.values.push_back(read_uv(cursor));
+        } else if (statement == "mtllib") {
+            source->libraries.emplace_back(cursor.rest_of_line());
         } else if (statement == "g") {
             names.set_groups(cursor, reader.triangle_count());
         } else if (statement == "o" || statement == "usemtl") {

@@ -88,6 +88,8 @@ private:
                 cursor_.fail("there are more than " + std::to_string(kMostColumns) + " fields");
             source_.fields.push_back({std::string(cursor_.word())});
         }
+        if (source_.fields.empty())
+            cursor_.fail("the line names no fields");
     }
 
     template <class Read>

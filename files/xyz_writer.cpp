@@ -23,12 +23,25 @@ std::string_view separator_of(std::string_view header)
     return " ";
 }
 
+/// Whether a line of names belongs to the columns, those of an earlier result included.
+bool fits(const std::vector<std::string_view>& names, const std::vector<Property>& columns,
+          const VertexChanges& changes)
+{
+    if (names.size() != columns.size())
+        return false;
+    for (std::size_t n = 0; n < names.size(); ++n) {
+        if (changes.drops(columns[n].name) && names[n] != columns[n].name)
+            return false;
+    }
+    return true;
+}
+
 /// The source's names of columns without those that go and with those that come.
 std::string new_header(const XyzSource& source, const VertexChanges& changes)
 {
     const std::vector<std::string_view> names = names_in(source.header);
     const std::vector<Property>& columns = source.points.properties;
-    if (names.size() != columns.size())
+    if (!fits(names, columns, changes))
         return std::string(source.header);
     std::string header;
     const char* copied = source.header.data();

@@ -94,6 +94,8 @@ public:
     /// What the file paints its surfaces with, vertex colours apart; no materials where it says
     /// nothing of it. What is malformed in it is white. O(bytes).
     [[nodiscard]] virtual BaseColors base_colors() const { return {}; }
+    /// Whether any of these materials is not Opacity::solid: known without a look at all triangles.
+    [[nodiscard]] virtual bool has_openings() const { return false; }
     /// The number of the texture coordinates (Scene::uvs) over which the file has a map of
     /// occlusion already; of several the first. O(primitives).
     [[nodiscard]] virtual std::optional<std::uint32_t> occlusion_uvs() const { return {}; }

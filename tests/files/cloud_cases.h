@@ -213,6 +213,7 @@ inline std::vector<CloudCase> clouds()
          pcd_header(kAllFields, 2, "binary_compressed") +
              compressed(pcd_points(true), lzf(pcd_points(true))),
          "", places, up, colors},
+        {"prose_of_seven.xyz", "# x y z are the axes here\n1 2 3\n4 5 6\n"},
         {"prose.xyz", "# x y z of a scan\n1 2 3\n4 5 6\n"},
         {"named_after_result.xyz", "1 3 2\n4 6 5\n# columns x z y\n"},
         {"channels.pcd",
