@@ -95,6 +95,8 @@ private:
     template <class Read>
     void read_each(const std::string& what, const Read& read)
     {
+        if (source_.fields.empty())
+            cursor_.fail("the " + what + " stand in front of the fields");
         for (Field& field : source_.fields) {
             if (cursor_.at_line_end())
                 cursor_.fail("there are fewer " + what + " than " +

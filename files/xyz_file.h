@@ -37,6 +37,9 @@ public:
     [[nodiscard]] RowForm form() const override { return row_form; }
 };
 
+/// A column's name as color_places() and roles_of() know it.
+[[nodiscard]] std::string plain_name(std::string_view word);
+
 /// The names in a line: between commas or semicolons where it has any, else between blanks. None
 /// where there are more than kMostColumns.
 [[nodiscard]] std::vector<std::string_view> names_in(std::string_view line);

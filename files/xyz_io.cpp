@@ -1,6 +1,7 @@
 #include "files/xyz_io.h"
 
 #include "files/maker_mark.h"
+#include "files/vertex_rows.h"
 #include "files/xyz_file.h"
 #include "surfels/errors.h"
 #include "surfels/extension.h"
@@ -30,20 +31,6 @@ std::string lower(std::string_view text)
     for (char& c : result)
         c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     return result;
-}
-
-/// A column's name as color_places() and roles_of() know it.
-std::string plain_name(std::string_view word)
-{
-    constexpr std::pair<std::string_view, std::string_view> kOthers[] = {
-        {"normal_x", "nx"}, {"normal_y", "ny"}, {"normal_z", "nz"}, {"rf", "r"},
-        {"gf", "g"},        {"bf", "b"},        {"i", "intensity"}};
-    const std::string name = lower(word);
-    for (const auto& [other, plain] : kOthers) {
-        if (name == other)
-            return std::string(plain);
-    }
-    return name;
 }
 
 using ColumnNames = std::vector<std::string>;
@@ -338,6 +325,19 @@ void check_places(const std::string& file_name, const XyzSource& source,
 }
 
 }  // namespace
+
+std::string xyz::plain_name(std::string_view word)
+{
+    constexpr std::pair<std::string_view, std::string_view> kOthers[] = {
+        {"normal_x", "nx"}, {"normal_y", "ny"}, {"normal_z", "nz"}, {"rf", "r"},
+        {"gf", "g"},        {"bf", "b"},        {"i", "intensity"}};
+    const std::string name = lower(as_word(word));
+    for (const auto& [other, plain] : kOthers) {
+        if (name == other)
+            return std::string(plain);
+    }
+    return name;
+}
 
 std::vector<std::string_view> xyz::names_in(std::string_view line)
 {
