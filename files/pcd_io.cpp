@@ -16,9 +16,6 @@ namespace {
 
 using namespace pcd;
 
-/// Each is looked up among all; clouds have 20.
-constexpr std::size_t kMostFields = 1000;
-
 /// The lines of the header.
 class HeaderReader {
 public:
@@ -87,15 +84,19 @@ private:
         if (!source_.fields.empty())
             cursor_.fail("a second line of fields");
         while (!cursor_.at_line_end()) {
-            if (source_.fields.size() == kMostFields)
-                cursor_.fail("there are more than " + std::to_string(kMostFields) + " fields");
+            if (source_.fields.size() == kMostColumns)
+                cursor_.fail("there are more than " + std::to_string(kMostColumns) + " fields");
             source_.fields.push_back({std::string(cursor_.word())});
         }
+        if (source_.fields.empty())
+            cursor_.fail("the line names no fields");
     }
 
     template <class Read>
     void read_each(const std::string& what, const Read& read)
     {
+        if (source_.fields.empty())
+            cursor_.fail("the " + what + " stand in front of the fields");
         for (Field& field : source_.fields) {
             if (cursor_.at_line_end())
                 cursor_.fail("there are fewer " + what + " than " +
@@ -151,6 +152,11 @@ private:
         source_.points.packs_colors = true;
         for (Field& field : source_.fields)
             add_properties(field);
+        const bool is_result =
+            find_scalar(source_.points, "occlusion") < source_.points.properties.size();
+        if (!is_result && source_.fields.size() > kMostColumns - kResultColumns)
+            refuse("has " + std::to_string(source_.fields.size()) + " fields, but the most are " +
+                   std::to_string(kMostColumns - kResultColumns));
         for (const std::string_view axis : {"x", "y", "z"}) {
             if (find_scalar(source_.points, axis) == source_.points.properties.size())
                 refuse("the line FIELDS names no number " + std::string(axis));

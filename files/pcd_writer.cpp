@@ -29,7 +29,6 @@ char kind_of(Type type)
 Field field_of(const Column& column)
 {
     std::string name = column.name;
-    std::ranges::replace(name, ' ', '_');
     for (const char axis : {'x', 'y', 'z'}) {
         if (name == std::string("n") + axis)
             name = std::string("normal_") + axis;

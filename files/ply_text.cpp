@@ -2,8 +2,6 @@
 
 #include "files/sidecars.h"
 
-#include <algorithm>
-
 namespace surfelao::ply {
 
 void append_property_lines(std::string& text, std::span<const std::string> properties,
@@ -16,12 +14,8 @@ void append_property_lines(std::string& text, std::span<const std::string> prope
 std::vector<std::string> property_words(std::span<const Column> columns)
 {
     std::vector<std::string> words;
-    for (const Column& column : columns) {
+    for (const Column& column : columns)
         words.push_back(std::string(name_of(column.type)) + " " + column.name);
-        std::ranges::replace(
-            words.back().begin() + static_cast<std::ptrdiff_t>(name_of(column.type).size()) + 1,
-            words.back().end(), ' ', '_');
-    }
     return words;
 }
 

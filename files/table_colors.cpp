@@ -43,8 +43,9 @@ ColorPlaces packed_places(const Element& vertices)
         return property < none && size_of(vertices.properties[property].type) == 4 ? property
                                                                                    : none;
     };
-    const std::size_t shown = std::min(find("rgb"), find("rgba"));
-    if (shown == none || (shown > 0 && vertices.properties[shown - 1].name == "bent_nz"))
+    const std::size_t rgb = find("rgb"), shown = rgb < none ? rgb : find("rgba");
+    const bool is_baked = rgb < none && rgb > 0 && vertices.properties[rgb - 1].name == "bent_nz";
+    if (shown == none || is_baked)
         return places;
     places.shown = Channels{shown, shown, shown};
     const std::size_t own = find("own_rgb");

@@ -42,6 +42,13 @@ struct Property {
     bool is_second = false;  ///< the element has another of this name, which comes first
 };
 
+/// Of clouds in text and PCD, so that memory does not depend on the length of a line, and names can
+/// be looked up one by one. Scanners and laser files have 30.
+inline constexpr std::size_t kMostColumns = 1000;
+
+/// Of these, what is left for a result's own.
+inline constexpr std::size_t kResultColumns = 20;
+
 /// Rows of numbers: the vertices of a PLY, the points of a PCD or of a text file.
 struct Element {
     std::string name;

@@ -17,6 +17,9 @@ constexpr std::string_view kColor[] = {"red", "green", "blue"};
 constexpr std::string_view kOwnColor[] = {"own_red", "own_green", "own_blue"};
 constexpr std::string_view kPacked = "rgb", kOwnPacked = "own_rgb";
 
+/// Columns that another format gets of a cloud's own: ours have room beside them.
+constexpr std::size_t kMostOthers = kMostColumns - 2 * kResultColumns;
+
 bool names(std::span<const std::string_view> properties, std::string_view name)
 {
     return std::ranges::find(properties, name) != properties.end();
@@ -186,11 +189,12 @@ Others read_others(const RowSource& source)
     Others others;
     for (std::size_t p = 0; p < roles.size(); ++p) {
         const Property& property = points.properties[p];
+        const std::string name = as_word(property.name);
         kept[p] = roles[p].kind == Role::none && !property.count_type && !property.is_second &&
-                  property.name.find_first_not_of("-_") != property.name.npos &&
-                  !names(kMeasured, property.name) && !names_color(property.name);
+                  name.find_first_not_of("-_") != name.npos && !names(kMeasured, name) &&
+                  !names_color(name) && others.columns.size() < kMostOthers;
         if (kept[p])
-            others.columns.push_back({property.type, property.name});
+            others.columns.push_back({property.type, name});
     }
     others.numbers.reserve(others.columns.size() * points.count);
     Data data(no_name, source.vertex_rows(), source.form());
@@ -260,6 +264,14 @@ bool needs_double(const std::vector<glm::dvec3>& positions)
         largest_shift = std::max({largest_shift, shift.x, shift.y, shift.z});
     }
     return !(largest_shift <= kFloatSlack * glm::distance(low, high));
+}
+
+std::string as_word(std::string_view name)
+{
+    std::string word(name);
+    for (char& c : word)
+        c = std::string_view(" \t\v\f,;").find(c) == std::string_view::npos ? c : '_';
+    return word;
 }
 
 bool VertexChanges::drops(std::string_view property) const

@@ -57,8 +57,11 @@ private:
 
 struct Column {
     Type type = Type::float32;
-    std::string name;
+    std::string name;  ///< a word
 };
+
+/// A name as every format can hold it: `_` for blanks, commas and semicolons.
+[[nodiscard]] std::string as_word(std::string_view name);
 
 enum class ColorForm { apart, packed };
 

@@ -37,7 +37,11 @@ public:
     [[nodiscard]] RowForm form() const override { return row_form; }
 };
 
-/// The names in a line: between commas or semicolons where it has any, else between blanks.
+/// A column's name as color_places() and roles_of() know it.
+[[nodiscard]] std::string plain_name(std::string_view word);
+
+/// The names in a line: between commas or semicolons where it has any, else between blanks. None
+/// where there are more than kMostColumns.
 [[nodiscard]] std::vector<std::string_view> names_in(std::string_view line);
 
 }  // namespace surfelao::xyz

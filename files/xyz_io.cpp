@@ -1,6 +1,7 @@
 #include "files/xyz_io.h"
 
 #include "files/maker_mark.h"
+#include "files/vertex_rows.h"
 #include "files/xyz_file.h"
 #include "surfels/errors.h"
 #include "surfels/extension.h"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -16,12 +18,6 @@ using namespace xyz;
 
 constexpr std::string_view kBlanks = " \t\v\f";
 constexpr std::string_view kEnds = "\r\n";
-
-/// So that memory does not depend on the length of a line; scanners and laser files have 30.
-constexpr std::size_t kMostColumns = 1000;
-
-/// Of a line that names columns, in bytes.
-constexpr std::size_t kLongestNames = 1u << 14;
 
 std::string_view trimmed(std::string_view text)
 {
@@ -37,28 +33,11 @@ std::string lower(std::string_view text)
     return result;
 }
 
-/// A column's name as color_places() and roles_of() know it.
-std::string plain_name(std::string_view word)
-{
-    constexpr std::pair<std::string_view, std::string_view> kOthers[] = {
-        {"normal_x", "nx"}, {"normal_y", "ny"}, {"normal_z", "nz"}, {"rf", "r"},
-        {"gf", "g"},        {"bf", "b"},        {"i", "intensity"}};
-    const std::string name = lower(word);
-    for (const auto& [other, plain] : kOthers) {
-        if (name == other)
-            return std::string(plain);
-    }
-    return name;
-}
-
 using ColumnNames = std::vector<std::string>;
 
-/// None where the line is longer than kLongestNames.
 ColumnNames plain_names(std::string_view line)
 {
     ColumnNames names;
-    if (line.size() > kLongestNames)
-        return names;
     for (const std::string_view name : names_in(line))
         names.push_back(plain_name(name));
     return names;
@@ -114,12 +93,14 @@ Lead read_lead(const std::string& file_name, std::string_view text, bool is_told
     std::size_t at = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
     for (; at < text.size(); ++lead.line) {
         const Line line = line_at(text, at);
+        const std::size_t begin = std::exchange(at, line.end);
+        if (line.words.empty())
+            continue;
         const auto fail = [&](const std::string& fault) {
             TextCursor(file_name, {}, {}, lead.line).fail(fault);
         };
         const std::string_view first = line.words.substr(0, line.words.find_first_of(" \t,;"));
-        if (line.words.empty()) {
-        } else if (is_comment(line.words)) {
+        if (is_comment(line.words)) {
             const std::string_view words = comment_words(line.words);
             if (names_places(plain_names(words)) && (lead.header.empty() || lead.is_comment)) {
                 lead.header = words;
@@ -140,11 +121,10 @@ Lead read_lead(const std::string& file_name, std::string_view text, bool is_told
         } else if (!number_in(first)) {
             fail(quoted(first) + " is not a number, and the line does not name columns x y z");
         } else {
-            lead.end = lead.line == 1 ? 0 : at;
+            lead.end = lead.line == 1 ? 0 : begin;
             lead.first = line.words.substr(0, line.words.find('#'));
             return lead;
         }
-        at = line.end;
     }
     throw InputError(file_name + ": has no points");
 }
@@ -249,10 +229,10 @@ Tail read_tail(std::string_view text)
         tail.begin = text.substr(0, end).find_last_of(kEnds) + 1;  // npos + 1 is 0
         const std::string_view line = text.substr(tail.begin, end - tail.begin);
         if (line.starts_with(kColumnsComment)) {
-            if (tail.columns.empty() && line.size() <= kLongestNames) {
-                for (const std::string_view name : names_in(line.substr(kColumnsComment.size())))
-                    tail.columns.emplace_back(name);
-            }
+            const std::vector<std::string_view> names =
+                names_in(line.substr(kColumnsComment.size()));
+            if (tail.columns.empty())
+                tail.columns.assign(names.begin(), names.end());
         } else if (off_mark(text).line.empty()) {
             tail.begin = text.size();
             if (!names_places(tail.columns))
@@ -292,14 +272,18 @@ void set_columns(XyzSource& source, const ColumnNames& names, TextCursor cursor,
     points.count = facts.rows;
 }
 
-/// Refuses a number of columns that is not the one of the names.
-void check_count(TextCursor cursor, std::size_t columns, std::size_t names)
+/// Refuses a number of columns that is not the one of the names, and more than a result can have.
+void check_count(TextCursor cursor, std::size_t columns, const ColumnNames& names)
 {
-    if (columns >= 3 && columns == names)
+    const bool is_result = std::ranges::find(names, "occlusion") != names.end();
+    const std::size_t most = kMostColumns - (is_result ? 0 : kResultColumns);
+    if (columns >= 3 && columns == names.size() && columns <= most)
         return;
     cursor.next_line();
     cursor.fail("the point has " + count_text(columns, "column") + ", but " +
-                (columns < 3 ? "x y z are 3" : "those named are " + std::to_string(names)));
+                (columns < 3               ? "x y z are 3"
+                 : columns == names.size() ? "the most are " + std::to_string(most)
+                                           : "those named are " + std::to_string(names.size())));
 }
 
 /// Of the first point.
@@ -342,6 +326,19 @@ void check_places(const std::string& file_name, const XyzSource& source,
 
 }  // namespace
 
+std::string xyz::plain_name(std::string_view word)
+{
+    constexpr std::pair<std::string_view, std::string_view> kOthers[] = {
+        {"normal_x", "nx"}, {"normal_y", "ny"}, {"normal_z", "nz"}, {"rf", "r"},
+        {"gf", "g"},        {"bf", "b"},        {"i", "intensity"}};
+    const std::string name = lower(as_word(word));
+    for (const auto& [other, plain] : kOthers) {
+        if (name == other)
+            return std::string(plain);
+    }
+    return name;
+}
+
 std::vector<std::string_view> xyz::names_in(std::string_view line)
 {
     std::vector<std::string_view> names;
@@ -349,6 +346,8 @@ std::vector<std::string_view> xyz::names_in(std::string_view line)
     const std::string_view between = is_list ? ",;" : kBlanks;
     while (!line.empty()) {
         const std::string_view name = trimmed(line.substr(0, line.find_first_of(between)));
+        if (names.size() == kMostColumns)
+            return {};
         if (!name.empty())
             names.push_back(name);
         const std::size_t end = line.find_first_of(between);
@@ -402,7 +401,7 @@ Scene read_xyz(const std::string& file_name, std::string contents, const std::st
             names = guess(facts, source->is_list);
     }
     set_columns(*source, names, cursor, facts);
-    check_count(cursor, facts.columns, names.size());
+    check_count(cursor, facts.columns, names);
     if (lead.count && *lead.count != facts.rows)
         TextCursor(file_name, {}, {}, lead.count_line)
             .fail("says " + count_text(*lead.count, "point") + ", but " +

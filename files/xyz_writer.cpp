@@ -23,13 +23,25 @@ std::string_view separator_of(std::string_view header)
     return " ";
 }
 
+/// Whether a line of names belongs to the columns, those of an earlier result included.
+bool fits(const XyzSource& source, const VertexChanges& changes)
+{
+    const std::vector<std::string_view> names = names_in(source.header);
+    const std::vector<Property>& columns = source.points.properties;
+    if (names.size() != columns.size())
+        return false;
+    for (std::size_t n = 0; n < names.size(); ++n) {
+        if (changes.drops(columns[n].name) && plain_name(names[n]) != columns[n].name)
+            return false;
+    }
+    return true;
+}
+
 /// The source's names of columns without those that go and with those that come.
 std::string new_header(const XyzSource& source, const VertexChanges& changes)
 {
     const std::vector<std::string_view> names = names_in(source.header);
     const std::vector<Property>& columns = source.points.properties;
-    if (names.size() != columns.size())
-        return std::string(source.header);
     std::string header;
     const char* copied = source.header.data();
     for (std::size_t n = 0; n < names.size(); ++n) {
@@ -44,19 +56,12 @@ std::string new_header(const XyzSource& source, const VertexChanges& changes)
     return header.append(copied, source.header.data() + source.header.size());
 }
 
-void append_name(std::string& line, std::string_view name)
-{
-    for (const char c : name)
-        line += std::string_view(" \t\v\f,;").find(c) == std::string_view::npos ? c : '_';
-    line += ' ';
-}
-
 /// `# columns x y z occlusion` behind the points.
 void append_columns(std::string& text, std::string line, std::span<const Column> added,
                     std::string_view line_end)
 {
     for (const Column& column : added)
-        append_name(line, column.name);
+        line.append(column.name).append(" ");
     line.pop_back();
     text.append(line).append(line_end);
 }
@@ -73,7 +78,8 @@ std::string changed_text(const XyzSource& source, std::span<const Occlusion> occ
     const std::string_view old = source.text;
     const std::string_view line_end = line_end_of(old);
     std::string text;
-    if (source.header.empty()) {
+    const bool has_names = !source.header.empty() && fits(source, changes);
+    if (!has_names) {
         text.append(old.substr(0, source.rows_begin));
     } else {
         const auto begin = static_cast<std::size_t>(source.header.data() - old.data());
@@ -84,11 +90,11 @@ std::string changed_text(const XyzSource& source, std::span<const Occlusion> occ
     text += changed_rows(source, occlusion, changes);
     if (text.back() != '\n' && text.back() != '\r')
         text += line_end;
-    if (!source.header_says_all) {
+    if (!has_names || !source.header_says_all) {
         std::string columns(kColumnsComment);
         for (const Property& property : source.points.properties) {
             if (!changes.drops(property.name))
-                append_name(columns, property.name);
+                columns.append(as_word(property.name)).append(" ");
         }
         append_columns(text, std::move(columns), changes.added, line_end);
     }

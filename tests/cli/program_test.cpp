@@ -40,7 +40,7 @@ TEST_F(ProgramTest, HelpAndVersionAreResultsAndExitZero)
     for (const char* word :
          {"--engine", "--quality", "--rays", "--passes", "--strength", "--max-distance",
           "--falloff", "--kernel", "--colors", "--encoding", "--threads", "--json", "--resume",
-          "--output", "--normals", "--crease", "--values", "--offset"})
+          "--output", "--columns", "--normals", "--crease", "--values", "--offset"})
         EXPECT_NE(bake.out.find(word), std::string::npos) << word;
     const Outcome compare = run({"compare", "--help"});
     EXPECT_EQ(compare.code, 0);
@@ -84,6 +84,8 @@ TEST_F(ProgramTest, WrongUsageIsRefusedBeforeAnyWorkWithExitTwo)
         {"bake", in(), "-o", out(), "--max-distance", "1e999"},
         {"bake", in(), "-o", out(), "--normals", "rough"},
         {"bake", in(), "-o", out(), "--crease", "181"},
+        {"info", in(), "--columns", "x y"},
+        {"bake", in(), "-o", out(), "--columns", "x y z z"},
         {"bake", in(), "-o", out(), "--crease", "nan"},
         {"bake", in(), "-o", out(), "--values", "mean"},
         {"bake", in(), "-o", out(), "--offset", "0"},

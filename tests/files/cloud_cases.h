@@ -162,7 +162,7 @@ inline std::vector<CloudCase> clouds()
         {"all.txt", "1 2 3 .5 255 0 0 0 0 1\n4 5 6 .7 0 128 7 0 1 0\n", "", places, up, colors},
         {"utm.xyz", "5432109.125 1 2\n", "", {{kUtm, 1, 2}}},
         {"header.csv.txt",
-         "X,Y,Z,Red,Green,Blue,GPS Time\n1,2,3,255,0,0,1e9\n4,5,6,0,128,7,2e9\n",
+         "X,Y,Z,Red,Green,Blue,GPS \t Time\n1,2,3,255,0,0,1e9\n4,5,6,0,128,7,2e9\n",
          "",
          places,
          {},
@@ -213,6 +213,8 @@ inline std::vector<CloudCase> clouds()
          pcd_header(kAllFields, 2, "binary_compressed") +
              compressed(pcd_points(true), lzf(pcd_points(true))),
          "", places, up, colors},
+        {"prose_of_seven.xyz", "# x y z are the axes here\n1 2 3\n4 5 6\n"},
+        {"two_colors.txt", "X,Y,Z,Red,GREEN\n1,2,3,4,5\n4,5,6,7,8\n"},
         {"prose.xyz", "# x y z of a scan\n1 2 3\n4 5 6\n"},
         {"named_after_result.xyz", "1 3 2\n4 6 5\n# columns x z y\n"},
         {"channels.pcd",

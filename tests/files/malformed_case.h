@@ -40,6 +40,14 @@ std::string bytes(Values... values)
 }
 static_assert(std::endian::native == std::endian::little);
 
+inline std::string repeated(const std::string& text, int count)
+{
+    std::string all;
+    for (int i = 0; i < count; ++i)
+        all += text;
+    return all;
+}
+
 inline std::string utf16(const std::string& text)
 {
     std::string wide = "\xFF\xFE";

@@ -65,14 +65,8 @@ std::vector<Case> cloud_cases()
         {"xyz_SecondHeader", "x y z\nx y z\n1 2 3 4\n", {"line 3", "4 columns", "named are 3"}},
         {"xyz_Utf16", utf16("1 2 3\n"), {"UTF-16"}},
         {"xyz_NulBytes", std::string(1000, '\0'), {"line 1", "not a number"}},
-        {"xyz_ManyColumns",
-         [] {
-             std::string line;
-             for (int i = 0; i < 1001; ++i)
-                 line += "1 ";
-             return line + "\n";
-         }(),
-         {"line 1", "1000 columns"}},
+        {"xyz_ManyColumns", repeated("1 ", 981), {"line 1", "981 columns", "980"}},
+        {"xyz_MoreColumns", repeated("1 ", 1001), {"line 1", "1000 columns"}},
         {"pts_CountTooLarge", "3\n1 2 3\n4 5 6\n", {"line 1", "3 points", "2 follow"}},
         {"pts_CountTooSmall", "1\n1 2 3\n4 5 6\n", {"line 1", "1 point,", "2 follow"}},
         {"pts_HugeCount", "9000000000000000000\n1 2 3\n", {"line 1", "9000000000000000000"}},
@@ -87,6 +81,12 @@ std::vector<Case> cloud_cases()
         {"pcd_OtherText", "Dear reader\n", {"line 1", "\"Dear\""}},
         {"pcd_NoData", pcd(f, "POINTS 2\n"), {"within the header"}},
         {"pcd_NoFields", pcd("", "POINTS 2\nDATA ascii\n1 2 3\n"), {"FIELDS"}},
+        {"pcd_EmptyFields",
+         pcd("FIELDS\n" + f, "POINTS 1\nDATA ascii\n1 2 3\n"),
+         {"line 2", "no fields"}},
+        {"pcd_TypesBeforeFields",
+         pcd("TYPE\n" + f, "POINTS 1\nDATA ascii\n1 2 3\n"),
+         {"line 2", "types", "front"}},
         {"pcd_SecondFields", pcd(f + f, "POINTS 2\nDATA ascii\n"), {"line 6", "second"}},
         {"pcd_NoZ", pcd("FIELDS x y\n", "POINTS 1\nDATA ascii\n1 2\n"), {"FIELDS", "z"}},
         {"pcd_TwoX",
@@ -113,6 +113,10 @@ std::vector<Case> cloud_cases()
         {"pcd_ManyTypes",
          pcd("FIELDS x y z\nTYPE F F F F\n", "POINTS 1\nDATA ascii\n"),
          {"line 3", "\"F\""}},
+        {"pcd_ManyFields",
+         pcd("FIELDS x y z" + repeated(" a", 978) + "\n", "POINTS 1\nDATA ascii\n"),
+         {"981 fields", "980"}},
+        {"pcd_MoreFields", pcd("FIELDS " + repeated("a ", 1001) + "\n", ""), {"1000 fields"}},
         {"pcd_Count0",
          pcd("FIELDS x y z a\nCOUNT 1 1 1 0\n", "POINTS 1\nDATA ascii\n1 2 3\n"),
          {"\"a\"", "count 0"}},
