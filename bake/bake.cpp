@@ -34,15 +34,16 @@ void enter(const StageProgress& progress, std::string_view stage)
 }
 
 /// What the engine built is gone afterwards: what follows needs the memory.
-VertexBake answer(const Mesh& mesh, const VertexTarget& target, const StageProgress& progress,
-                  BakeReport& report)
+VertexBake answer(const Mesh& mesh, const VertexTarget& target, Occluders* occluders,
+                  const StageProgress& progress, BakeReport& report)
 {
     const BakeSettings& settings = report.settings;
     const Offset offset = offset_of(settings.target, mesh.geometry.frame);
-    VertexBake bake = settings.error ? bake_to_error(mesh, target, settings.engine, offset,
-                                                     *settings.error, settings.check, progress)
-                                     : bake_vertices(mesh, target, settings.engine, offset,
-                                                     settings.check, progress);
+    VertexBake bake = settings.error
+                          ? bake_to_error(mesh, target, settings.engine, offset, *settings.error,
+                                          settings.check, progress, occluders)
+                          : bake_vertices(mesh, target, settings.engine, offset, settings.check,
+                                          progress, occluders);
     report.settings.engine = bake.engine;
     report.surfels = bake.surfels;
     report.residual = bake.residual;
@@ -54,15 +55,15 @@ VertexBake answer(const Mesh& mesh, const VertexTarget& target, const StageProgr
 }
 
 /// Solves, writes the output, and fills in the report what is of the values.
-void bake_at_vertices(const std::shared_ptr<const Mesh>& mesh, BakeReport& report,
-                      const StageProgress& progress)
+void bake_at_vertices(const std::shared_ptr<const Mesh>& mesh, Occluders* occluders,
+                      BakeReport& report, const StageProgress& progress)
 {
     const BakeSettings& settings = report.settings;
     Stopwatch stage;
     const VertexTarget target(mesh, settings.target);
     report.receivers = target.receivers().size();
     report.seconds.read += stage.lap();
-    const VertexBake baked = answer(*mesh, target, progress, report);
+    const VertexBake baked = answer(*mesh, target, occluders, progress, report);
 
     enter(progress, "write");
     stage.lap();
@@ -80,6 +81,20 @@ void bake_at_vertices(const std::shared_ptr<const Mesh>& mesh, BakeReport& repor
     report.notes.insert(report.notes.end(), written_notes.begin(), written_notes.end());
     report.mean_occlusion = mean_occlusion_of(mesh->surface, baked.values);
     report.seconds.write = stage.lap();
+}
+
+/// The mesh with what a subdivision adds; `occluders` become those of the mesh as it was.
+std::shared_ptr<const Mesh> subdivided(const std::shared_ptr<const Mesh>& mesh,
+                                       std::optional<Occluders>& occluders, BakeReport& report,
+                                       const StageProgress& progress)
+{
+    const BakeSettings& settings = report.settings;
+    occluders.emplace(mesh->geometry);
+    SubdivisionReport& told = report.subdivision.emplace();
+    const auto refined = std::make_shared<const Mesh>(subdivided(
+        *mesh, *settings.subdivide, settings.target, settings.engine, *occluders, progress, told));
+    report.seconds.subdivide = told.seconds;
+    return refined;
 }
 
 /// What a bake writes beside its output.
@@ -110,17 +125,20 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
         check_output(settings.input, settings.output);
 
     enter(progress, "read");
-    const auto mesh = std::make_shared<const Mesh>(
+    const auto read = std::make_shared<const Mesh>(
         make_mesh(read_scene(settings.input), settings.target.normals));
+    EngineSettings& engine = report.settings.engine;
+    engine.definition = definition_of(settings.max_distance, settings.kernel, read->geometry.frame);
+    report.seconds.read = stage.lap();
+    std::optional<Occluders> occluders;
+    const std::shared_ptr<const Mesh> mesh =
+        settings.subdivide ? subdivided(read, occluders, report, progress) : read;
     const Scene& scene = mesh->scene;
     const Geometry& geometry = mesh->geometry;
-    EngineSettings& engine = report.settings.engine;
-    engine.definition = definition_of(settings.max_distance, settings.kernel, geometry.frame);
-    report.seconds.read = stage.lap();
     if (settings.texels)
         bake_texels(*mesh, report, progress);
     else
-        bake_at_vertices(mesh, report, progress);
+        bake_at_vertices(mesh, occluders ? &*occluders : nullptr, report, progress);
 
     report.vertices = scene.positions.size();
     report.triangles = scene.triangles.size();
@@ -173,6 +191,8 @@ std::string mark_of(const BakeSettings& settings)
     text += std::isfinite(limit.value) && limit.percent ? "%" : "";
     text += limit.falloff == Falloff::smooth ? " falloff=smooth" : " falloff=none";
     text += " " + text_of(settings.target);
+    if (settings.subdivide)
+        add(" subdivide=", *settings.subdivide);
     if (const auto& texels = settings.texels) {
         text += " " + text_of(*texels);
         return make_mark("bake", text);

@@ -3,6 +3,7 @@
 
 #include "atlas/seams.h"
 #include "bake/map_bake.h"
+#include "bake/subdivide_job.h"
 #include "bake/texel_layout.h"
 #include "bake/vertex_bake.h"
 #include "bake/vertex_target.h"
@@ -32,13 +33,16 @@ struct BakeSettings {
     /// check >= 1. Of `engine` only the instructions count.
     std::optional<double> error = {};
     std::optional<TexelSettings> texels = {};  ///< a map instead of values at vertices
+    /// At vertices: the mesh is cut where what is seen bends by more (bake/subdivide.h); > 0.
+    std::optional<double> subdivide = {};
     VertexColors colors = VertexColors::automatic;
     Encoding encoding = Encoding::automatic;
 };
 
 /// Wall-clock seconds of each stage.
 struct BakeSeconds : VertexBakeSeconds {
-    double read = 0.0;    ///< the file, and the clean geometry
+    double read = 0.0;  ///< the file, and the clean geometry
+    double subdivide = 0.0;
     double charts = 0.0;  ///< texels: charts of our own
     double raster = 0.0;  ///< texels: which of them, and where each is asked
     double fill = 0.0;    ///< texels: those that nothing covers or nobody sees, and seams
@@ -83,6 +87,7 @@ struct BakeReport {
     std::optional<Misfit> misfit;         ///< of the values at vertices, as displayed
     std::optional<StatedError> error;     ///< as displayed
     std::optional<TexelReport> texels;
+    std::optional<SubdivisionReport> subdivision;
     std::vector<Trial> trials;       ///< of settings.error
     bool is_met = false;             ///< settings.error is kept
     std::vector<std::string> notes;  ///< bake/notes.h, then those of write_scene()
@@ -102,10 +107,11 @@ struct BatchEntry {
 };
 
 /// Keys input, output, vertices, triangles, dropped_triangles, vertices_without_normal, surfels,
-/// engine, settings, seconds{read, surfels, tree, solve, fit, write, total}, receivers,
+/// engine, settings, seconds{read, subdivide, surfels, tree, solve, fit, write, total}, receivers,
 /// corners_from_file, replaced_corners, peak_rss_bytes, residual, mean_occlusion, misfit{rms,
-/// share}, error, asked, texels, notes. What an engine or a target does not have is null. Failed:
-/// input, output, error. Skipped: input, output, skipped. A list of such objects for several files.
+/// share}, error, asked, texels, subdivision{tolerance, old_vertices, old_triangles, rounds,
+/// asked}, notes. What an engine or a target does not have is null. Failed: input, output, error.
+/// Skipped: input, output, skipped. A list of such objects for several files.
 [[nodiscard]] std::string json_of(std::span<const BatchEntry> batch);
 
 /// Where bent normals stand beside a map: "ao.bent.png" for "ao.png".

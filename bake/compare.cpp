@@ -175,12 +175,24 @@ void set_times(CompareRow& row, const std::vector<JobSeconds>& rounds, std::size
         row.solve_s * 1e6 / static_cast<double>(std::max<std::size_t>(1, receiver_count));
 }
 
-/// The layout is told in the comparison.
+/// The one mesh at whose vertices all engines answer.
+std::shared_ptr<const Mesh> subdivided(const Mesh& read, const CompareSettings& settings,
+                                       const Definition& definition, const StageProgress& progress)
+{
+    Occluders occluders(read.geometry);
+    SubdivisionReport told;
+    return std::make_shared<const Mesh>(subdivided(read, *settings.subdivide, settings.target,
+                                                   row_of_rays(settings, definition, 1024).settings,
+                                                   occluders, progress, told));
+}
+
+/// read: what occludes. The layout is told in the comparison.
 std::unique_ptr<const CompareTarget> target_of(const CompareSettings& settings,
+                                               const std::shared_ptr<const Mesh>& read,
                                                Comparison& comparison)
 {
     if (!settings.texels)
-        return vertices_to_compare(comparison.mesh, settings.target);
+        return vertices_to_compare(comparison.mesh, read, settings.target);
     TexelLayout found = layout_for(*comparison.mesh, *settings.texels, /*can_hold_new=*/true);
     comparison.page = found.layout.size;
     comparison.pages = found.layout.pages.size();
@@ -257,20 +269,22 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     comparison.input = settings.input;
     comparison.target = settings.target;
     comparison.texels = settings.texels;
+    comparison.subdivide = settings.subdivide;
     comparison.threads = thread_count();
     comparison.rounds = settings.rounds;
     static_cast<void>(stage("read"));
     Stopwatch watch;
-    comparison.mesh = std::make_shared<const Mesh>(
+    const auto read = std::make_shared<const Mesh>(
         make_mesh(read_scene(settings.input), settings.target.normals));
-    std::unique_ptr<const CompareTarget> target = target_of(settings, comparison);
+    const Definition definition =
+        definition_of(settings.max_distance, settings.kernel, read->geometry.frame);
+    comparison.mesh = settings.subdivide ? subdivided(*read, settings, definition, progress) : read;
+    std::unique_ptr<const CompareTarget> target = target_of(settings, read, comparison);
     comparison.read_s = watch.lap();
     comparison.vertices = comparison.mesh->scene.positions.size();
     comparison.triangles = comparison.mesh->scene.triangles.size();
     comparison.dropped_triangles = comparison.mesh->geometry.dropped_triangles;
     comparison.receivers = target->receivers();
-    const Definition definition =
-        definition_of(settings.max_distance, settings.kernel, comparison.mesh->geometry.frame);
     const TruthSettings truth_settings =
         truth_settings_of(settings, definition, *comparison.mesh, *target);
     SurfaceTruth truth = trace_truth(*comparison.mesh, truth_settings, stage("reference"));

@@ -32,8 +32,12 @@ double build_seconds(const PrepareSeconds& seconds)
 
 class ComparedVertices : public CompareTarget {
 public:
-    ComparedVertices(std::shared_ptr<const Mesh> mesh, const TargetSettings& settings)
-        : mesh_(std::move(mesh)), settings_(settings), target_(mesh_, settings)
+    ComparedVertices(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const Mesh> occluding,
+                     const TargetSettings& settings)
+        : mesh_(std::move(mesh)),
+          occluding_(std::move(occluding)),
+          settings_(settings),
+          target_(mesh_, settings)
     {
     }
 
@@ -54,7 +58,7 @@ public:
     JobResult run(const EngineSettings& engine, const SurfaceTruth* truth,
                   const Progress& progress) const override
     {
-        const Prepared prepared = prepare(mesh_->geometry, engine);
+        const Prepared prepared = prepare(occluding_->geometry, engine);
         const Solution solution = solve(prepared, target_.receivers(), engine, progress);
         Stopwatch fitting;
         const std::vector<Occlusion> values = target_.values(solution.occlusion);
@@ -72,7 +76,7 @@ public:
     }
 
 private:
-    std::shared_ptr<const Mesh> mesh_;
+    std::shared_ptr<const Mesh> mesh_, occluding_;
     TargetSettings settings_;
     VertexTarget target_;
 };
@@ -195,9 +199,10 @@ private:
 }  // namespace
 
 std::unique_ptr<const CompareTarget> vertices_to_compare(std::shared_ptr<const Mesh> mesh,
+                                                         std::shared_ptr<const Mesh> occluding,
                                                          const TargetSettings& settings)
 {
-    return std::make_unique<ComparedVertices>(std::move(mesh), settings);
+    return std::make_unique<ComparedVertices>(std::move(mesh), std::move(occluding), settings);
 }
 
 std::unique_ptr<const CompareTarget> map_to_compare(std::shared_ptr<const Mesh> mesh,

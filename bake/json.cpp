@@ -121,6 +121,15 @@ Json json_of(const BakeReport& report, const TexelReport& texels)
             {"written", written}};
 }
 
+Json json_of(const BakeReport& report, const SubdivisionReport& subdivision)
+{
+    return {{"tolerance", *report.settings.subdivide},
+            {"old_vertices", subdivision.old_vertices},
+            {"old_triangles", subdivision.old_triangles},
+            {"rounds", subdivision.rounds},
+            {"asked", subdivision.asked}};
+}
+
 Json json_of(const BatchEntry& entry)
 {
     Json json;
@@ -146,11 +155,12 @@ Json json_of(const BatchEntry& entry)
     add(json["settings"], report.settings.target);
     json["settings"]["colors"] = name_of(report.settings.colors);
     json["settings"]["encoding"] = name_of(report.settings.encoding);
-    json["seconds"] = {
-        {"read", seconds.read},       {"charts", seconds.charts}, {"raster", seconds.raster},
-        {"surfels", seconds.surfels}, {"tree", seconds.tree},     {"solve", seconds.solve},
-        {"fit", seconds.fit},         {"fill", seconds.fill},     {"check", seconds.check},
-        {"write", seconds.write},     {"total", seconds.total}};
+    json["seconds"] = {{"read", seconds.read},       {"subdivide", seconds.subdivide},
+                       {"charts", seconds.charts},   {"raster", seconds.raster},
+                       {"surfels", seconds.surfels}, {"tree", seconds.tree},
+                       {"solve", seconds.solve},     {"fit", seconds.fit},
+                       {"fill", seconds.fill},       {"check", seconds.check},
+                       {"write", seconds.write},     {"total", seconds.total}};
     json["receivers"] = report.receivers;
     json["corners_from_file"] = report.corners_from_file;
     json["replaced_corners"] = report.replaced_corners;
@@ -160,6 +170,7 @@ Json json_of(const BatchEntry& entry)
     json["misfit"] = json_of(report.misfit);
     json["error"] = json_of(report.error);
     json["texels"] = report.texels ? json_of(report, *report.texels) : Json();
+    json["subdivision"] = report.subdivision ? json_of(report, *report.subdivision) : Json();
     json["asked"] = report.settings.error ? search_json_of(report) : Json();
     json["notes"] = report.notes;
     return json;
@@ -231,6 +242,7 @@ Json json_object_of(const Comparison& comparison)
     json["read_s"] = comparison.read_s;
     json["target"] = Json::object();
     add(json["target"], comparison.target);
+    json["target"]["subdivide"] = comparison.subdivide ? Json(*comparison.subdivide) : Json();
     if (comparison.texels) {
         json["target"]["values"] = nullptr;
         json["target"]["texels"] = {

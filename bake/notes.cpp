@@ -82,7 +82,7 @@ std::vector<std::string> notes_of(const Baked& baked)
     if (baked.misfit && baked.misfit->rms > kNotableMisfit && baked.misfit->share >= kNotableShare)
         add("what is seen errs by about " + fixed(baked.misfit->rms, 2) + ": " +
             percent(baked.misfit->share) +
-            " of the surface lies in triangles too large for values at vertices; a finer mesh "
+            " of the surface lies in triangles too large for values at vertices; --subdivide "
             "helps");
     if (mean_occlusion_of(surface, baked.values) > kInteriorMean) {
         if (baked.definition.max_distance > kInteriorDistance)

@@ -29,6 +29,7 @@ struct BakeOptions {
     SurfaceOptions surface;
     ColorOptions colors;
     TexelOptions texels;
+    std::optional<double> subdivide;
     std::uint32_t check = kCheckPoints;
     std::optional<double> error;
     bool resume = false;
@@ -69,6 +70,8 @@ std::vector<Job> jobs_of(const BakeOptions& options)
                                            : fs::path(options.output)});
         files.writes(jobs.back().output, input);
         if (texel_settings_of(options.texels, jobs.back().output)) {
+            if (options.subdivide)
+                throw UsageError("--subdivide is for values at vertices: it goes with no map.");
             for (const auto& beside :
                  {map_file_of(jobs.back().output), map_materials_of(jobs.back().output)}) {
                 if (beside)
@@ -94,6 +97,7 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.check = options.check;
     settings.error = options.error;
     settings.texels = texel_settings_of(options.texels, job.output);
+    settings.subdivide = options.subdivide;
     settings.colors = colors_of(options.colors);
     settings.encoding = encoding_of(options.colors);
     return settings;
@@ -209,6 +213,7 @@ void add_bake_command(CLI::App& app, Work& work)
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
+    add_subdivide_option(*command, options->subdivide);
     add_color_options(*command, options->colors);
     add_texel_options(*command, options->texels);
     command

@@ -34,6 +34,7 @@ struct CompareOptions {
     std::optional<std::vector<std::string>> qualities;
     MeasureOptions measure;
     SurfaceOptions surface;
+    std::optional<double> subdivide;
     TexelOptions texels;
     std::uint32_t reference_rays = 4096;
     std::uint64_t sample = kSurfacePoints;
@@ -52,6 +53,7 @@ CompareSettings common_settings(const CompareOptions& options)
     settings.kernel = kernel_of(options.measure);
     settings.target = target_settings_of(options.surface);
     settings.texels = shown_texels_of(options.texels);
+    settings.subdivide = options.subdivide;
     settings.reference_rays = options.reference_rays;
     settings.sample = options.sample;
     settings.rounds = options.rounds;
@@ -210,6 +212,8 @@ void check(const CompareOptions& options)
         throw UsageError("--frontier needs at least 3 rounds.");
     if (options.reference_rays % 2 != 0)
         throw UsageError("--reference-rays must be even: two halves tell the noise.");
+    if (options.subdivide && options.texels.at == "texels")
+        throw UsageError("--subdivide is for values at vertices: it goes with no map.");
     if (options.json == "-" && options.csv == "-")
         throw UsageError("--json and --csv cannot both go to standard output.");
     const CompareSettings settings = compare_settings(options);
@@ -272,6 +276,7 @@ void add_compare_command(CLI::App& app, Work& work)
         ->default_str("draft,good,best");
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
+    add_subdivide_option(*command, options->subdivide);
     add_layout_options(*command, options->texels, kShownMaps);
     command
         ->add_option("--reference-rays", options->reference_rays,

@@ -54,6 +54,9 @@ void add_measure_options(CLI::App& command, MeasureOptions& options);
 
 void add_surface_options(CLI::App& command, SurfaceOptions& options);
 
+/// `--subdivide [TOL]`; without a number it is kSubdivideTolerance.
+void add_subdivide_option(CLI::App& command, std::optional<double>& tolerance);
+
 void add_color_options(CLI::App& command, ColorOptions& options);
 
 /// Adds `--threads N`.
