@@ -32,6 +32,8 @@ public:
     {
         if (a == 0 || b == 0)
             return 0;
+        if (a == b)
+            return a;
         const auto [found, is_new] =
             middles_.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(rows_.size() + 1));
         if (is_new)

@@ -25,6 +25,7 @@ public:
             const std::size_t begin = cursor.offset();
             go_to_end(cursor);
             vertices_.add(old_.substr(header_.end + begin, cursor.offset() - begin));
+            find_bytes(vertices_.words(v));
         }
         const std::size_t vertices_end = header_.end + cursor.offset();
         const std::string faces = face_lines(cursor);
@@ -40,6 +41,20 @@ private:
     {
         while (!cursor.at_line_end())
             cursor.word();
+    }
+
+    /// Of a vertex of so many words, whose colour would begin at `first`.
+    [[nodiscard]] std::size_t color_words(std::size_t count, std::size_t first) const
+    {
+        return static_cast<std::size_t>(header_.color_words(static_cast<int>(count - first)));
+    }
+
+    /// Whether colours are numbers up to 255.
+    void find_bytes(const std::vector<std::string_view>& words)
+    {
+        const std::size_t first = header_.has_normals && words.size() >= 6 ? 6 : 3;
+        for (std::size_t k = first; k < first + color_words(words.size(), first); ++k)
+            has_bytes_ = has_bytes_ || number_in(words[k]).value_or(0.0) > kLargestOfUnit;
     }
 
     /// From behind the vertices on.
@@ -64,13 +79,17 @@ private:
                 continue;
             text.append(old_.substr(copied, begin - copied));
             copied = header_.end + cursor.offset();
+            std::string_view rest_of_face = old_.substr(rest, copied - rest);
+            copied -= rest_of_face.size();
+            rest_of_face = rest_of_face.substr(0, rest_of_face.find_last_not_of(" \t") + 1);
+            copied += rest_of_face.size();
             bool is_first = true;
             for (const RefinedFaces::Triangle& triangle : triangles) {
                 for (const glm::uvec3& piece : refinement_.pieces_of(triangle.number)) {
                     text.append(is_first ? "" : line_end_).append("3");
                     for (int k = 0; k < 3; ++k)
                         append_integer(text += ' ', piece[k]);
-                    text.append(old_.substr(rest, copied - rest));
+                    text.append(rest_of_face);
                     face_count_ += is_first ? 0 : 1;
                     is_first = false;
                 }
@@ -107,8 +126,10 @@ private:
             append_middle(row, std::span(a).subspan(3), std::span(b).subspan(3), Triple::direction);
             at = 6;
         }
+        const std::size_t colors_end = at + color_words(count, at);
         for (; at < count; ++at)
-            append_middle(row, a[at], b[at]);
+            append_middle(row, a[at], b[at],
+                          has_bytes_ && at < colors_end ? Rounding::whole : Rounding::none);
         row.erase(0, 1);  // a blank
         return vertices_.add_own(std::move(row));
     }
@@ -120,6 +141,7 @@ private:
     TextRows vertices_{kOffRules};
     std::string_view line_end_ = line_end_of(old_);
     std::uint64_t face_count_ = 0;
+    bool has_bytes_ = false;
 };
 
 }  // namespace

@@ -61,17 +61,14 @@ glm::dvec2 numbers_of_words(std::string_view a, std::string_view b)
     return {number(a), number(b)};
 }
 
-void append_middle(std::string& text, std::string_view a, std::string_view b)
+void append_middle(std::string& text, std::string_view a, std::string_view b, Rounding rounding)
 {
-    const auto is_whole = [](std::string_view word) {
-        return word.find_first_not_of("+-0123456789") == std::string_view::npos;
-    };
     const glm::dvec2 ends = numbers_of_words(a, b);
     const double middle = 0.5 * ends.x + 0.5 * ends.y;
     text += ' ';
     if (!std::isfinite(middle))
         text += a;
-    else if (is_whole(a) && is_whole(b))
+    else if (rounding == Rounding::whole)
         append_integer(text, std::llround(middle));
     else
         append_shortest(text, middle);

@@ -71,9 +71,10 @@ private:
 /// The numbers of two words; nan for what is none.
 [[nodiscard]] glm::dvec2 numbers_of_words(std::string_view a, std::string_view b);
 
-/// The mean of two words that are numbers, as whole a number as both are; the first word where one
-/// is no number.
-void append_middle(std::string& text, std::string_view a, std::string_view b);
+/// The mean of two words that are numbers; the first word where one is none.
+enum class Rounding { none, whole };
+void append_middle(std::string& text, std::string_view a, std::string_view b,
+                   Rounding rounding = Rounding::none);
 
 /// That of three words each, as coordinates or as directions.
 enum class Triple { place, direction };
