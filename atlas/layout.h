@@ -1,10 +1,10 @@
 /// layout.h: where a surface lies in a map of one or several pages.
 ///
-/// Three kinds: one page (the file's own texture coordinates, or charts of ours), the tiles of a
-/// UDIM set (each triangle on one of them), and blended charts: three pages, one per axis, each
-/// with the triangles that face along it. There a triangle lies on up to three pages, and what is
-/// shown is their weighted mean (page_weights), so that it fades from one chart into the next where
-/// others have a seam.
+/// Four kinds: one page (the file's own texture coordinates, or charts of ours), the tiles of a
+/// UDIM set (each triangle on one of them), a page for each material, and blended charts: three
+/// pages, one per axis, each with the triangles that face along it. There a triangle lies on up to
+/// three pages, and what is shown is their weighted mean (page_weights), so that it fades from one
+/// chart into the next where others have a seam.
 #pragma once
 
 #include "image/map.h"
@@ -26,7 +26,9 @@ struct MapLayout {
     std::vector<UvSet> pages;  ///< at least one; per scene triangle, kNone for those on other pages
     std::vector<std::uint32_t> tiles = {};  ///< UDIM number of each page: 1001 + column + 10 row;
                                             ///< or empty
-    bool is_blended = false;                ///< three pages: by x, y, z
+    /// Of each page: its material (BaseColors::materials); or empty.
+    std::vector<std::uint32_t> materials = {};
+    bool is_blended = false;  ///< three pages: by x, y, z
 };
 
 /// A point of the surface on a page.

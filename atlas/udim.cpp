@@ -1,8 +1,9 @@
 #include "atlas/udim.h"
 
+#include "atlas/page_places.h"
+
 #include <cmath>
 #include <map>
-#include <unordered_map>
 
 namespace surfelao {
 namespace {
@@ -24,32 +25,13 @@ std::uint32_t tile_at(glm::dvec2 uv)
            kTileColumns * static_cast<std::uint32_t>(row);
 }
 
-/// Triangles of one tile and their places, relative to it.
-struct Tile {
-    UvSet uvs;
-    std::unordered_map<std::uint32_t, std::uint32_t> moved;  ///< from the file's values to ours
-
-    void add(std::size_t triangle, glm::uvec3 corners, const UvSet& from, std::uint32_t number)
-    {
-        const double column = (number - 1001) % kTileColumns;
-        const double row = (number - 1001) / kTileColumns;
-        for (int k = 0; k < 3; ++k) {
-            const auto [found, is_new] =
-                moved.try_emplace(corners[k], static_cast<std::uint32_t>(uvs.values.size()));
-            if (is_new)
-                uvs.values.push_back(from.values[corners[k]] + glm::dvec2(-column, row));
-            uvs.corners[triangle][k] = found->second;
-        }
-    }
-};
-
 }  // namespace
 
 MapLayout udim_layout(const Scene& scene, const UvSet& uvs, MapSize size)
 {
-    std::map<std::uint32_t, Tile> tiles;
+    std::map<std::uint32_t, PagePlacesOf> tiles;
     for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
-        const glm::uvec3 corners = uvs.corners.empty() ? scene.triangles[t] : uvs.corners[t];
+        const glm::uvec3 corners = corners_in(scene, uvs, t);
         glm::dvec2 middle(0.0);
         bool has_place = true;
         for (int k = 0; k < 3; ++k) {
@@ -60,14 +42,14 @@ MapLayout udim_layout(const Scene& scene, const UvSet& uvs, MapSize size)
         const std::uint32_t number = has_place ? tile_at(middle) : 0;
         if (number == 0)
             continue;
-        Tile& tile = tiles[number];
-        if (tile.uvs.corners.empty())
-            tile.uvs.corners.assign(scene.triangles.size(), glm::uvec3(UvSet::kNone));
-        tile.add(t, corners, uvs, number);
+        const double column = (number - 1001) % kTileColumns;
+        const double row = (number - 1001) / kTileColumns;
+        tiles.try_emplace(number, scene.triangles.size())
+            .first->second.add(t, corners, uvs, {-column, row});
     }
     MapLayout layout{.size = size, .pages = {}};
     for (auto& [number, tile] : tiles) {
-        layout.pages.push_back(std::move(tile.uvs));
+        layout.pages.push_back(tile.take());
         layout.tiles.push_back(number);
     }
     return layout;

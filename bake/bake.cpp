@@ -33,17 +33,24 @@ void enter(const StageProgress& progress, std::string_view stage)
         throw Cancelled();
 }
 
-/// What the engine built is gone afterwards: what follows needs the memory.
-VertexBake answer(const Mesh& mesh, const VertexTarget& target, Occluders* occluders,
-                  const StageProgress& progress, BakeReport& report)
+/// One file of a world, and the engines of the whole; null where it is the only one: then what they
+/// built is gone as soon as they have answered, for what follows needs the memory.
+struct Job {
+    std::shared_ptr<const Mesh> mesh;
+    Occluders* occluders = nullptr;
+};
+
+VertexBake answer(const Job& job, const VertexTarget& target, const StageProgress& progress,
+                  BakeReport& report)
 {
     const BakeSettings& settings = report.settings;
+    const Mesh& mesh = *job.mesh;
     const Offset offset = offset_of(settings.target, mesh.geometry.frame);
     VertexBake bake = settings.error
                           ? bake_to_error(mesh, target, settings.engine, offset, *settings.error,
-                                          settings.check, progress, occluders)
+                                          settings.check, progress, job.occluders)
                           : bake_vertices(mesh, target, settings.engine, offset, settings.check,
-                                          progress, occluders);
+                                          progress, job.occluders);
     report.settings.engine = bake.engine;
     report.surfels = bake.surfels;
     report.residual = bake.residual;
@@ -55,15 +62,15 @@ VertexBake answer(const Mesh& mesh, const VertexTarget& target, Occluders* occlu
 }
 
 /// Solves, writes the output, and fills in the report what is of the values.
-void bake_at_vertices(const std::shared_ptr<const Mesh>& mesh, Occluders* occluders,
-                      BakeReport& report, const StageProgress& progress)
+void bake_at_vertices(const Job& job, BakeReport& report, const StageProgress& progress)
 {
     const BakeSettings& settings = report.settings;
+    const std::shared_ptr<const Mesh>& mesh = job.mesh;
     Stopwatch stage;
     const VertexTarget target(mesh, settings.target);
     report.receivers = target.receivers().size();
     report.seconds.read += stage.lap();
-    const VertexBake baked = answer(*mesh, target, occluders, progress, report);
+    const VertexBake baked = answer(job, target, progress, report);
 
     enter(progress, "write");
     stage.lap();
@@ -71,7 +78,10 @@ void bake_at_vertices(const std::shared_ptr<const Mesh>& mesh, Occluders* occlud
     tbb::parallel_invoke(
         [&] {
             written_notes = write_scene(settings.output, mesh->scene, baked.values,
-                                        {settings.colors, settings.encoding, mark_of(settings)});
+                                        {.colors = settings.colors,
+                                         .encoding = settings.encoding,
+                                         .mark = mark_of(settings),
+                                         .unbaked = mesh->unbaked});
         },
         [&] {  // a writer leaves cores idle
             report.misfit = target.misfit(baked.answers, baked.values);
@@ -81,20 +91,6 @@ void bake_at_vertices(const std::shared_ptr<const Mesh>& mesh, Occluders* occlud
     report.notes.insert(report.notes.end(), written_notes.begin(), written_notes.end());
     report.mean_occlusion = mean_occlusion_of(mesh->surface, baked.values);
     report.seconds.write = stage.lap();
-}
-
-/// The mesh with what a subdivision adds; `occluders` become those of the mesh as it was.
-std::shared_ptr<const Mesh> subdivided(const std::shared_ptr<const Mesh>& mesh,
-                                       std::optional<Occluders>& occluders, BakeReport& report,
-                                       const StageProgress& progress)
-{
-    const BakeSettings& settings = report.settings;
-    occluders.emplace(mesh->geometry);
-    SubdivisionReport& told = report.subdivision.emplace();
-    const auto refined = std::make_shared<const Mesh>(subdivided(
-        *mesh, *settings.subdivide, settings.target, settings.engine, *occluders, progress, told));
-    report.seconds.subdivide = told.seconds;
-    return refined;
 }
 
 /// What a bake writes beside its output.
@@ -111,45 +107,116 @@ std::vector<fs::path> files_beside(const BakeSettings& settings)
     return files;
 }
 
-}  // namespace
-
-BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
+void check_before_work(const BakeSettings& settings, bool is_alone)
 {
-    BakeReport report;
-    report.settings = settings;
-    report.threads = thread_count();
-    Stopwatch whole, stage;
     if (settings.texels)
         check_texel_output(settings);
     else
         check_output(settings.input, settings.output);
+    const bool has_high = settings.texels && !settings.texels->high.empty();
+    if (has_high && !(is_alone && settings.parts.occluders.empty()))
+        throw InputError(settings.output.string() +
+                         ": with a high mesh nothing but it occludes, no other files");
+}
 
-    enter(progress, "read");
-    const auto read = std::make_shared<const Mesh>(
-        make_mesh(read_scene(settings.input), settings.target.normals));
-    EngineSettings& engine = report.settings.engine;
-    engine.definition = definition_of(settings.max_distance, settings.kernel, read->geometry.frame);
-    report.seconds.read = stage.lap();
-    std::optional<Occluders> occluders;
-    const std::shared_ptr<const Mesh> mesh =
-        settings.subdivide ? subdivided(read, occluders, report, progress) : read;
-    const Scene& scene = mesh->scene;
-    const Geometry& geometry = mesh->geometry;
-    if (settings.texels)
-        bake_texels(*mesh, report, progress);
+/// As the settings ask, below all of these.
+void set_ground(std::initializer_list<std::reference_wrapper<const Geometry>> geometries,
+                BakeReport& report)
+{
+    const Frame& frame = geometries.begin()->get().frame;
+    std::optional<Ground>& ground = report.settings.engine.definition.ground;
+    ground = ground_of(report.settings.ground, geometries,
+                       largest_offset_of(report.settings.target, frame));
+    if (ground)
+        report.ground = text_of(*ground, frame);
+}
+
+/// The job with its mesh subdivided; own: its engines, where it has none.
+Job subdivided(const Job& job, std::optional<Occluders>& own, BakeReport& report,
+               const StageProgress& progress)
+{
+    const BakeSettings& settings = report.settings;
+    Job refined = job;
+    if (refined.occluders == nullptr)
+        refined.occluders = &own.emplace(job.mesh->occluding());
+    SubdivisionReport& told = report.subdivision.emplace();
+    refined.mesh = std::make_shared<const Mesh>(subdivided(*job.mesh, *settings.subdivide,
+                                                           settings.target, settings.engine,
+                                                           *refined.occluders, progress, told));
+    report.seconds.subdivide = told.seconds;
+    return refined;
+}
+
+/// One file of the world.
+BakeReport bake_one(const Job& read, const BakeSettings& settings, double read_seconds,
+                    const StageProgress& progress)
+{
+    BakeReport report;
+    report.settings = settings;
+    report.threads = thread_count();
+    report.seconds.read = read_seconds;
+    Stopwatch whole;
+    if (!settings.texels)
+        check_output(read.mesh->scene, settings.output);
+    report.settings.engine.definition = definition_of(
+        report.settings.max_distance, report.settings.kernel, read.mesh->geometry.frame);
+    set_ground({read.mesh->geometry, read.mesh->occluding()}, report);
+    std::optional<Occluders> own;
+    const Job job = settings.subdivide ? subdivided(read, own, report, progress) : read;
+    const Mesh& mesh = *job.mesh;
+    const Geometry& geometry = mesh.geometry;
+    if (report.settings.texels)
+        bake_texels(mesh, job.occluders, report, progress);
     else
-        bake_at_vertices(mesh, occluders ? &*occluders : nullptr, report, progress);
+        bake_at_vertices(job, report, progress);
 
-    report.vertices = scene.positions.size();
-    report.triangles = scene.triangles.size();
+    report.vertices = mesh.scene.positions.size();
+    report.triangles = mesh.scene.triangles.size();
     report.dropped_triangles = geometry.dropped_triangles;
+    report.baked_triangles = geometry.triangles.size();
+    report.occluding_triangles = mesh.occluding().triangles.size();
     report.vertices_without_normal = static_cast<std::uint64_t>(
-        std::count(mesh->surface.normals.begin(), mesh->surface.normals.end(), glm::vec3(0.0f)));
-    report.corners_from_file = mesh->surface.corners_from_file;
-    report.replaced_corners = mesh->surface.replaced_corners;
-    report.seconds.total = whole.lap();
+        std::count(mesh.surface.normals.begin(), mesh.surface.normals.end(), glm::vec3(0.0f)));
+    report.corners_from_file = mesh.surface.corners_from_file;
+    report.replaced_corners = mesh.surface.replaced_corners;
+    report.seconds.total = read_seconds + whole.lap();
     report.peak_rss_bytes = peak_rss_bytes();
     return report;
+}
+
+}  // namespace
+
+BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
+{
+    return std::move(bake_together(std::vector{settings}, progress).front());
+}
+
+std::vector<BakeReport> bake_together(const std::vector<BakeSettings>& settings,
+                                      const StageProgress& progress)
+{
+    const bool is_alone = settings.size() == 1;
+    Stopwatch watch;
+    std::vector<fs::path> inputs;
+    for (const BakeSettings& of_file : settings) {
+        check_before_work(of_file, is_alone);
+        inputs.push_back(of_file.input);
+    }
+    enter(progress, "read");
+    BakeWorld world = read_world(inputs, settings.front().target.normals, settings.front().parts,
+                                 settings.front().reading);
+    double read_seconds = watch.lap();
+    const std::shared_ptr<const Geometry> occluding = world.meshes.front().occluders;
+    std::optional<Occluders> occluders;
+    if (!is_alone)
+        occluders.emplace(*occluding);
+    std::vector<BakeReport> reports;
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+        const Job job{std::make_shared<const Mesh>(std::move(world.meshes[i])),
+                      occluders ? &*occluders : nullptr};
+        reports.push_back(bake_one(job, settings[i], read_seconds, progress));
+        read_seconds = 0.0;
+    }
+    return reports;
 }
 
 fs::path output_in_folder(const fs::path& input, const fs::path& folder)
@@ -190,12 +257,21 @@ std::string mark_of(const BakeSettings& settings)
         text += " max_distance=none";
     text += std::isfinite(limit.value) && limit.percent ? "%" : "";
     text += limit.falloff == Falloff::smooth ? " falloff=smooth" : " falloff=none";
-    text += " " + text_of(settings.target);
+    if (const auto& ground = settings.ground)
+        text += " ground=" + text_of(*ground);
+    text += " " + text_of(settings.target) + text_of(settings.parts);
     if (settings.subdivide)
         add(" subdivide=", *settings.subdivide);
+    for (const fs::path& other : settings.beside)
+        text += " beside=" + other.filename().string();
     if (const auto& texels = settings.texels) {
         text += " " + text_of(*texels);
         return make_mark("bake", text);
+    }
+    if (!settings.reading.columns.empty()) {
+        std::string columns = settings.reading.columns;
+        std::ranges::replace(columns, ' ', ',');
+        text += " columns=" + columns;
     }
     text += " colors=" + name_of(settings.colors);
     text += " encoding=" + name_of(settings.encoding);
@@ -215,12 +291,16 @@ bool is_finished(const BakeSettings& settings)
             return fs::exists(file, ignored);
         }))
         return false;
-    std::vector<fs::path> sources;
+    std::vector<fs::path> sources = settings.parts.occluders;
+    sources.insert(sources.end(), settings.beside.begin(), settings.beside.end());
     if (settings.texels)
-        sources = settings.texels->high;
-    if (type_of(settings.input) == FileType::gltf)
-        std::ranges::copy(sidecars_of(settings.input), std::back_inserter(sources));
+        std::ranges::copy(settings.texels->high, std::back_inserter(sources));
     sources.push_back(settings.input);
+    for (std::size_t i = 0, count = sources.size(); i < count; ++i) {
+        const FileType type = type_of(sources[i]);
+        if (type == FileType::gltf || type == FileType::obj)  // whose alpha counts too
+            std::ranges::copy(sidecars_of(sources[i]), std::back_inserter(sources));
+    }
     return std::ranges::all_of(sources, [&](const fs::path& source) {
         std::error_code missing;
         const fs::file_time_type changed = fs::last_write_time(source, missing);

@@ -7,8 +7,9 @@
 #include "bake/texel_layout.h"
 #include "bake/vertex_bake.h"
 #include "bake/vertex_target.h"
+#include "bake/world.h"
 #include "engines/engine.h"
-#include "files/vertex_colors.h"
+#include "files/scene_io.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -27,7 +28,11 @@ struct BakeSettings {
     EngineSettings engine;  ///< its definition is made from the members below
     DistanceLimit max_distance;
     Kernel kernel = Kernel::cosine;
+    std::optional<GroundPlane> ground = {};
     TargetSettings target;
+    PartChoice parts = {};  ///< who occludes, who is baked
+    /// The other files that are baked together with it (bake_together): for marks.
+    std::vector<std::filesystem::path> beside = {};
     std::uint32_t check = kCheckPoints;  ///< points at which the result is measured; 0: not at all
     /// The engine is then the cheapest whose stated error lies below it (bake_to_error): > 0, and
     /// check >= 1. Of `engine` only the instructions count.
@@ -37,6 +42,7 @@ struct BakeSettings {
     std::optional<double> subdivide = {};
     VertexColors colors = VertexColors::automatic;
     Encoding encoding = Encoding::automatic;
+    ReadOptions reading = {};  ///< of the input
 };
 
 /// Wall-clock seconds of each stage.
@@ -54,6 +60,7 @@ struct TexelReport {
     MapSize size;
     std::optional<std::uint32_t> uv_set;        ///< of the file; empty: charts of our own
     std::vector<std::uint32_t> tiles;           ///< UDIM
+    std::vector<std::string> materials;         ///< that have a map each
     std::optional<ChartReport> charts;          ///< of our own
     std::uint64_t covered = 0;                  ///< texels
     std::uint64_t overlapping = 0;              ///< texels of several sheets: they hold the mean
@@ -74,6 +81,8 @@ struct BakeReport {
     std::uint64_t vertices = 0;
     std::uint64_t triangles = 0;
     std::uint64_t dropped_triangles = 0;        ///< without area: they occlude nothing
+    std::uint64_t baked_triangles = 0;          ///< with an area, of the parts that are baked
+    std::uint64_t occluding_triangles = 0;      ///< of all files, with an area
     std::uint64_t vertices_without_normal = 0;  ///< they get occlusion 0
     std::uint64_t surfels = 0;
     int threads = 0;
@@ -81,6 +90,7 @@ struct BakeReport {
     std::uint64_t peak_rss_bytes = 0;
     std::optional<double> residual;       ///< of the disk engine's correction
     double mean_occlusion = 0.0;          ///< over vertices with a normal
+    std::string ground;                   ///< where it lies, "y = -0.25"; empty: there is none
     std::uint64_t receivers = 0;          ///< where occlusion was asked
     std::uint64_t corners_from_file = 0;  ///< corners shaded with the file's normals
     std::uint64_t replaced_corners = 0;   ///< the file's were not usable there
@@ -98,6 +108,13 @@ struct BakeReport {
 /// An output that cannot be written is refused before any work.
 [[nodiscard]] BakeReport bake(const BakeSettings& settings, const StageProgress& progress = {});
 
+/// Several files as one scene: all occlude each other, each is written by itself. Equal parts and
+/// normals, which are those of the first. All are read and an engine is prepared once; what that
+/// takes is told with the first. Normals are smoothed within a file. Throws as bake(), with the
+/// results of earlier files written; settings with a high mesh are refused (InputError).
+[[nodiscard]] std::vector<BakeReport> bake_together(const std::vector<BakeSettings>& settings,
+                                                    const StageProgress& progress = {});
+
 /// One file of a batch: done, failed (`error` says why) or, with neither, skipped.
 struct BatchEntry {
     std::filesystem::path input;
@@ -106,12 +123,13 @@ struct BatchEntry {
     std::string error;
 };
 
-/// Keys input, output, vertices, triangles, dropped_triangles, vertices_without_normal, surfels,
+/// Keys input, output, vertices, triangles, dropped_triangles, vertices_without_normal,
+/// baked_triangles, occluding_triangles, surfels,
 /// engine, settings, seconds{read, subdivide, surfels, tree, solve, fit, write, total}, receivers,
 /// corners_from_file, replaced_corners, peak_rss_bytes, residual, mean_occlusion, misfit{rms,
 /// share}, error, asked, texels, subdivision{tolerance, old_vertices, old_triangles, rounds,
-/// asked}, notes. What an engine or a target does not have is null. Failed: input, output, error.
-/// Skipped: input, output, skipped. A list of such objects for several files.
+/// asked}, notes. What an engine or a target does not have is null. Failed:
+/// input, output, error. Skipped: input, output, skipped. A list of such objects for several files.
 [[nodiscard]] std::string json_of(std::span<const BatchEntry> batch);
 
 /// Where bent normals stand beside a map: "ao.bent.png" for "ao.png".
@@ -127,14 +145,16 @@ struct BatchEntry {
                                                      const std::filesystem::path& folder);
 
 /// The mark of the result (files/maker_mark.h): all settings on which its bytes depend, as they
-/// were asked for; neither the input nor threads. Of what only another engine has, nothing.
+/// were asked for; neither the input nor threads, but what occludes it. Of what only another engine
+/// has, nothing.
 ///
 ///     surfelao 0.1.0 bake: engine=masks device=cpu quality=1 kernel=cosine max_distance=none
 ///     falloff=none normals=auto crease=40 values=fit colors=auto encoding=auto
 [[nodiscard]] std::string mark_of(const BakeSettings& settings);
 
 /// Whether the output exists with the mark that a bake would give it now and is not older than its
-/// input and the files that a .gltf refers to. Outputs are complete when they exist.
+/// input, the files that occlude or are baked beside it, and those that a .gltf or .obj of these
+/// refers to. Outputs are complete when they exist.
 [[nodiscard]] bool is_finished(const BakeSettings& settings);
 
 }  // namespace surfelao

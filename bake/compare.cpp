@@ -2,7 +2,6 @@
 
 #include "bake/compare_target.h"
 #include "engines/threads.h"
-#include "files/scene_io.h"
 #include "gpu/context.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
@@ -176,24 +175,23 @@ void set_times(CompareRow& row, const std::vector<JobSeconds>& rounds, std::size
 }
 
 /// The one mesh at whose vertices all engines answer.
-std::shared_ptr<const Mesh> subdivided(const Mesh& read, const CompareSettings& settings,
-                                       const Definition& definition, const StageProgress& progress)
+Mesh subdivided(const Mesh& read, const CompareSettings& settings, const Definition& definition,
+                const StageProgress& progress)
 {
-    Occluders occluders(read.geometry);
+    Occluders occluders(read.occluding());
     SubdivisionReport told;
-    return std::make_shared<const Mesh>(subdivided(read, *settings.subdivide, settings.target,
-                                                   row_of_rays(settings, definition, 1024).settings,
-                                                   occluders, progress, told));
+    return subdivided(read, *settings.subdivide, settings.target,
+                      row_of_rays(settings, definition, settings.reference_rays).settings,
+                      occluders, progress, told);
 }
 
-/// read: what occludes. The layout is told in the comparison.
+/// The layout is told in the comparison.
 std::unique_ptr<const CompareTarget> target_of(const CompareSettings& settings,
-                                               const std::shared_ptr<const Mesh>& read,
                                                Comparison& comparison)
 {
     if (!settings.texels)
-        return vertices_to_compare(comparison.mesh, read, settings.target);
-    TexelLayout found = layout_for(*comparison.mesh, *settings.texels, /*can_hold_new=*/true);
+        return vertices_to_compare(comparison.mesh, settings.target);
+    TexelLayout found = layout_for(*comparison.mesh, *settings.texels);
     comparison.page = found.layout.size;
     comparison.pages = found.layout.pages.size();
     comparison.uv_set = found.uv_set;
@@ -274,12 +272,18 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     comparison.rounds = settings.rounds;
     static_cast<void>(stage("read"));
     Stopwatch watch;
-    const auto read = std::make_shared<const Mesh>(
-        make_mesh(read_scene(settings.input), settings.target.normals));
-    const Definition definition =
-        definition_of(settings.max_distance, settings.kernel, read->geometry.frame);
-    comparison.mesh = settings.subdivide ? subdivided(*read, settings, definition, progress) : read;
-    std::unique_ptr<const CompareTarget> target = target_of(settings, read, comparison);
+    Mesh mesh =
+        read_mesh(settings.input, settings.target.normals, settings.parts, settings.reading);
+    const Frame frame = mesh.geometry.frame;
+    Definition definition = definition_of(settings.max_distance, settings.kernel, frame);
+    definition.ground =
+        ground_of(settings.ground, {mesh.geometry}, largest_offset_of(settings.target, frame));
+    if (definition.ground)
+        comparison.ground = text_of(*definition.ground, frame);
+    if (settings.subdivide)
+        mesh = subdivided(mesh, settings, definition, progress);
+    comparison.mesh = std::make_shared<const Mesh>(std::move(mesh));
+    std::unique_ptr<const CompareTarget> target = target_of(settings, comparison);
     comparison.read_s = watch.lap();
     comparison.vertices = comparison.mesh->scene.positions.size();
     comparison.triangles = comparison.mesh->scene.triangles.size();

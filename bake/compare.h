@@ -37,13 +37,16 @@ struct CompareSettings {
     std::vector<std::uint32_t> rays = {1, 4, 16, 64, 256};  ///< rows of the opponent
     DistanceLimit max_distance;
     Kernel kernel = Kernel::cosine;
+    std::optional<GroundPlane> ground = {};
     TargetSettings target;
-    std::optional<TexelSettings> texels;  ///< a map; empty: values at the vertices
-    std::optional<double> subdivide;      ///< as BakeSettings::subdivide: the same mesh for all
-    std::uint32_t reference_rays = 4096;  ///< an even number
-    std::uint64_t sample = 0;             ///< points of the surface; 0 = kSurfacePoints
-    int rounds = 3;                       ///< >= 1
-    bool use_cache = true;                ///< of references
+    PartChoice parts = {};                 ///< who occludes, who is asked
+    std::optional<TexelSettings> texels;   ///< a map; empty: values at the vertices
+    std::optional<double> subdivide = {};  ///< as BakeSettings::subdivide: one mesh for all
+    std::uint32_t reference_rays = 4096;   ///< an even number
+    std::uint64_t sample = 0;              ///< points of the surface; 0 = kSurfacePoints
+    int rounds = 3;                        ///< >= 1
+    bool use_cache = true;                 ///< of references
+    ReadOptions reading = {};              ///< of the input
     Instructions instructions = Instructions::all;  ///< of the candidates and the opponent
 };
 
@@ -97,8 +100,9 @@ struct Comparison {
     std::uint64_t receivers = 0;  ///< that every engine solves
     int threads = 0;
     int rounds = 0;
-    double read_s = 0.0;  ///< file, clean geometry and target, for a map its layout, with
-                          ///< subdivision: everyone's
+    std::string ground;   ///< where it lies, "y = -0.25"; empty: there is none
+    double read_s = 0.0;  ///< file, clean geometry, subdivision and target, for a map its layout:
+                          ///< everyone's
     std::uint32_t reference_rays = 0;
     double reference_noise = 0.0;
     bool reference_from_cache = false;

@@ -151,13 +151,14 @@ std::string table_of(const Comparison& comparison)
             cells.insert(cells.begin() + 2, fixed(row.raster_s, 4));
         table.add(std::move(cells));
     }
-    std::string text = comparison.input.string() + ": " + std::to_string(comparison.vertices) +
-                       " vertices, " + std::to_string(comparison.triangles) + " triangles, " +
-                       (is_map ? target_text(comparison) + ", " : "") +
-                       std::to_string(comparison.receivers) + " receivers, " +
-                       std::to_string(comparison.threads) + " threads, median of " +
-                       std::to_string(comparison.rounds) + '\n' + errors_text(comparison) + "\n\n" +
-                       table.text() + rows_run_once(comparison);
+    std::string text =
+        comparison.input.string() + ": " + std::to_string(comparison.vertices) + " vertices, " +
+        std::to_string(comparison.triangles) + " triangles, " +
+        (is_map ? target_text(comparison) + ", " : "") +
+        (comparison.ground.empty() ? "" : "a ground at " + comparison.ground + ", ") +
+        std::to_string(comparison.receivers) + " receivers, " + std::to_string(comparison.threads) +
+        " threads, median of " + std::to_string(comparison.rounds) + '\n' +
+        errors_text(comparison) + "\n\n" + table.text() + rows_run_once(comparison);
     for (const CompareRow& row : comparison.rows) {
         if (row.ratio && row.ratio->extrapolated) {
             text += "* extrapolated beyond the rows of rays\n";

@@ -32,12 +32,8 @@ double build_seconds(const PrepareSeconds& seconds)
 
 class ComparedVertices : public CompareTarget {
 public:
-    ComparedVertices(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const Mesh> occluding,
-                     const TargetSettings& settings)
-        : mesh_(std::move(mesh)),
-          occluding_(std::move(occluding)),
-          settings_(settings),
-          target_(mesh_, settings)
+    ComparedVertices(std::shared_ptr<const Mesh> mesh, const TargetSettings& settings)
+        : mesh_(std::move(mesh)), settings_(settings), target_(mesh_, settings)
     {
     }
 
@@ -49,16 +45,16 @@ public:
                 const Progress& progress) const override
     {
         if (settings_.values == VertexValues::fit)
-            return find_floor(target_, mesh_->geometry, truth, settings, progress);
+            return find_floor(target_, *mesh_, truth, settings, progress);
         TargetSettings fitted = settings_;
         fitted.values = VertexValues::fit;
-        return find_floor(VertexTarget(mesh_, fitted), mesh_->geometry, truth, settings, progress);
+        return find_floor(VertexTarget(mesh_, fitted), *mesh_, truth, settings, progress);
     }
 
     JobResult run(const EngineSettings& engine, const SurfaceTruth* truth,
                   const Progress& progress) const override
     {
-        const Prepared prepared = prepare(occluding_->geometry, engine);
+        const Prepared prepared = prepare(mesh_->occluding(), engine);
         const Solution solution = solve(prepared, target_.receivers(), engine, progress);
         Stopwatch fitting;
         const std::vector<Occlusion> values = target_.values(solution.occlusion);
@@ -76,7 +72,7 @@ public:
     }
 
 private:
-    std::shared_ptr<const Mesh> mesh_, occluding_;
+    std::shared_ptr<const Mesh> mesh_;
     TargetSettings settings_;
     VertexTarget target_;
 };
@@ -156,7 +152,7 @@ public:
         if (truth == nullptr)
             return result;
         result.displayed = displayed(bake, *truth);
-        result.answers = answers_at_points(prepare(mesh_->geometry, engine), receivers_, *truth,
+        result.answers = answers_at_points(prepare(mesh_->occluding(), engine), receivers_, *truth,
                                            engine, progress);
         result.occlusion = occlusion_of(bake);
         return result;
@@ -199,10 +195,9 @@ private:
 }  // namespace
 
 std::unique_ptr<const CompareTarget> vertices_to_compare(std::shared_ptr<const Mesh> mesh,
-                                                         std::shared_ptr<const Mesh> occluding,
                                                          const TargetSettings& settings)
 {
-    return std::make_unique<ComparedVertices>(std::move(mesh), std::move(occluding), settings);
+    return std::make_unique<ComparedVertices>(std::move(mesh), settings);
 }
 
 std::unique_ptr<const CompareTarget> map_to_compare(std::shared_ptr<const Mesh> mesh,

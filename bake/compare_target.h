@@ -50,8 +50,7 @@ public:
 
 /// mesh: made with settings.normals.
 [[nodiscard]] std::unique_ptr<const CompareTarget> vertices_to_compare(
-    std::shared_ptr<const Mesh> mesh, std::shared_ptr<const Mesh> occluding,
-    const TargetSettings& settings);
+    std::shared_ptr<const Mesh> mesh, const TargetSettings& settings);
 
 /// settings: its offset counts. Bent normals are not part of the job.
 [[nodiscard]] std::unique_ptr<const CompareTarget> map_to_compare(std::shared_ptr<const Mesh> mesh,

@@ -222,17 +222,17 @@ std::string scene_html(const FrontierScene& scene)
         return html + "<p>Refused: " + escaped(scene.error) + "</p>\n";
     const Comparison& comparison = *scene.comparison;
     const Definition& definition = comparison.rows.front().settings.definition;
-    html += "<p>" + std::to_string(comparison.vertices) + " vertices, " +
-            std::to_string(comparison.receivers) + " receivers, " +
-            std::to_string(comparison.triangles) + " triangles (" +
-            std::to_string(comparison.dropped_triangles) + " without area dropped); " +
-            (comparison.texels ? "a map of " + target_text(comparison) + "; " : "") +
-            errors_text(comparison) + ". " + std::to_string(comparison.threads) +
-            " threads, medians of " + std::to_string(comparison.rounds) +
-            " rounds. Distance limit " +
-            (std::isfinite(definition.max_distance) ? exact(definition.max_distance) : "none") +
-            (definition.falloff == Falloff::smooth ? " with smooth falloff" : "") +
-            " (in diagonals).</p>\n";
+    html +=
+        "<p>" + std::to_string(comparison.vertices) + " vertices, " +
+        std::to_string(comparison.receivers) + " receivers, " +
+        std::to_string(comparison.triangles) + " triangles (" +
+        std::to_string(comparison.dropped_triangles) + " without area dropped); " +
+        (comparison.texels ? "a map of " + target_text(comparison) + "; " : "") +
+        errors_text(comparison) + ". " + std::to_string(comparison.threads) +
+        " threads, medians of " + std::to_string(comparison.rounds) + " rounds. Distance limit " +
+        (std::isfinite(definition.max_distance) ? exact(definition.max_distance) : "none") +
+        (definition.falloff == Falloff::smooth ? " with smooth falloff" : "") + " (in diagonals)" +
+        (comparison.ground.empty() ? "" : ", a ground at " + comparison.ground) + ".</p>\n";
     html +=
         plot_of(comparison) + rows_html(comparison) + "<p>" + rows_run_once(comparison) + "</p>\n";
     for (const auto& [caption, png] : scene.pictures) {

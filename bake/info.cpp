@@ -3,10 +3,11 @@
 #include "bake/notes.h"
 #include "bake/sample.h"
 #include "bake/table.h"
+#include "bake/world.h"
 #include "engines/engine.h"
-#include "files/scene_io.h"
 #include "reference/well_defined.h"
 #include "surfels/geometry.h"
+#include "surfels/labels.h"
 #include "surfels/number_text.h"
 #include "surfels/receiver.h"
 #include "surfels/surface.h"
@@ -23,6 +24,7 @@ namespace surfelao {
 namespace {
 
 constexpr std::size_t kPartsShown = 20;
+constexpr std::size_t kNamesShown = 40;
 
 std::string point_text(glm::dvec3 p)
 {
@@ -114,6 +116,7 @@ void look_at(const Mesh& mesh, Info& info)
     const Scene& scene = mesh.scene;
     const Geometry& geometry = mesh.geometry;
     info.parts = scene.parts;
+    info.labels = scene.labels;
     info.vertices = scene.positions.size();
     info.triangles = scene.triangles.size();
     info.dropped_triangles = geometry.dropped_triangles;
@@ -149,7 +152,7 @@ void bake_for_notes(const std::shared_ptr<const Mesh>& mesh, const VertexTarget&
 {
     const Definition definition;
     const Solution solution =
-        solve(prepare(mesh->geometry), target.receivers(), {.definition = definition}, progress);
+        solve(prepare(mesh->occluding()), target.receivers(), {.definition = definition}, progress);
     const std::vector<Occlusion> values = target.values(solution.occlusion);
     info.mean_occlusion = mean_occlusion_of(mesh->surface, values);
     info.misfit = target.misfit(solution.occlusion, values);
@@ -181,11 +184,40 @@ std::string uvs_text(const UvReport& uvs)
                         : "the map covered " + fixed(uvs.sheets, 0) + " times over");
 }
 
+/// Names with what they are of and how much they cover; those of one name and the same triangles in
+/// one line. Empty where the file has none.
+std::string labels_text(const Info& info)
+{
+    struct Row {
+        std::string kinds;
+        const Label* label;
+    };
+    std::vector<Row> rows;
+    for (const Label& label : info.labels) {
+        const auto same = std::ranges::find_if(rows, [&](const Row& row) {
+            return row.label->name == label.name && row.label->ranges == label.ranges;
+        });
+        const std::string kind(name_of(label.kind));
+        if (same != rows.end())
+            same->kinds += ", " + kind;
+        else if (rows.size() <= kNamesShown)
+            rows.push_back({kind, &label});
+    }
+    if (rows.empty())
+        return {};
+    Table table({"  name", "of", "triangles"});
+    for (std::size_t i = 0; i < std::min(kNamesShown, rows.size()); ++i)
+        table.add({"  " + rows[i].label->name, rows[i].kinds,
+                   std::to_string(triangle_count(*rows[i].label))});
+    return table.text() + (rows.size() > kNamesShown ? "  and more names (--json has all)\n" : "");
+}
+
 }  // namespace
 
-Info inspect(const std::filesystem::path& input, const Progress& progress)
+Info inspect(const std::filesystem::path& input, const Progress& progress,
+             const ReadOptions& reading)
 {
-    const auto mesh = std::make_shared<const Mesh>(make_mesh(read_scene(input)));
+    const auto mesh = std::make_shared<const Mesh>(read_mesh(input, {}, {}, reading));
     const VertexTarget target(mesh, {});
     Info info;
     info.input = input;
@@ -203,7 +235,7 @@ Info inspect(const std::filesystem::path& input, const Progress& progress)
     for (const std::uint32_t i : sample_of(receivers.size(), kExaminedReceivers))
         examined.push_back(receivers[i]);
     info.examined = examined.size();
-    for (const float change : placement_change(RayScene(mesh->geometry, RayScene::Build::robust),
+    for (const float change : placement_change(RayScene(mesh->occluding(), RayScene::Build::robust),
                                                examined, Definition{}, half(0.5)))
         info.ill_defined += change > kIllDefined;
     return info;
@@ -234,6 +266,7 @@ std::string text_of(const Info& info)
         if (info.parts.size() > kPartsShown)
             text += "  and " + std::to_string(info.parts.size() - kPartsShown) + " more\n";
     }
+    text += labels_text(info);
     const std::vector<std::string> odd = oddities(info);
     text += odd.empty() ? "nothing odd\n" : "odd, but legal:\n";
     for (const std::string& sentence : odd)

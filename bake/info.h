@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bake/vertex_target.h"
+#include "files/scene_io.h"
 #include "surfels/half_edges.h"
 #include "surfels/progress.h"
 #include "surfels/scene.h"
@@ -36,6 +37,7 @@ inline constexpr MapSize kUvMap{1024, 1024};
 struct Info {
     std::filesystem::path input;
     std::vector<Part> parts;
+    std::vector<Label> labels;  ///< names by which --exclude and its like know triangles
     std::uint64_t vertices = 0;
     std::uint64_t triangles = 0;
     std::uint64_t positions = 0;                ///< different places: vertices without seams
@@ -62,7 +64,8 @@ struct Info {
 /// Reads, bakes with default settings, keeping only what is to be said of it, and looks, with rays
 /// at up to kExaminedReceivers places. Throws InputError; Cancelled when progress, told of both,
 /// returns false.
-[[nodiscard]] Info inspect(const std::filesystem::path& input, const Progress& progress = {});
+[[nodiscard]] Info inspect(const std::filesystem::path& input, const Progress& progress = {},
+                           const ReadOptions& reading = {});
 
 inline constexpr std::uint64_t kExaminedReceivers = 20'000;
 

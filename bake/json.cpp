@@ -3,6 +3,7 @@
 #include "bake/compare.h"
 #include "bake/frontier.h"
 #include "bake/info.h"
+#include "surfels/labels.h"
 #include "surfels/number_text.h"
 
 #include <nlohmann/json.hpp>
@@ -40,6 +41,9 @@ Json json_of(const EngineSettings& settings)
     json["max_distance"] =
         std::isfinite(definition.max_distance) ? Json(definition.max_distance) : Json();
     json["falloff"] = definition.falloff == Falloff::none ? "none" : "smooth";
+    if (const auto& ground = definition.ground)
+        json["ground"] = {{"up", {ground->up.x, ground->up.y, ground->up.z}},
+                          {"height", ground->height}};
     return json;
 }
 
@@ -103,6 +107,7 @@ Json json_of(const BakeReport& report, const TexelReport& texels)
             {"padding", report.settings.texels->padding},
             {"uv_set", texels.uv_set ? Json(*texels.uv_set) : Json()},
             {"tiles", texels.tiles},
+            {"materials", texels.materials},
             {"charts", texels.charts ? json_of(*texels.charts) : Json()},
             {"misses", texels.misses},
             {"high_triangles", texels.high_triangles},
@@ -119,6 +124,17 @@ Json json_of(const BakeReport& report, const TexelReport& texels)
             {"flat_triangles", texels.flat_triangles},
             {"outside_triangles", texels.outside_triangles},
             {"written", written}};
+}
+
+Json json_of(const PartChoice& parts)
+{
+    Json occluders = Json::array();
+    for (const std::filesystem::path& file : parts.occluders)
+        occluders.push_back(file.string());
+    return {{"exclude", parts.exclude},
+            {"receivers", parts.receivers},
+            {"occluders", occluders},
+            {"transparent", name_of(parts.clear)}};
 }
 
 Json json_of(const BakeReport& report, const SubdivisionReport& subdivision)
@@ -148,11 +164,17 @@ Json json_of(const BatchEntry& entry)
     json["triangles"] = report.triangles;
     json["dropped_triangles"] = report.dropped_triangles;
     json["vertices_without_normal"] = report.vertices_without_normal;
+    json["baked_triangles"] = report.baked_triangles;
+    json["occluding_triangles"] = report.occluding_triangles;
     json["surfels"] = report.surfels;
     json["engine"] = name_of(report.settings.engine.engine);
     json["settings"] = json_of(report.settings.engine);
     json["settings"]["threads"] = report.threads;
     add(json["settings"], report.settings.target);
+    json["settings"]["parts"] = json_of(report.settings.parts);
+    json["settings"]["beside"] = Json::array();
+    for (const std::filesystem::path& file : report.settings.beside)
+        json["settings"]["beside"].push_back(file.string());
     json["settings"]["colors"] = name_of(report.settings.colors);
     json["settings"]["encoding"] = name_of(report.settings.encoding);
     json["seconds"] = {{"read", seconds.read},       {"subdivide", seconds.subdivide},
@@ -322,6 +344,11 @@ std::string json_of(const Info& info)
                          {"vertices", part.vertex_count},
                          {"triangles", part.triangle_count}});
     }
+    Json labels = Json::array();
+    for (const Label& label : info.labels)
+        labels.push_back({{"kind", name_of(label.kind)},
+                          {"name", label.name},
+                          {"triangles", triangle_count(label)}});
     Json uvs = Json::array();
     for (const UvReport& report : info.uvs) {
         uvs.push_back({{"set", report.set},
@@ -364,7 +391,8 @@ std::string json_of(const Info& info)
                        {"mean_occlusion", info.mean_occlusion},
                        {"misfit", json_of(info.misfit)},
                        {"notes", info.notes},
-                       {"parts", parts}};
+                       {"parts", parts},
+                       {"labels", labels}};
     return json.dump(2) + '\n';
 }
 

@@ -120,7 +120,7 @@ public:
     MapBaker(const Mesh& mesh, const MapLayout& layout, const MapSettings& settings,
              const Offset& offset, const HighDetail* high, Occluders* occluders,
              const StageProgress& progress, std::optional<double> error = {})
-        : JudgedBaker(high ? high->mesh().geometry : mesh.geometry, occluders, settings.check,
+        : JudgedBaker(high ? high->mesh().geometry : mesh.occluding(), occluders, settings.check,
                       progress, error),
           mesh_(mesh),
           layout_(layout),

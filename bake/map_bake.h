@@ -77,7 +77,7 @@ struct MapBake {
 
 /// high: what lies over the mesh is asked in place of the mesh, and what occludes is it alone
 /// (high_to_low.h); `engine.definition` and `offset` are then in its frame. occluders: in that
-/// frame; null: the high detail, else the mesh itself. Throws as MapRaster,
+/// frame; null: the high detail, else what occludes the mesh. Throws as MapRaster,
 /// prepare() and solve(), and Cancelled where progress says so.
 [[nodiscard]] MapBake bake_map(const Mesh& mesh, const MapLayout& layout,
                                const MapSettings& settings, const EngineSettings& engine,

@@ -1,5 +1,6 @@
 #include "bake/notes.h"
 
+#include "bake/part_hints.h"
 #include "surfels/number_text.h"
 
 #include <algorithm>
@@ -84,10 +85,19 @@ std::vector<std::string> notes_of(const Baked& baked)
             percent(baked.misfit->share) +
             " of the surface lies in triangles too large for values at vertices; --subdivide "
             "helps");
+    for (std::string& hint : hints_by_name(baked.mesh))
+        add(std::move(hint));
     if (mean_occlusion_of(surface, baked.values) > kInteriorMean) {
-        if (baked.definition.max_distance > kInteriorDistance)
+        const std::string around = name_of_enclosing(baked.mesh);
+        const bool is_far = baked.definition.max_distance > kInteriorDistance;
+        if (!around.empty())
+            add("part " + around +
+                " encloses all others, so hardly any light comes in: --exclude " +
+                shell_word(around) + " leaves it out" +
+                (is_far ? ", --max-distance 10% is for interiors" : ""));
+        else if (is_far)
             add("an interior: try --max-distance 10%");
-    } else {
+    } else if (!baked.definition.ground) {  // it closes undersides too, rightly
         add(closed_note(baked.values, baked.topology));
     }
     return notes;

@@ -25,9 +25,10 @@ struct Baked {
 
 /// What the file holds and nobody honours (Scene::notes), then what the user should know of the
 /// result: normals of the file that were replaced, pieces that face inward, triangles too large for
-/// values at vertices, vertices that lie inside other parts, an interior without a maximum
-/// distance, nothing but triangles without area. Each only where it is notable, by the figures
-/// below. O(n), small beside any solving.
+/// values at vertices, vertices that lie inside other parts (without a ground), parts that are
+/// better left out (part_hints.h), an interior without a maximum distance, nothing but triangles
+/// without area. Each only where it is notable, by the figures below. O(n), small beside any
+/// solving.
 [[nodiscard]] std::vector<std::string> notes_of(const Baked& baked);
 
 /// Triangles are too large where the misfit is above both. Over shared, package and data models the

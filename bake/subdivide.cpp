@@ -10,6 +10,7 @@
 #include <cmath>
 #include <compare>
 #include <limits>
+#include <numeric>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -96,8 +97,7 @@ public:
         for (const glm::uvec3& triangle : mesh.scene.triangles)
             pieces_.push_back({triangle, {Place(0), Place(kPlaceUnit, 0), Place(0, kPlaceUnit)}});
         old_of_.resize(count);
-        for (std::uint32_t t = 0; t < count; ++t)
-            old_of_[t] = t;
+        std::iota(old_of_.begin(), old_of_.end(), 0u);
     }
 
     Subdivision run()
@@ -121,8 +121,6 @@ public:
         Refinement& refinement = result_.refinement;
         refinement.old_vertices = static_cast<std::uint32_t>(mesh_.scene.positions.size());
         refinement.parents = std::move(parents_);
-        refinement.pieces.reserve(pieces_.size());
-        refinement.first.reserve(mesh_.scene.triangles.size() + 1);
         for (std::uint32_t p = 0; p < pieces_.size(); ++p) {
             if (refinement.first.size() == old_of_[p])
                 refinement.first.push_back(p);
@@ -164,11 +162,9 @@ private:
             sums[vertex] += double{angles[wedge]} * answers[wedge].occlusion;
             weights[vertex] += angles[wedge];
         }
-        values_.resize(positions_.size(), 0.0f);
-        for (std::size_t v = 0; v < values_.size(); ++v) {
-            if (weights[v] > 0.0)
-                values_[v] = static_cast<float>(sums[v] / weights[v]);
-        }
+        values_.resize(positions_.size());
+        for (std::size_t v = 0; v < values_.size(); ++v)
+            values_[v] = weights[v] > 0.0 ? static_cast<float>(sums[v] / weights[v]) : 0.0f;
     }
 
     void ask_probes()
@@ -233,11 +229,6 @@ private:
         std::ranges::sort(forced_);
     }
 
-    [[nodiscard]] bool is_forced(std::uint64_t edge) const
-    {
-        return std::ranges::binary_search(forced_, edge);
-    }
-
     [[nodiscard]] int longest_of(const Piece& piece) const
     {
         int longest = 0;
@@ -289,7 +280,7 @@ private:
                 const bool is_known =
                     (piece.straight >> corner & 1) != 0 || !is_long(piece, corner);
                 piece.straight = static_cast<std::uint8_t>(piece.straight | 1 << corner);
-                if (is_known && (forced_.empty() || !is_forced(edge)))
+                if (is_known && !std::ranges::binary_search(forced_, edge))
                     continue;
                 sides.push_back({edge,
                                  pair_of(piece.vertices[corner], piece.vertices[next(corner)]), p,
@@ -390,7 +381,7 @@ private:
                 const std::vector<std::uint32_t>& answer_of)
     {
         for_each_edge(sides, [&](std::size_t begin, std::size_t end) {
-            bool bends = is_forced(sides[begin].edge);
+            bool bends = std::ranges::binary_search(forced_, sides[begin].edge);
             const std::size_t before = middles_.size();
             for (std::size_t i = begin; i < end;) {
                 // the sides of one vertex
@@ -445,12 +436,17 @@ private:
         }
     }
 
+    void check_count(std::size_t count, const char* what) const
+    {
+        if (count > kMostElements)
+            throw InputError(mesh_.scene.name + ": would have more than " +
+                             std::to_string(kMostElements) + ' ' + what +
+                             " when subdivided; a larger tolerance helps");
+    }
+
     void add_vertex(std::uint64_t ends, std::uint32_t welded)
     {
-        if (positions_.size() >= kMostElements)
-            throw InputError(mesh_.scene.name + ": would have more than " +
-                             std::to_string(kMostElements) +
-                             " vertices when subdivided; a larger tolerance helps");
+        check_count(positions_.size() + 1, "vertices");
         const auto a = static_cast<std::uint32_t>(ends >> 32),
                    b = static_cast<std::uint32_t>(ends & 0xFFFFFFFFu);
         const auto known = std::ranges::lower_bound(middles_, ends, {}, &Middle::vertices);
@@ -471,10 +467,7 @@ private:
             cut(pieces_[p], pieces);
             old_of.resize(pieces.size(), old_of_[p]);
         }
-        if (pieces.size() > kMostElements)
-            throw InputError(mesh_.scene.name + ": would have more than " +
-                             std::to_string(kMostElements) +
-                             " triangles when subdivided; a larger tolerance helps");
+        check_count(pieces.size(), "triangles");
         first.push_back(static_cast<std::uint32_t>(pieces.size()));
         pieces_ = std::move(pieces);
         old_of_ = std::move(old_of);

@@ -48,6 +48,8 @@ Mesh refined_mesh(const Mesh& mesh, const Refinement& refinement, Scene scene)
     Mesh refined = make_mesh(std::move(scene), settings, {mesh.geometry.frame, {}});
     if (!mesh.geometry.kept.empty())
         keep_triangles(refined, [&](std::size_t triangle) { return is_there[triangle]; });
+    refined.occluders =
+        mesh.occluders ? mesh.occluders : std::make_shared<const Geometry>(mesh.geometry);
     refined.surface.corners_from_file = mesh.surface.corners_from_file;
     refined.surface.replaced_corners = mesh.surface.replaced_corners;
     return refined;

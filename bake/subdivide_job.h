@@ -12,8 +12,9 @@
 
 namespace surfelao {
 
-/// The refined scene as a mesh in the frame of the old one: with its normals, interpolated, and
-/// with those triangles left out that it left out. scene: refined_scene() of mesh.scene.
+/// The refined scene as a mesh in the frame of the old one: with its normals, interpolated, without
+/// those triangles that it left out, and with what occludes it. scene: refined_scene() of
+/// mesh.scene.
 [[nodiscard]] Mesh refined_mesh(const Mesh& mesh, const Refinement& refinement, Scene scene);
 
 /// Their errors look like bends. With a quality of 1, 2, 3, 4 a second run over the result cuts
@@ -30,9 +31,10 @@ struct SubdivisionReport {
 };
 
 /// The mesh subdivided, with the file that it would have been read from, for a job by these
-/// settings. Masks at kAskedQuality are asked, whoever bakes, so that all bake the same mesh and no noise of
-/// rays is taken for a bend; for a kernel that they do not know, the job's engine. occluders: in
-/// the mesh's frame. Says "subdivide" to progress. Throws as subdivide() and refined_scene().
+/// settings. Masks at kAskedQuality are asked, whoever bakes, so that all bake the same mesh and no
+/// noise of rays is taken for a bend; for a kernel that they do not know, the job's engine.
+/// occluders: in the mesh's frame. Says "subdivide" to progress. Throws as subdivide() and
+/// refined_scene().
 [[nodiscard]] Mesh subdivided(const Mesh& mesh, double tolerance, const TargetSettings& target,
                               const EngineSettings& engine, Occluders& occluders,
                               const StageProgress& progress, SubdivisionReport& report);

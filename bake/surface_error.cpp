@@ -108,12 +108,12 @@ SurfaceTruth trace_truth(const Mesh& mesh, const TruthSettings& settings, const 
     const std::vector<Receiver> receivers =
         receivers_at(mesh.geometry, mesh.surface, points, settings.offset);
     const Reference reference =
-        trace_reference(mesh.geometry, receivers,
+        trace_reference(mesh.occluding(), receivers,
                         {settings.definition, settings.rays, settings.use_cache}, progress);
     const std::vector<std::uint8_t> hidden =
-        settings.leave_out_hidden
-            ? hidden_receivers(mesh.geometry, receivers, reference.occlusion, settings.definition)
-            : std::vector<std::uint8_t>(receivers.size(), 0);
+        settings.leave_out_hidden ? hidden_receivers(mesh.occluding(), receivers,
+                                                     reference.occlusion, settings.definition)
+                                  : std::vector<std::uint8_t>(receivers.size(), 0);
     SurfaceTruth truth;
     truth.from_cache = reference.from_cache;
     double squares = 0.0;
@@ -173,13 +173,14 @@ std::uint32_t floor_rays(std::size_t receivers, std::uint32_t truth_rays)
     return std::min(rays, truth_rays);
 }
 
-Floor find_floor(const VertexTarget& fitted, const Geometry& geometry, const SurfaceTruth& truth,
+Floor find_floor(const VertexTarget& fitted, const Mesh& mesh, const SurfaceTruth& truth,
                  const TruthSettings& settings, const Progress& progress)
 {
+    const Geometry& geometry = mesh.geometry;
     Floor floor;
     floor.rays = floor_rays(fitted.receivers().size(), settings.rays);
     Reference reference = trace_reference(
-        geometry, fitted.receivers(),
+        mesh.occluding(), fitted.receivers(),
         {settings.definition, floor.rays, settings.use_cache, /*find_ill_defined=*/false},
         progress);
     floor.from_cache = reference.from_cache;

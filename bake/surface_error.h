@@ -117,7 +117,7 @@ inline constexpr std::uint32_t kFewestFloorRays = 256, kMostFloorRays = 4096;
 
 /// fitted: the mesh's target with VertexValues::fit. settings: those of the truth; no more rays are
 /// traced than there. Throws as trace_truth().
-[[nodiscard]] Floor find_floor(const VertexTarget& fitted, const Geometry& geometry,
+[[nodiscard]] Floor find_floor(const VertexTarget& fitted, const Mesh& mesh,
                                const SurfaceTruth& truth, const TruthSettings& settings,
                                const Progress& progress = {});
 

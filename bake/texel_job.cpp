@@ -11,6 +11,7 @@
 #include "surfels/stopwatch.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <string>
 
@@ -122,24 +123,55 @@ void report_map(const MapBake& map, BakeReport& report)
     told.misses = map.misses;
 }
 
-/// One picture, or one for each tile.
+/// The picture of a page: "ao.png", "ao.1001.png" of a tile, "ao.Leather.png" of a material.
+std::filesystem::path page_path(const std::filesystem::path& path, const TexelReport& texels,
+                                std::size_t page)
+{
+    if (!texels.tiles.empty())
+        return tile_path(path, texels.tiles[page]);
+    if (texels.materials.empty())
+        return path;
+    std::filesystem::path of_material = path;
+    return of_material.replace_extension("." + texels.materials[page] + path.extension().string());
+}
+
+/// Names of the pages' materials as file names can hold them, each another one.
+std::vector<std::string> names_of_pages(const Scene& scene, const MapLayout& layout)
+{
+    std::vector<std::string> names;
+    if (layout.materials.empty())
+        return names;
+    const BaseColors colors = scene.asset->base_colors();
+    for (const std::uint32_t material : layout.materials) {
+        std::string name = colors.materials[material].name;
+        for (char& c : name)
+            if (!(std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_'))
+                c = '_';
+        if (name.empty() || std::ranges::find(names, name) != names.end())
+            name += std::to_string(material);
+        names.push_back(std::move(name));
+    }
+    return names;
+}
+
+/// One picture, or one for each tile or material.
 void write_pictures(const std::filesystem::path& path, const std::vector<Map>& pages,
                     const BakeReport& report, std::vector<std::filesystem::path>& written)
 {
     const TexelSettings& texels = *report.settings.texels;
-    const std::vector<std::uint32_t>& tiles = report.texels->tiles;
     for (std::size_t page = 0; page < pages.size(); ++page) {
-        written.push_back(tiles.empty() ? path : tile_path(path, tiles[page]));
+        written.push_back(page_path(path, *report.texels, page));
         write_map(written.back(), pages[page], texels.depth, mark_of(report.settings));
     }
 }
 
 /// The mesh with its map; adds the files beside it.
-std::vector<std::string> write_mesh(const BakeSettings& settings, const Scene& scene,
+std::vector<std::string> write_mesh(const BakeSettings& settings, const Mesh& mesh,
                                     const TexelLayout& place, const std::vector<Map>& pages,
                                     std::vector<std::filesystem::path>& written)
 {
-    const WriteOptions options{.mark = mark_of(settings)};
+    const Scene& scene = mesh.scene;
+    const WriteOptions options{.mark = mark_of(settings), .unbaked = mesh.unbaked};
     const std::vector<UvSet>& uvs = place.layout.pages;
     const auto bytes = [&](std::size_t page) {
         return map_bytes(pages[page], settings.texels->depth);
@@ -148,15 +180,12 @@ std::vector<std::string> write_mesh(const BakeSettings& settings, const Scene& s
         return write_scene_with_blended_map(
             settings.output, scene, {{bytes(0), bytes(1), bytes(2)}, {uvs[0], uvs[1], uvs[2]}},
             options);
-    OcclusionMap picture{bytes(0), 0, {}};
-    if (place.uv_set)
-        picture.uv_set = *place.uv_set;
-    else
-        picture.uvs = uvs[0];
+    const OcclusionMap picture =
+        occlusion_map_of(place.layout, place.uv_set, pages, settings.texels->depth);
     const std::vector<std::string> notes =
         write_scene_with_map(settings.output, scene, picture, options);
     for (const auto& beside : {map_file_of(settings.output), map_materials_of(settings.output)}) {
-        if (beside)
+        if (beside && pages.size() == 1)
             written.push_back(*beside);
     }
     return notes;
@@ -189,19 +218,23 @@ void check_texel_output(const BakeSettings& settings)
         throw InputError(settings.output.string() + ": a map of a mesh has 8 or 16 bits");
 }
 
-void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& progress)
+void bake_texels(const Mesh& mesh, Occluders* occluders, BakeReport& report,
+                 const StageProgress& progress)
 {
     const BakeSettings& settings = report.settings;
     const TexelSettings& texels = *settings.texels;
     TexelReport& told = report.texels.emplace();
     Stopwatch watch;
-    const TexelLayout place = layout_for(mesh, texels, !is_map(settings.output), [&](double done) {
-        return !progress || progress("charts", done);
-    });
+    const MapRoom room{
+        .new_places = !is_map(settings.output),
+        .several_pages = is_map(settings.output) || is_gltf(type_of(settings.output))};
+    const TexelLayout place = layout_for(
+        mesh, texels, room, [&](double done) { return !progress || progress("charts", done); });
     const MapLayout& layout = place.layout;
     told.size = layout.size;
     told.uv_set = place.uv_set;
     told.tiles = layout.tiles;
+    told.materials = names_of_pages(mesh.scene, layout);
     told.charts = place.charts;
     report.seconds.charts = watch.lap();
     if (!place.why_new.empty())
@@ -224,12 +257,19 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
     const Frame& frame = high ? high->mesh.geometry.frame : mesh.geometry.frame;
     EngineSettings engine = settings.engine;
     engine.definition = definition_of(settings.max_distance, settings.kernel, frame);
+    engine.definition.ground = settings.engine.definition.ground;
+    if (high && settings.ground) {  // it has a frame of its own
+        engine.definition.ground = ground_of(settings.ground, {high->mesh.geometry},
+                                             largest_offset_of(settings.target, frame));
+        report.ground = text_of(*engine.definition.ground, frame);
+    }
     const Offset offset = offset_of(settings.target, frame);
     const HighDetail* detail = high ? &high->detail : nullptr;
     const MapBake map =
-        settings.error ? bake_map_to_error(mesh, layout, map_settings, engine, offset,
-                                           *settings.error, progress, detail)
-                       : bake_map(mesh, layout, map_settings, engine, offset, progress, detail);
+        settings.error
+            ? bake_map_to_error(mesh, layout, map_settings, engine, offset, *settings.error,
+                                progress, detail, occluders)
+            : bake_map(mesh, layout, map_settings, engine, offset, progress, detail, occluders);
     report_map(map, report);
     check_overlap(settings, told);
     add_notes(report, mesh.geometry.triangles.size(), report.notes);
@@ -243,7 +283,7 @@ void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& prog
         write_pictures(settings.output, map.visibility, report, told.written);
     } else {
         const std::vector<std::string> notes =
-            write_mesh(settings, mesh.scene, place, map.visibility, told.written);
+            write_mesh(settings, mesh, place, map.visibility, told.written);
         report.notes.insert(report.notes.end(), notes.begin(), notes.end());
     }
     report.seconds.write = watch.lap();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bake/bake.h"
+#include "bake/occluders.h"
 #include "surfels/surface.h"
 
 namespace surfelao {
@@ -10,7 +11,9 @@ namespace surfelao {
 void check_texel_output(const BakeSettings& settings);
 
 /// Solves, writes the output, and fills in the report what is of the map. settings.texels is there;
-/// report.settings.engine has its definition.
-void bake_texels(const Mesh& mesh, BakeReport& report, const StageProgress& progress);
+/// report.settings.engine has its definition. occluders: engines of what occludes the mesh; null:
+/// they are prepared for it alone.
+void bake_texels(const Mesh& mesh, Occluders* occluders, BakeReport& report,
+                 const StageProgress& progress);
 
 }  // namespace surfelao

@@ -3,12 +3,14 @@
 
 #include "atlas/layout.h"
 #include "bake/vertex_target.h"
+#include "files/scene_io.h"
 #include "image/map.h"
 #include "surfels/progress.h"
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,8 +18,8 @@ namespace surfelao {
 
 /// Whose texture coordinates.
 enum class UvChoice {
-    automatic,  ///< the file's where they can hold a map (those of a map that it has, else the
-                ///< first), else new ones where the output can
+    automatic,  ///< the file's where they can hold a map, or one for each material (those of a map
+                ///< that it has, else the first), else new ones where the output can
     file,       ///< set number `uv_set` of the file, whatever it looks like
     made,       ///< charts of our own
 };
@@ -61,9 +63,24 @@ struct TexelLayout {
     std::string why_new;                  ///< what the file's coordinates lack; or empty
 };
 
-/// can_hold_new: whether the output can hold new coordinates. Throws InputError where the file has
-/// no coordinates of use and new ones are not possible, SettingsError for what is out of its range.
+/// What the output can hold beside one map over the file's coordinates.
+struct MapRoom {
+    bool new_places = true;     ///< texture coordinates of ours
+    bool several_pages = true;  ///< a map for each material
+};
+
+/// Where the file's coordinates lie on each other, but those of each material by itself do not (as
+/// game models have it), each material gets a page of this size; UvChoice::file and outputs without
+/// room for new places take that also where mirrored pieces of one material lie on each other.
+/// Throws InputError where the file has no coordinates of use and new ones are not possible,
+/// SettingsError for what is out of its range.
 [[nodiscard]] TexelLayout layout_for(const Mesh& mesh, const TexelSettings& settings,
-                                     bool can_hold_new, const Progress& progress = {});
+                                     const MapRoom& room = {}, const Progress& progress = {});
+
+/// What the writers of meshes take: pages, one for each of the layout, which is not blended and is
+/// of the file's set `uv_set`, or new.
+[[nodiscard]] OcclusionMap occlusion_map_of(const MapLayout& layout,
+                                            std::optional<std::uint32_t> uv_set,
+                                            std::span<const Map> pages, MapDepth depth);
 
 }  // namespace surfelao

@@ -16,7 +16,7 @@ class Baker : public JudgedBaker {
 public:
     Baker(const Mesh& mesh, const VertexTarget& target, const Offset& offset, std::uint32_t check,
           const StageProgress& progress, Occluders* occluders, std::optional<double> error = {})
-        : JudgedBaker(mesh.geometry, occluders, check, progress, error),
+        : JudgedBaker(mesh.occluding(), occluders, check, progress, error),
           mesh_(mesh),
           target_(target),
           offset_(offset)

@@ -37,7 +37,7 @@ struct VertexBake {
     VertexBakeSeconds seconds;
 };
 
-/// occluders: in the mesh's frame; null: the mesh itself.
+/// occluders: in the mesh's frame; null: prepared for what occludes the mesh (Mesh::occluding).
 /// check: points of the statement of error; 0: none. The values are the same whatever it is.
 /// Throws as prepare() and solve(), and Cancelled where progress says so.
 [[nodiscard]] VertexBake bake_vertices(const Mesh& mesh, const VertexTarget& target,

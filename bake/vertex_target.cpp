@@ -25,6 +25,11 @@ Offset offset_of(const TargetSettings& settings, const Frame& frame)
     return offset;
 }
 
+float largest_offset_of(const TargetSettings& settings, const Frame& frame)
+{
+    return offset_of(settings, frame).value_or(kMostOffset);
+}
+
 std::string name_of(NormalSource source)
 {
     switch (source) {

@@ -45,6 +45,8 @@ struct TargetSettings {
 /// In the unit frame. Throws SettingsError where it is not above 0, InputError where it vanishes
 /// beside the scene or is larger than it.
 [[nodiscard]] Offset offset_of(const TargetSettings& settings, const Frame& frame);
+/// The largest that a receiver then has.
+[[nodiscard]] float largest_offset_of(const TargetSettings& settings, const Frame& frame);
 
 /// "normals=auto crease=40 values=fit", and " offset=0.1%" where there is one: for marks and
 /// reports.

@@ -3,7 +3,9 @@
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/output.h"
+#include "cli/part_options.h"
 #include "cli/progress_bar.h"
+#include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "engines/threads.h"
 #include "files/file_type.h"
@@ -12,9 +14,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <span>
 
 namespace surfelao {
 namespace {
@@ -24,12 +28,16 @@ namespace fs = std::filesystem;
 struct BakeOptions {
     std::vector<std::string> inputs;
     std::string output;
+    ReadOptions reading;
     EngineOptions engine;
     MeasureOptions measure;
+    std::string up = "y";
     SurfaceOptions surface;
     ColorOptions colors;
     TexelOptions texels;
     std::optional<double> subdivide;
+    PartOptions parts;
+    bool together = false;
     std::uint32_t check = kCheckPoints;
     std::optional<double> error;
     bool resume = false;
@@ -61,8 +69,9 @@ std::vector<Job> jobs_of(const BakeOptions& options)
     FilePlan files;
     for (const std::string& input : options.inputs)
         files.reads(input);
-    for (const std::string& high : options.texels.high)
-        files.reads(high);
+    for (const auto* others : {&options.texels.high, &options.parts.occluders})
+        for (const std::string& other : *others)
+            files.reads(other);
     const bool into_folder = is_folder(options);
     std::vector<Job> jobs;
     for (const std::string& input : options.inputs) {
@@ -93,34 +102,57 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.engine = settings_of(options.engine);
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
+    settings.ground = ground_plane_of(options.measure, options.up);
     settings.target = target_settings_of(options.surface);
+    settings.parts = part_choice_of(options.parts);
+    if (options.together) {
+        for (const std::string& other : options.inputs) {
+            if (job.input != other)
+                settings.beside.emplace_back(other);
+        }
+    }
     settings.check = options.check;
     settings.error = options.error;
     settings.texels = texel_settings_of(options.texels, job.output);
     settings.subdivide = options.subdivide;
     settings.colors = colors_of(options.colors);
     settings.encoding = encoding_of(options.colors);
+    settings.reading = options.reading;
     return settings;
 }
 
-/// One job; `label` stands in front of its progress. False when it failed: the others can still be
-/// done.
-bool run_job(const BakeSettings& settings, bool ask_before_replacing, const std::string& label,
-             BatchEntry& entry)
+/// One job, or several that are baked together; `label` stands in front of its progress. False when
+/// it failed: the others can still be done.
+bool run_jobs(const std::vector<BakeSettings>& settings, bool ask_before_replacing,
+              const std::string& label, std::span<BatchEntry> entries)
 {
     try {
-        if (ask_before_replacing)
-            refuse_foreign(settings.output, "bake");
+        for (const BakeSettings& one : settings)
+            if (ask_before_replacing)
+                refuse_foreign(one.output, "bake");
         ProgressBar bar(label);
-        entry.report = bake(
+        std::vector<BakeReport> reports = bake_together(
             settings, [&](std::string_view stage, double done) { return bar.update(stage, done); });
+        for (std::size_t i = 0; i < reports.size(); ++i)
+            entries[i].report = std::move(reports[i]);
+        return true;
     } catch (const Cancelled&) {
         throw;
     } catch (const std::exception& error) {
         std::cerr << "surfelao: " << error.what() << '\n';
-        entry.error = error.what();
+        for (BatchEntry& entry : entries)
+            entry.error = error.what();
     }
-    return entry.report.has_value();
+    return false;
+}
+
+void add_written(const BatchEntry& entry, std::vector<fs::path>& written)
+{
+    if (!entry.report->texels || type_of(entry.output) != FileType::unknown)
+        written.push_back(entry.output);
+    if (entry.report->texels)
+        written.insert(written.end(), entry.report->texels->written.begin(),
+                       entry.report->texels->written.end());
 }
 
 int run(const BakeOptions& options, const std::vector<Job>& jobs)
@@ -137,31 +169,35 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
     const bool ask = is_folder(options) && !options.overwrite;
     std::size_t failed = 0;
     std::vector<BatchEntry> entries;
-    std::vector<fs::path> written;
     for (const Job& job : jobs) {
         BatchEntry& entry = entries.emplace_back();
         entry.input = job.input;
         entry.output = job.output;
-        const BakeSettings settings = settings_for(options, job);
-        if (options.resume && is_finished(settings)) {
+    }
+    std::vector<fs::path> written;
+    const std::size_t step = options.together ? jobs.size() : 1;
+    for (std::size_t first = 0; first < jobs.size(); first += step) {
+        std::vector<BakeSettings> settings;
+        for (const Job& job : std::span(jobs).subspan(first, step))
+            settings.push_back(settings_for(options, job));
+        const std::span<BatchEntry> of_run = std::span(entries).subspan(first, step);
+        if (options.resume && std::ranges::all_of(settings, is_finished)) {
+            for (const BatchEntry& entry : of_run)
+                if (!quiet)
+                    std::cout << entry.input.string() << ": finished before, skipped\n";
+            continue;
+        }
+        const std::string label = std::to_string(first + 1) + "/" + std::to_string(jobs.size()) +
+                                  " " + jobs[first].input.filename().string() + " ";
+        if (!run_jobs(settings, ask, batch && step == 1 ? label : "", of_run)) {
+            failed += step;
+            continue;
+        }
+        for (const BatchEntry& entry : of_run) {
+            add_written(entry, written);
             if (!quiet)
-                std::cout << job.input.string() << ": finished before, skipped\n";
-            continue;
+                print_report(*entry.report);
         }
-        const std::string label = std::to_string(entries.size()) + "/" +
-                                  std::to_string(jobs.size()) + " " +
-                                  job.input.filename().string() + " ";
-        if (!run_job(settings, ask, batch ? label : "", entry)) {
-            ++failed;
-            continue;
-        }
-        if (!entry.report->texels || type_of(job.output) != FileType::unknown)
-            written.push_back(job.output);
-        if (entry.report->texels)
-            written.insert(written.end(), entry.report->texels->written.begin(),
-                           entry.report->texels->written.end());
-        if (!quiet)
-            print_report(*entry.report);
     }
     if (options.json)
         write_report(*options.json, json_of(entries));
@@ -178,12 +214,18 @@ void check_options(const BakeOptions& options)
 {
     const EngineSettings engine = settings_of(options.engine);
     static_cast<void>(distance_limit_of(options.measure));
+    static_cast<void>(ground_plane_of(options.measure, options.up));
     static_cast<void>(target_settings_of(options.surface));
     check_kernel(engine.engine, kernel_of(options.measure));
     if (options.error && options.check == 0)
         throw UsageError("--error needs the points of --check.");
     if (options.error && kernel_of(options.measure) != Kernel::cosine)
         throw UsageError("--error tries masks, which know --kernel cosine only.");
+    if (options.together && options.inputs.size() < 2)
+        throw UsageError("--together is for several files.");
+    if (!options.texels.high.empty() && (options.together || !options.parts.occluders.empty()))
+        throw UsageError(
+            "With --high nothing else occludes: leave out --occluders and --together.");
     if (options.resume && options.texels.udim)
         throw UsageError("--resume knows no tiles: leave it or --udim out.");
 }
@@ -197,25 +239,32 @@ void add_bake_command(CLI::App& app, Work& work)
                                            "Occlusion and bent normals at every vertex, or as a "
                                            "map: a mesh file in, the same mesh or a "
                                            "picture out");
-    command->add_option("IN", options->inputs, "Mesh files: .obj .ply .off .stl .gltf .glb")
-        ->required()
-        ->type_name("");
+    command->add_option("IN", options->inputs, kMeshOrCloud)->required()->type_name("");
     command
         ->add_option(
             "-o,--output", options->output,
-            "Mesh file (.ply .obj .off, .gltf/.glb from glTF), a map over the file's texture "
+            "Mesh or cloud file (.ply .obj .off, .gltf/.glb from glTF, .pcd .xyz .pts .txt .asc "
+            "from clouds), a map over the file's texture "
             "coordinates (.png .tif .exr), or a folder (made where it is "
             "missing, for several files and behind a /): there every "
             "result has its input's name, .ply for .stl, and only files that bake made are "
             "replaced")
         ->required()
         ->type_name("OUT|DIR");
+    add_read_options(*command, options->reading);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
+    add_up_option(*command, options->up, "What is measured");
     add_surface_options(*command, options->surface);
     add_subdivide_option(*command, options->subdivide);
     add_color_options(*command, options->colors);
     add_texel_options(*command, options->texels);
+    add_part_options(*command, options->parts);
+    command
+        ->add_flag("--together", options->together,
+                   "Several files in the same coordinates are one scene: all occlude each other, "
+                   "each is written by itself")
+        ->group("Parts");
     command
         ->add_option("--check", options->check,
                      "Points of the surface at which the result is measured against rays; 0: none")
@@ -234,10 +283,9 @@ void add_bake_command(CLI::App& app, Work& work)
             ->group("Error");
     for (const char* other : {"--engine", "--quality", "--rays", "--passes", "--strength"})
         error->excludes(command->get_option(other));
-    command->add_flag(
-        "--resume", options->resume,
-        "Skip files whose result is not older than they are and says that it was "
-        "made with these settings (a comment in .ply .obj .off, asset.extras in glTF)");
+    command->add_flag("--resume", options->resume,
+                      "Skip files whose result is not older than they are and says that it was "
+                      "made with these settings (a comment in the file, asset.extras in glTF)");
     add_overwrite_option(*command, options->overwrite);
     command
         ->add_option("--json", options->json,

@@ -29,6 +29,8 @@ std::string question_of(const BakeReport& report)
             ")";
     else if (settings.target.values == VertexValues::fit)
         text += " fitted to the vertices";
+    if (!report.ground.empty())
+        text += ", over a ground at " + report.ground;
     if (report.corners_from_file > 0)
         text += ", normals of the file at " + std::to_string(report.corners_from_file) + " corners";
     return text;
@@ -89,6 +91,10 @@ void print_report(const BakeReport& report)
         std::cout << " (" << subdivision_text(*report.subdivision) << ")";
     if (report.dropped_triangles > 0)
         std::cout << " (" << report.dropped_triangles << " without area dropped)";
+    if (report.baked_triangles + report.dropped_triangles < report.triangles ||
+        report.occluding_triangles != report.baked_triangles)
+        std::cout << ", " << report.baked_triangles << " baked, " << report.occluding_triangles
+                  << " occlude";
     if (report.vertices_without_normal > 0)
         std::cout << ", " << report.vertices_without_normal << " vertices without a normal";
     std::cout << "\n  " << question_of(report) << ": mean occlusion "

@@ -4,7 +4,9 @@
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/output.h"
+#include "cli/part_options.h"
 #include "cli/progress_bar.h"
+#include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "engines/threads.h"
 #include "reference/rays.h"
@@ -27,15 +29,18 @@ constexpr std::uint64_t kMostSample = 10'000'000;
 struct CompareOptions {
     std::vector<std::string> inputs;
     std::optional<std::string> output;
+    ReadOptions reading;
     bool overwrite = false;
     bool frontier = false;
     std::vector<std::string> engines = {"masks", "disks"};
     std::vector<std::string> devices = {"cpu"};
     std::optional<std::vector<std::string>> qualities;
     MeasureOptions measure;
+    std::string up = "y";
     SurfaceOptions surface;
     std::optional<double> subdivide;
     TexelOptions texels;
+    PartOptions parts;
     std::uint32_t reference_rays = 4096;
     std::uint64_t sample = kSurfacePoints;
     int rounds = 3;
@@ -51,13 +56,16 @@ CompareSettings common_settings(const CompareOptions& options)
     CompareSettings settings;
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
+    settings.ground = ground_plane_of(options.measure, options.up);
     settings.target = target_settings_of(options.surface);
+    settings.parts = part_choice_of(options.parts);
     settings.texels = shown_texels_of(options.texels);
     settings.subdivide = options.subdivide;
     settings.reference_rays = options.reference_rays;
     settings.sample = options.sample;
     settings.rounds = options.rounds;
     settings.use_cache = !options.no_cache;
+    settings.reading = options.reading;
     settings.instructions = options.avx2 ? Instructions::avx2 : Instructions::all;
     return settings;
 }
@@ -220,8 +228,9 @@ void check(const CompareOptions& options)
     for (const EngineSettings& candidate : settings.candidates)
         check_kernel(candidate.engine, settings.kernel);
     FilePlan files;
-    for (const std::string& input : options.inputs)
-        files.reads(input);
+    for (const auto* inputs : {&options.inputs, &options.parts.occluders})
+        for (const std::string& input : *inputs)
+            files.reads(input);
     for (const fs::path& file : own_names(options))
         files.writes(file, file.filename().string());
     files.writes_report(options.json, "--json");
@@ -237,9 +246,7 @@ void add_compare_command(CLI::App& app, Work& work)
         "compare",
         "One scene by our engines and by ray tracing, the same job: how long, how wrong");
     command
-        ->add_option("IN", options->inputs,
-                     "Mesh file: .obj .ply .off .stl .gltf .glb; several with "
-                     "--frontier")
+        ->add_option("IN", options->inputs, std::string(kMeshOrCloud) + "; several with --frontier")
         ->required()
         ->type_name("");
     command
@@ -248,6 +255,7 @@ void add_compare_command(CLI::App& app, Work& work)
                      "--frontier or --at texels), and report.html; without it no file is "
                      "written")
         ->type_name("DIR");
+    add_read_options(*command, options->reading);
     add_overwrite_option(*command, options->overwrite);
     command->add_flag(
         "--frontier", options->frontier,
@@ -275,9 +283,11 @@ void add_compare_command(CLI::App& app, Work& work)
         ->type_name("Q,...")
         ->default_str("draft,good,best");
     add_measure_options(*command, options->measure);
+    add_up_option(*command, options->up, "What is measured");
     add_surface_options(*command, options->surface);
     add_subdivide_option(*command, options->subdivide);
     add_layout_options(*command, options->texels, kShownMaps);
+    add_part_options(*command, options->parts);
     command
         ->add_option("--reference-rays", options->reference_rays,
                      "Rays per surface point of the reference, an even number")

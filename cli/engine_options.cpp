@@ -14,6 +14,7 @@ namespace surfelao {
 namespace {
 
 constexpr int kMostPasses = 100;
+constexpr const char* kLowest = "lowest";  // of --ground
 constexpr int kMostThreads = 1024;
 
 /// The whole text as a finite number.
@@ -116,6 +117,23 @@ void add_measure_options(CLI::App& command, MeasureOptions& options)
         ->type_name("cosine|bunnell")
         ->default_str("cosine")
         ->group("What is measured");
+    command
+        .add_option("--ground", options.ground,
+                    "An endless ground occludes too: at this height along --up, in the file's "
+                    "units, or just below the lowest point; it never changes the bounding box")
+        ->expected(0, 1)
+        ->default_str(kLowest)
+        ->type_name("[H]")
+        ->group("What is measured");
+}
+
+void add_up_option(CLI::App& command, std::string& up, const char* group)
+{
+    command.add_option("--up", up, "The file's axis that points to the sky")
+        ->check(CLI::IsMember({"y", "z"}))
+        ->type_name("y|z")
+        ->capture_default_str()
+        ->group(group);
 }
 
 void add_surface_options(CLI::App& command, SurfaceOptions& options)
@@ -317,6 +335,22 @@ Encoding encoding_of(const ColorOptions& options)
 Kernel kernel_of(const MeasureOptions& options)
 {
     return options.kernel == "bunnell" ? Kernel::bunnell : Kernel::cosine;
+}
+
+std::optional<GroundPlane> ground_plane_of(const MeasureOptions& options, const std::string& up)
+{
+    if (!options.ground)
+        return std::nullopt;
+    if (kernel_of(options) != Kernel::cosine)
+        throw UsageError("--ground is for --kernel cosine only.");
+    GroundPlane plane;
+    plane.up = up == "z" ? glm::vec3(0.0f, 0.0f, 1.0f) : glm::vec3(0.0f, 1.0f, 0.0f);
+    if (*options.ground == kLowest)
+        return plane;
+    plane.height = number_of(*options.ground);
+    if (!plane.height)
+        throw UsageError("--ground: \"" + *options.ground + "\" is not a number.");
+    return plane;
 }
 
 }  // namespace surfelao

@@ -33,6 +33,7 @@ struct MeasureOptions {
     std::optional<std::string> max_distance;
     std::optional<std::string> falloff;
     std::optional<std::string> kernel;
+    std::optional<std::string> ground;  ///< a number or "lowest"
 };
 
 /// Where it is measured: on which surface, and for which values.
@@ -52,6 +53,9 @@ struct ColorOptions {
 void add_engine_options(CLI::App& command, EngineOptions& options);
 void add_measure_options(CLI::App& command, MeasureOptions& options);
 
+/// `--up y|z`, in this group.
+void add_up_option(CLI::App& command, std::string& up, const char* group);
+
 void add_surface_options(CLI::App& command, SurfaceOptions& options);
 
 /// `--subdivide [TOL]`; without a number it is kSubdivideTolerance.
@@ -69,6 +73,9 @@ void add_thread_option(CLI::App& command, std::optional<int>& threads);
 [[nodiscard]] VertexColors colors_of(const ColorOptions& options);
 [[nodiscard]] Encoding encoding_of(const ColorOptions& options);
 [[nodiscard]] Kernel kernel_of(const MeasureOptions& options);
+/// up: of add_up_option().
+[[nodiscard]] std::optional<GroundPlane> ground_plane_of(const MeasureOptions& options,
+                                                         const std::string& up);
 
 /// Throws UsageError where this engine does not know this kernel.
 void check_kernel(Engine engine, Kernel kernel);

@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 #include "cli/output.h"
 #include "cli/progress_bar.h"
+#include "cli/read_options.h"
 
 #include <CLI/CLI.hpp>
 
@@ -13,6 +14,7 @@ namespace {
 
 struct InfoOptions {
     std::string input;
+    ReadOptions reading;
     std::optional<std::string> json;
 };
 
@@ -21,7 +23,9 @@ int run(const InfoOptions& options)
     check_report(options.json);
     const Info info = [&options] {
         ProgressBar bar;
-        return inspect(options.input, [&bar](double done) { return bar.update("looking", done); });
+        return inspect(
+            options.input, [&bar](double done) { return bar.update("looking", done); },
+            options.reading);
     }();
     if (options.json != "-")
         std::cout << text_of(info);
@@ -41,9 +45,8 @@ void add_info_command(CLI::App& app, Work& work)
         app.add_subcommand("info",
                            "What a mesh file holds, what is odd about it, and where a bake of it "
                            "will disappoint");
-    command->add_option("IN", options->input, "Mesh file: .obj .ply .off .stl .gltf .glb")
-        ->required()
-        ->type_name("");
+    command->add_option("IN", options->input, kMeshOrCloud)->required()->type_name("");
+    add_read_options(*command, options->reading);
     command->add_option("--json", options->json, "Write it as JSON; - = standard output")
         ->type_name("FILE");
     command->callback([options, &work] {

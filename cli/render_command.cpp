@@ -2,11 +2,12 @@
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/output.h"
+#include "cli/part_options.h"
 #include "cli/progress_bar.h"
+#include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "cli/view_options.h"
 #include "engines/threads.h"
-#include "files/scene_io.h"
 #include "image/image_file.h"
 #include "surfels/number_text.h"
 #include "surfels/stopwatch.h"
@@ -30,6 +31,7 @@ constexpr int kMostSamples = 4096;
 struct RenderCommandOptions {
     std::string input;
     std::string output;
+    ReadOptions reading;
     int width = 1280, height = 720;
     int samples = 16;
     std::string camera;
@@ -39,6 +41,7 @@ struct RenderCommandOptions {
     MeasureOptions measure;
     SurfaceOptions surface;
     TexelOptions texels;
+    PartOptions parts;
     bool atlas = false;
     std::optional<int> threads;
 };
@@ -55,6 +58,8 @@ void check_files(const RenderCommandOptions& options)
 {
     FilePlan plan;
     plan.reads(options.input);
+    for (const std::string& other : options.parts.occluders)
+        plan.reads(other);
     if (options.show.environment)
         plan.reads(*options.show.environment);
     plan.writes(options.output, "the picture");
@@ -91,7 +96,7 @@ void solve_for(const Model& model, const EngineSettings& engine, const ViewOptio
     Stopwatch watch;
     shown.occlusion.resize(model.answer_count());
     if (needs_answer(view.colors))
-        shown.occlusion = solve_model(prepare(model.geometry(), engine), model, engine,
+        shown.occlusion = solve_model(prepare(model.occluding(), engine), model, engine,
                                       {.ground = shows_ground(view)}, stage("solve"))
                               .values;
     shown.solve_s = watch.lap();
@@ -116,7 +121,7 @@ void solve_map_for(const Model& model, const TexelSettings& texels, const Engine
                     : open_map(places);
     shown.occlusion.resize(model.answer_count());
     if (shows_ground(view))
-        shown.occlusion = solve_model(prepare(model.geometry(), engine), model, engine,
+        shown.occlusion = solve_model(prepare(model.occluding(), engine), model, engine,
                                       {.vertices = false}, stage("ground"))
                               .values;
     shown.solve_s = watch.lap();
@@ -151,12 +156,15 @@ int run(const RenderCommandOptions& options)
 
     Stopwatch watch;
     const TargetSettings target = target_settings_of(options.surface);
-    Mesh mesh = make_mesh(read_scene(options.input), target.normals);
+    Mesh mesh =
+        read_mesh(options.input, target.normals, part_choice_of(options.parts), options.reading);
     EngineSettings engine = settings_of(options.engine);
     engine.definition = definition_of(distance_limit_of(options.measure),
                                       kernel_of(options.measure), mesh.geometry.frame);
     const UpAxis up = up_axis_of(options.show);
-    const Model model = make_model(std::move(mesh), up, target);
+    const Model model = make_model(std::move(mesh), up, target, kLargestSplat,
+                                   ground_plane_of(options.measure, options.show.up));
+    engine.definition.ground = model.occluding_ground;
     const Frame& frame = model.geometry().frame;
     const Camera camera = parse_camera(
         options.camera,
@@ -188,7 +196,10 @@ int run(const RenderCommandOptions& options)
     std::cout << options.input << " -> " << options.output << ", " << image.width << " x "
               << image.height << "\n  " << model.geometry().positions.size() << " vertices, "
               << model.geometry().triangles.size() << " triangles, " << name_of(engine.engine)
-              << ", " << setting_of(engine) << '\n';
+              << ", " << setting_of(engine);
+    if (engine.definition.ground)
+        std::cout << ", over a ground at " << text_of(*engine.definition.ground, frame);
+    std::cout << '\n';
     if (shown.layout)
         std::cout << "  " << text_of(*shown.layout) << '\n';
     std::cout << "  read " << time(read_s) << ", solve " << time(shown.solve_s) << ", reference "
@@ -209,12 +220,11 @@ void add_render_command(CLI::App& app, Work& work)
     const auto options = std::make_shared<RenderCommandOptions>();
     CLI::App* command =
         app.add_subcommand("render", "A picture of a mesh with its occlusion, without a window");
-    command->add_option("IN", options->input, "Mesh file: .obj .ply .off .stl .gltf .glb")
-        ->required()
-        ->type_name("");
+    command->add_option("IN", options->input, kMeshOrCloud)->required()->type_name("");
     command->add_option("-o,--output", options->output, "Picture: .png .jpg .exr")
         ->required()
         ->type_name("OUT");
+    add_read_options(*command, options->reading);
     command->add_option("--width", options->width, "Pixels")
         ->check(CLI::Range(1, kMostPixels))
         ->type_name("N")
@@ -241,6 +251,7 @@ void add_render_command(CLI::App& app, Work& work)
         ->capture_default_str();
     add_show_options(*command, options->show);
     add_layout_options(*command, options->texels, kShownMaps);
+    add_part_options(*command, options->parts);
     add_atlas_option(*command, options->atlas);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
@@ -249,6 +260,7 @@ void add_render_command(CLI::App& app, Work& work)
     command->callback([options, &work] {
         check_kernel(settings_of(options->engine).engine, kernel_of(options->measure));
         static_cast<void>(distance_limit_of(options->measure));
+        static_cast<void>(ground_plane_of(options->measure, options->show.up));
         static_cast<void>(target_settings_of(options->surface));
         const bool has_map = shown_texels_of(options->texels).has_value();
         check_shown_map(view_options_of(options->show), has_map, options->atlas);

@@ -1,6 +1,8 @@
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/interrupt.h"
+#include "cli/part_options.h"
+#include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "cli/view_options.h"
 #include "engines/threads.h"
@@ -20,12 +22,14 @@ namespace {
 
 struct ViewCommandOptions {
     std::string input;
+    ReadOptions reading;
     std::string camera;
     ShowOptions show;
     EngineOptions engine;
     MeasureOptions measure;
     SurfaceOptions surface;
     TexelOptions texels;
+    PartOptions parts;
     bool atlas = false;
     std::optional<int> threads;
 };
@@ -37,6 +41,7 @@ int run(const ViewCommandOptions& options)
         limit.emplace(*options.threads);
     WindowOptions window;
     window.input = options.input;
+    window.reading = options.reading;
     window.up = up_axis_of(options.show);
     window.camera = options.camera;
     window.panel.view = view_options_of(options.show);
@@ -48,8 +53,12 @@ int run(const ViewCommandOptions& options)
     if (!options.input.empty() && !std::filesystem::exists(options.input))
         throw InputError(options.input + ": no such file");
 
-    window.panel.settings = {settings_of(options.engine), distance_limit_of(options.measure),
-                             target_settings_of(options.surface), shown_texels_of(options.texels)};
+    window.panel.settings = {
+        settings_of(options.engine),         distance_limit_of(options.measure),
+        target_settings_of(options.surface), shown_texels_of(options.texels),
+        part_choice_of(options.parts),       ground_plane_of(options.measure, options.show.up)};
+    window.other_inputs.insert(window.other_inputs.end(), options.parts.occluders.begin(),
+                               options.parts.occluders.end());
     window.panel.shows_atlas = options.atlas;
     window.keep_open = [] { return caught_signal() == 0; };
     for (const std::filesystem::path& file : show_window(window))
@@ -68,15 +77,16 @@ void add_view_command(CLI::App& app, Work& work)
         "view", "A window: orbit, engines, settings, display modes, comparison with rays");
     command
         ->add_option("IN", options->input,
-                     "Mesh file: .obj .ply .off .stl .gltf .glb; without one, drop files on the "
-                     "window")
+                     std::string(kMeshOrCloud) + "; without one, drop files on the window")
         ->type_name("");
     command
         ->add_option("--camera", options->camera,
                      "Where from, as for render: azimuth=30,elevation=18,distance=1,fov=35")
         ->type_name("WHERE");
+    add_read_options(*command, options->reading);
     add_show_options(*command, options->show);
     add_layout_options(*command, options->texels, kShownMaps);
+    add_part_options(*command, options->parts);
     add_atlas_option(*command, options->atlas);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
@@ -87,6 +97,7 @@ void add_view_command(CLI::App& app, Work& work)
         check_shown_map(view_options_of(options->show),
                         shown_texels_of(options->texels).has_value(), options->atlas);
         static_cast<void>(target_settings_of(options->surface));
+        static_cast<void>(ground_plane_of(options->measure, options->show.up));
         const DistanceLimit distance = distance_limit_of(options->measure);
         if (std::isfinite(distance.value) && !distance.percent)
             throw UsageError("--max-distance of a window is in % of the diagonal (10%).");

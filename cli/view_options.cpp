@@ -1,6 +1,7 @@
 #include "cli/view_options.h"
 
 #include "cli/commands.h"
+#include "cli/engine_options.h"
 #include "reference/rays.h"
 
 #include <CLI/CLI.hpp>
@@ -75,11 +76,7 @@ void add_show_options(CLI::App& command, ShowOptions& options)
         ->type_name("triangles|splats|affine|points")
         ->capture_default_str()
         ->group("Picture");
-    command.add_option("--up", options.up, "The file's axis that points to the sky")
-        ->check(CLI::IsMember({"y", "z"}))
-        ->type_name("y|z")
-        ->capture_default_str()
-        ->group("Picture");
+    add_up_option(command, options.up, "Picture");
     command
         .add_option("--environment", options.environment,
                     "Light for --mode environment: a panorama (.hdr .exr .png .jpg); default: a "

@@ -19,8 +19,10 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -394,6 +396,71 @@ Definition definition_of(const DistanceLimit& limit, Kernel kernel, const Frame&
                          std::to_string(frame.diagonal));
     definition.falloff = limit.falloff;
     return definition;
+}
+
+std::optional<Ground> ground_of(
+    const std::optional<GroundPlane>& plane,
+    std::initializer_list<std::reference_wrapper<const Geometry>> geometries, float offset)
+{
+    if (!plane)
+        return std::nullopt;
+    double lowest = std::numeric_limits<double>::max();
+    for (const Geometry& geometry : geometries)
+        for (const glm::uvec3 triangle : geometry.triangles)
+            for (int corner = 0; corner < 3; ++corner)
+                lowest = std::min(
+                    lowest, double{glm::dot(plane->up, geometry.positions[triangle[corner]])});
+    if (lowest == std::numeric_limits<double>::max())
+        lowest = 0.0;  // nothing stands on it
+    const Frame& frame = geometries.begin()->get().frame;
+    const double gap = 2.0 * offset;
+    double height = lowest - gap;
+    if (plane->height) {
+        const double asked =
+            (*plane->height - glm::dot(glm::dvec3(plane->up), frame.centre)) / frame.diagonal;
+        if (std::abs(asked - lowest) > gap)
+            height = asked;
+    }
+    if (!(std::abs(height) <= kFarthestReceiver))
+        throw InputError("the ground at " + exact(*plane->height) +
+                         " is farther than a million diagonals from the scene");
+    return Ground{plane->up, static_cast<float>(height)};
+}
+
+GroundPlane plane_of(const Ground& ground, const Frame& frame)
+{
+    const double centre = glm::dot(glm::dvec3(ground.up), frame.centre);
+    return {ground.up, centre + ground.height * frame.diagonal};
+}
+
+namespace {
+
+std::string axis_of(const GroundPlane& plane)
+{
+    const glm::vec3 up = plane.up;
+    if (up == glm::vec3(0, 1, 0))
+        return "y";
+    if (up == glm::vec3(0, 0, 1))
+        return "z";
+    return exact(up.x) + ":" + exact(up.y) + ":" + exact(up.z);
+}
+
+}  // namespace
+
+std::string text_of(const GroundPlane& plane)
+{
+    return axis_of(plane) + ":" + (plane.height ? exact(*plane.height) : "lowest");
+}
+
+std::string text_of(const Ground& ground, const Frame& frame)
+{
+    const GroundPlane plane = plane_of(ground, frame);
+    std::string text = axis_of(plane) + " = ";
+    constexpr int kDigits = 6;  // what a float of the unit frame is right to, and no rounding
+    char digits[32];
+    return text.append(digits, std::to_chars(std::begin(digits), std::end(digits), *plane.height,
+                                             std::chars_format::general, kDigits)
+                                   .ptr);
 }
 
 }  // namespace surfelao

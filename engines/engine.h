@@ -15,6 +15,8 @@
 #include "surfels/receiver.h"
 
 #include <cstdint>
+#include <functional>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -159,8 +161,33 @@ struct DistanceLimit {
     bool operator==(const DistanceLimit&) const = default;
 };
 
+/// A ground as a user says it.
+struct GroundPlane {
+    glm::vec3 up{0.0f, 1.0f, 0.0f};     ///< unit length
+    std::optional<double> height = {};  ///< along up, in the file's units; empty: just below
+                                        ///< the lowest point
+    bool operator==(const GroundPlane&) const = default;
+};
+
 /// The definition in the unit frame. Throws InputError where the limit vanishes beside the scene.
 [[nodiscard]] Definition definition_of(const DistanceLimit& limit, Kernel kernel,
                                        const Frame& frame);
+
+/// The ground in the unit frame of these geometries, which all have the same: what occludes and
+/// what is asked. Just below their lowest point is two offsets below it, so that what stands on the
+/// ground does not stand in it; a height within two offsets of the lowest point means that place
+/// too. offset: the largest of the receivers. None where none is asked for. Throws InputError where
+/// it lies farther off than kFarthestReceiver.
+[[nodiscard]] std::optional<Ground> ground_of(
+    const std::optional<GroundPlane>& plane,
+    std::initializer_list<std::reference_wrapper<const Geometry>> geometries, float offset);
+
+/// Back: where it lies in the file's units.
+[[nodiscard]] GroundPlane plane_of(const Ground& ground, const Frame& frame);
+
+/// "y:-0.25", "z:lowest"; other directions than these two as "0.6:0:0.8:lowest".
+[[nodiscard]] std::string text_of(const GroundPlane& plane);
+/// "y = -0.25": where it lies in the file's units, to six digits.
+[[nodiscard]] std::string text_of(const Ground& ground, const Frame& frame);
 
 }  // namespace surfelao

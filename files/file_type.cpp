@@ -12,7 +12,9 @@ FileType type_of(const std::filesystem::path& path)
     const std::string extension = lower_extension(path);
     constexpr std::pair<const char*, FileType> kTypes[] = {
         {".obj", FileType::obj}, {".ply", FileType::ply},   {".off", FileType::off},
-        {".stl", FileType::stl}, {".gltf", FileType::gltf}, {".glb", FileType::glb}};
+        {".stl", FileType::stl}, {".gltf", FileType::gltf}, {".glb", FileType::glb},
+        {".pcd", FileType::pcd}, {".xyz", FileType::xyz},   {".pts", FileType::xyz},
+        {".txt", FileType::xyz}, {".asc", FileType::xyz}};
     for (const auto& [name, type] : kTypes) {
         if (extension == name)
             return type;

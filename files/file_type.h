@@ -1,13 +1,14 @@
-/// file_type.h: the mesh formats by the ends of their names, in any case.
+/// file_type.h: the formats of meshes and clouds by the ends of their names, in any case.
 #pragma once
 
 #include <filesystem>
 
 namespace surfelao {
 
-enum class FileType { obj, ply, off, stl, gltf, glb, unknown };
+enum class FileType { obj, ply, off, stl, gltf, glb, pcd, xyz, unknown };
 
-/// .obj .ply .off .stl .gltf .glb; `unknown` for all others.
+/// .obj .ply .off .stl .gltf .glb .pcd; .xyz .pts .txt .asc are all `xyz`; `unknown` for all
+/// others.
 [[nodiscard]] FileType type_of(const std::filesystem::path& path);
 
 /// Whether it is .gltf or .glb.

@@ -310,4 +310,25 @@ void load_gltf_asset(const fs::path& path, std::string contents, GltfAsset& asse
     load_buffers(asset);
 }
 
+bool is_baked(const GltfTriangles& triangles, const std::vector<bool>& unbaked)
+{
+    if (unbaked.empty())
+        return true;
+    const auto begin = unbaked.begin() + std::ptrdiff_t{triangles.first};
+    return std::find(begin, begin + std::ptrdiff_t{triangles.count}, false) !=
+           begin + std::ptrdiff_t{triangles.count};
+}
+
+std::vector<bool> GltfAsset::baked_uses(const std::vector<bool>& unbaked) const
+{
+    std::vector<bool> baked(uses.size(), unbaked.empty());
+    for (const GltfPart& part : parts) {
+        for (const GltfTriangles& triangles : part.primitives) {
+            if (is_baked(triangles, unbaked))
+                baked[part.use] = true;
+        }
+    }
+    return baked;
+}
+
 }  // namespace surfelao

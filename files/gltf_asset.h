@@ -65,6 +65,9 @@ struct GltfPart {
     std::vector<bool> turned;
 };
 
+/// Whether something of these triangles was baked (WriteOptions::unbaked).
+[[nodiscard]] bool is_baked(const GltfTriangles& triangles, const std::vector<bool>& unbaked);
+
 /// Everything a writer needs to hand the file back with attributes added: without what an earlier
 /// bake has added (gltf_old_results.h).
 struct GltfAsset : SourceAsset {
@@ -88,7 +91,10 @@ struct GltfAsset : SourceAsset {
     std::vector<GltfUse> uses;    ///< in the order of the parts; each has one at least
     std::vector<GltfPart> parts;  ///< as Scene::parts
 
+    /// Per use, whether something of it was baked.
+    [[nodiscard]] std::vector<bool> baked_uses(const std::vector<bool>& unbaked) const;
     [[nodiscard]] BaseColors base_colors() const override;  // gltf_base_colors.cpp
+    [[nodiscard]] bool has_openings() const override;       // the same
     [[nodiscard]] std::optional<std::uint32_t> occlusion_uvs() const override;  // the same
 };
 

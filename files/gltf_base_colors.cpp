@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace surfelao {
@@ -27,6 +28,41 @@ std::string_view bytes_of_view(const GltfAsset& asset, const json& view)
     const std::size_t offset = whole_number(member(view, "byteOffset"), 0);
     return offset < bytes.size() ? bytes.substr(offset, whole_number(member(view, "byteLength"), 0))
                                  : std::string_view();
+}
+
+double number_of(const json& value, double otherwise)
+{
+    return value.is_number() ? value.get<double>() : otherwise;
+}
+
+Opacity opacity_of(const json& material)
+{
+    const json& mode = member(material, "alphaMode");
+    if (mode == "MASK")
+        return Opacity::cut;
+    const json& transmission = member(member(material, "extensions"), "KHR_materials_transmission");
+    const bool transmits = number_of(member(transmission, "transmissionFactor"), 0.0) > 0.0;
+    return mode == "BLEND" || transmits ? Opacity::clear : Opacity::solid;
+}
+
+/// KHR_texture_transform: offset + rotation * (scale * uv), the rotation counter-clockwise where v
+/// runs down.
+void set_transform(const json& texture, BaseColor& color)
+{
+    const json& transform = member(member(texture, "extensions"), "KHR_texture_transform");
+    color.uv_set =
+        static_cast<std::uint32_t>(whole_number(member(transform, "texCoord"), color.uv_set));
+    const auto pair = [&](const char* key, double otherwise) {
+        const json& list = member(transform, key);
+        const bool is_pair = list.is_array() && list.size() == 2;
+        return is_pair ? glm::dvec2(number_of(list[0], otherwise), number_of(list[1], otherwise))
+                       : glm::dvec2(otherwise);
+    };
+    const double angle = number_of(member(transform, "rotation"), 0.0);
+    const glm::dvec2 scale = pair("scale", 1.0);
+    color.uv_matrix = glm::dmat2(scale.x * std::cos(angle), -scale.x * std::sin(angle),
+                                 scale.y * std::sin(angle), scale.y * std::cos(angle));
+    color.uv_offset = pair("offset", 0.0);
 }
 
 /// Each material and picture of the document once.
@@ -69,6 +105,15 @@ private:
             member(entry(document_, "textures", member(texture, "index")), "source");
         if (entry(document_, "images", image).is_object())
             color.picture = picture_of(image.get<std::size_t>());
+        if (texture.is_object())
+            set_transform(texture, color);
+        const json& name = member(material, "name");
+        color.name = name.is_string() ? name.get<std::string>() : std::string();
+        color.opacity = opacity_of(material);
+        color.alpha_picture = color.picture;
+        if (factor.is_array() && factor.size() == 4)
+            color.alpha = std::clamp(static_cast<float>(number_of(factor[3], 1.0)), 0.0f, 1.0f);
+        color.cutoff = static_cast<float>(number_of(member(material, "alphaCutoff"), 0.5));
         return color;
     }
 
@@ -113,6 +158,14 @@ BaseColors GltfAsset::base_colors() const
                              painter.material_of(uses[part.use].mesh, of_primitive.primitive));
     }
     return painter.finish(std::move(triangles));
+}
+
+bool GltfAsset::has_openings() const
+{
+    const json& materials = member(*document, "materials");
+    return materials.is_array() && std::ranges::any_of(materials, [](const json& material) {
+               return opacity_of(material) != Opacity::solid;
+           });
 }
 
 std::optional<std::uint32_t> GltfAsset::occlusion_uvs() const

@@ -131,7 +131,8 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
 /// alone. Notes count those, and the materials that had another occlusionTexture.
 ///
 /// .glb: the picture stands in the binary chunk. .gltf: its URI is that of map_file_of(path), which
-/// is left to the caller to write.
+/// is left to the caller to write; several pictures (map.more_pngs), each for materials of its own,
+/// stand in the file.
 ///
 /// New coordinates (map.uvs) go to the first set that a primitive does not have, TEXCOORD_n, and
 /// each use of a mesh has its own: meshes and instances are taken apart as for values at vertices.

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -46,22 +47,55 @@ struct Covered {
     std::vector<std::vector<std::size_t>> sets = {};  ///< of each primitive, where they are new
 };
 
+/// A mesh of the document and a primitive of it.
+using PrimitivePlace = std::pair<std::size_t, std::size_t>;
+
+/// All that draw triangles; where not all were baked, those of which something was: a mesh that
+/// some of its uses show unbaked is copied for the others.
+std::set<PrimitivePlace> baked_primitives_of(json& document, const GltfAsset& asset,
+                                             const std::vector<bool>& unbaked)
+{
+    std::set<PrimitivePlace> found;
+    if (unbaked.empty()) {
+        for (std::size_t mesh = 0; mesh < asset.group_of_primitive.size(); ++mesh) {
+            const std::vector<std::int32_t>& groups = asset.group_of_primitive[mesh];
+            for (std::size_t p = 0; p < groups.size(); ++p) {
+                if (groups[p] >= 0)
+                    found.emplace(mesh, p);
+            }
+        }
+        return found;
+    }
+    std::vector<bool> wanted = asset.baked_uses(unbaked);
+    std::set<std::size_t> shown_unbaked;
+    for (std::size_t u = 0; u < wanted.size(); ++u) {
+        if (!wanted[u])
+            shown_unbaked.insert(asset.uses[u].mesh);
+    }
+    for (std::size_t u = 0; u < wanted.size(); ++u)
+        wanted[u] = wanted[u] && shown_unbaked.contains(asset.uses[u].mesh);
+    const std::vector<std::size_t> meshes = separate_uses(document, asset.uses, wanted);
+    for (const GltfPart& part : asset.parts) {
+        for (const GltfTriangles& triangles : part.primitives) {
+            if (is_baked(triangles, unbaked))
+                found.emplace(meshes[part.use], triangles.primitive);
+        }
+    }
+    return found;
+}
+
 /// Those with TEXCOORD_set.
-Covered with_own_places(json& document, const GltfAsset& asset, std::uint32_t set)
+Covered with_own_places(json& document, const GltfAsset& asset, std::uint32_t set,
+                        const std::vector<bool>& unbaked)
 {
     const std::string name = "TEXCOORD_" + std::to_string(set);
     Covered covered;
-    for (std::size_t mesh = 0; mesh < asset.group_of_primitive.size(); ++mesh) {
-        const std::vector<std::int32_t>& groups = asset.group_of_primitive[mesh];
-        for (std::size_t p = 0; p < groups.size(); ++p) {
-            if (groups[p] < 0)
-                continue;
-            json& primitive = document["meshes"][mesh]["primitives"][p];
-            if (!primitive["attributes"].contains(name))
-                ++covered.without;
-            else if (can_be_occluded(document, primitive))
-                covered.primitives.push_back({&primitive, set});
-        }
+    for (const auto& [mesh, p] : baked_primitives_of(document, asset, unbaked)) {
+        json& primitive = document["meshes"][mesh]["primitives"][p];
+        if (!primitive["attributes"].contains(name))
+            ++covered.without;
+        else if (can_be_occluded(document, primitive))
+            covered.primitives.push_back({&primitive, set});
     }
     return covered;
 }
@@ -69,10 +103,12 @@ Covered with_own_places(json& document, const GltfAsset& asset, std::uint32_t se
 /// Gives all primitives with triangles that have a place the new coordinates, each use of a mesh
 /// its own.
 Covered with_new_places(json& document, const GltfAsset& asset, const Scene& scene,
-                        std::span<const UvSet> sets, AddedData& added)
+                        std::span<const UvSet> sets, const std::vector<bool>& unbaked,
+                        AddedData& added)
 {
     Covered covered;
-    const std::vector<std::size_t> meshes = separate_uses(document, asset.uses);
+    const std::vector<std::size_t> meshes =
+        separate_uses(document, asset.uses, asset.baked_uses(unbaked));
     GltfCutter cutter(document, asset, added);
     const auto has_place = [](const UvSet& uvs, const GltfTriangles& triangles) {
         const std::span<const glm::uvec3> corners(uvs.corners);
@@ -87,7 +123,7 @@ Covered with_new_places(json& document, const GltfAsset& asset, const Scene& sce
         const GltfCut cut = cut_part(scene, part, in_file, sets);
         std::vector<std::size_t> coordinates;
         for (const GltfTriangles& triangles : in_file.primitives) {
-            if (triangles.count == 0)
+            if (triangles.count == 0 || !is_baked(triangles, unbaked))
                 continue;
             if (std::ranges::none_of(sets,
                                      [&](const UvSet& uvs) { return has_place(uvs, triangles); })) {
@@ -119,30 +155,68 @@ Covered with_new_places(json& document, const GltfAsset& asset, const Scene& sce
     return covered;
 }
 
+/// From a material (null: none) to its page; pages: OcclusionMap::pages.
+std::map<json, std::size_t> pages_of_materials(const json& document, const GltfAsset& asset,
+                                               std::span<const std::uint32_t> pages)
+{
+    std::map<json, std::size_t> found;
+    for (const GltfPart& part : asset.parts) {
+        const json& primitives =
+            member(entry(document, "meshes", asset.uses[part.use].mesh), "primitives");
+        for (const GltfTriangles& triangles : part.primitives)
+            if (!pages.empty() && triangles.count > 0)
+                found.emplace(member(primitives.at(triangles.primitive), "material"),
+                              pages[triangles.first]);
+    }
+    return found;
+}
+
+/// The primitives of each page.
+std::vector<std::vector<Occluded>> by_page(std::span<const Occluded> primitives,
+                                           const std::map<json, std::size_t>& page_of)
+{
+    std::vector<std::vector<Occluded>> pages;
+    for (const Occluded& occluded : primitives) {
+        const auto found = page_of.find(member(*occluded.primitive, "material"));
+        const std::size_t page = found == page_of.end() ? 0 : found->second;
+        pages.resize(std::max(pages.size(), page + 1));
+        pages[page].push_back(occluded);
+    }
+    return pages;
+}
+
 }  // namespace
 
 std::vector<std::string> add_map(json& document, const GltfAsset& asset, const Scene& scene,
                                  const OcclusionMap& map, const std::filesystem::path& path,
-                                 AddedData& added)
+                                 const std::vector<bool>& unbaked, AddedData& added)
 {
     const std::string own = "TEXCOORD_" + std::to_string(map.uv_set);
     const Covered covered =
-        map.uvs ? with_new_places(document, asset, scene, std::span(&*map.uvs, 1), added)
-                : with_own_places(document, asset, map.uv_set);
+        map.uvs ? with_new_places(document, asset, scene, std::span(&*map.uvs, 1), unbaked, added)
+                : with_own_places(document, asset, map.uv_set, unbaked);
     if (covered.primitives.empty())
         fail_gltf(asset.path, "",
                   "has no primitive with " + (map.uvs ? "a place in the map" : own) +
                       ", which a map is to lie over");
-    json image = {{"mimeType", "image/png"}};
-    if (const std::optional<std::filesystem::path> file = map_file_of(path))
-        image["uri"] = encode_uri(file->filename().string());
-    else
-        image["bufferView"] = added.add_bytes(map.png);
     // a file's own coordinates may lie beyond [0, 1]: that map repeats
     const json repeating = {{"magFilter", kLinearFilter}, {"minFilter", kLinearMipmapLinear}};
-    const std::size_t texture =
-        add_occlusion_texture(document, image, map.uvs ? clamping_sampler() : repeating);
-    const std::size_t replaced = show_occlusion_texture(document, texture, covered.primitives);
+    const std::optional<std::filesystem::path> file = map_file_of(path);
+    const std::vector<std::vector<Occluded>> pages =
+        by_page(covered.primitives, pages_of_materials(document, asset, map.pages));
+    std::size_t replaced = 0;
+    for (std::size_t page = 0; page < pages.size(); ++page) {
+        if (pages[page].empty())
+            continue;
+        json image = {{"mimeType", "image/png"}};
+        if (file && map.more_pngs.empty())
+            image["uri"] = encode_uri(file->filename().string());
+        else
+            image["bufferView"] = added.add_bytes(page == 0 ? map.png : map.more_pngs[page - 1]);
+        const std::size_t texture =
+            add_occlusion_texture(document, image, map.uvs ? clamping_sampler() : repeating);
+        replaced += show_occlusion_texture(document, texture, pages[page]);
+    }
 
     std::vector<std::string> notes;
     if (replaced > 0)
@@ -156,9 +230,10 @@ std::vector<std::string> add_map(json& document, const GltfAsset& asset, const S
 }
 
 std::vector<std::string> add_blended_map(json& document, const GltfAsset& asset, const Scene& scene,
-                                         const BlendedMap& map, AddedData& added)
+                                         const BlendedMap& map, const std::vector<bool>& unbaked,
+                                         AddedData& added)
 {
-    const Covered covered = with_new_places(document, asset, scene, map.uvs, added);
+    const Covered covered = with_new_places(document, asset, scene, map.uvs, unbaked, added);
     if (covered.primitives.empty())
         fail_gltf(asset.path, "", "has no primitive with a place in the map");
     std::vector<std::size_t> textures;

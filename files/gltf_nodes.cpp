@@ -174,8 +174,14 @@ private:
             std::size_t node;
             glm::dmat4 parent;
             bool is_visible;
+            std::size_t depth = 0;
         };
         std::vector<Visit> pending;
+        std::vector<std::size_t> open;  // branches of the node at hand and those above it
+        const auto close_to = [&](std::size_t depth) {
+            for (; open.size() > depth; open.pop_back())
+                placed_.branches[open.back()].end_use = placed_.mesh_nodes.size();
+        };
         for (auto root = roots.rbegin(); root != roots.rend(); ++root)
             pending.push_back({*root, glm::dmat4(1.0), true});
         while (!pending.empty()) {
@@ -191,11 +197,18 @@ private:
             placed_.world[visit.node] = world;
             is_placed_[visit.node] = true;
             const bool visible = visit.is_visible && is_visible(node);
+            if (is_in_scene_) {
+                close_to(visit.depth);
+                open.push_back(placed_.branches.size());
+                placed_.branches.push_back({visit.node, placed_.mesh_nodes.size(), 0});
+            }
             if (node.mesh >= 0 && is_in_scene_)
                 add_mesh_node(visit.node, visible);
             for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-                pending.push_back({static_cast<std::size_t>(*child), world, visible});
+                pending.push_back(
+                    {static_cast<std::size_t>(*child), world, visible, visit.depth + 1});
         }
+        close_to(0);
     }
 
     void add_mesh_node(std::size_t index, bool visible)

@@ -30,8 +30,15 @@ struct MeshNode {
     std::optional<std::size_t> skin;
 };
 
+/// A node of the scene, and which uses of meshes lie on it or below.
+struct NodeBranch {
+    std::size_t node = 0;
+    std::size_t first_use = 0, end_use = 0;  ///< into PlacedNodes::mesh_nodes
+};
+
 struct PlacedNodes {
     std::vector<MeshNode> mesh_nodes;  ///< of the scene, a node before its children
+    std::vector<NodeBranch> branches;  ///< of the scene, a node before its children
     std::vector<glm::dmat4> world;  ///< per node; of the scene's nodes and the used skins' joints
     std::size_t hidden_count = 0;   ///< nodes with a mesh that KHR_node_visibility hides
 };

@@ -35,9 +35,8 @@ std::size_t corner_count(const json& document, const json& primitive)
 struct Kinds {
     std::size_t without_triangles = 0;  ///< primitives of points and lines
     std::size_t without_positions = 0;
-    std::size_t without_triangle = 0;        ///< primitives of fewer than three corners
-    std::size_t corners_left = 0;            ///< behind the last whole triangle of a list
-    std::set<std::size_t> see_through = {};  ///< materials with alphaMode MASK or BLEND
+    std::size_t without_triangle = 0;  ///< primitives of fewer than three corners
+    std::size_t corners_left = 0;      ///< behind the last whole triangle of a list
 };
 
 Kinds find_kinds(const GltfAsset& asset, const PlacedNodes& nodes)
@@ -60,10 +59,6 @@ Kinds find_kinds(const GltfAsset& asset, const PlacedNodes& nodes)
                 ++kinds.without_triangle;
             else if (primitives[p].value("mode", 4.0) == 4.0)
                 kinds.corners_left += corners % 3;
-            const json& material = member(primitives[p], "material");
-            const json& mode = member(entry(*asset.document, "materials", material), "alphaMode");
-            if (mode == "MASK" || mode == "BLEND")
-                kinds.see_through.insert(material.get<std::size_t>());
         }
     }
     return kinds;
@@ -136,10 +131,6 @@ std::vector<std::string> gltf_notes(const GltfAsset& asset, const PlacedNodes& n
         notes.push_back(counted(kinds.corners_left, "corner",
                                 "behind the last whole triangle is left out",
                                 "behind the last whole triangles are left out"));
-    if (!kinds.see_through.empty())
-        notes.push_back(counted(kinds.see_through.size(), "material",
-                                "with alphaMode MASK or BLEND is taken as solid",
-                                "with alphaMode MASK or BLEND are taken as solid"));
     const json& animations = member(*asset.document, "animations");
     if (animations.is_array() && !animations.empty())
         notes.push_back(counted(animations.size(), "animation",

@@ -2,6 +2,7 @@
 
 #include "files/gltf_asset.h"
 #include "files/gltf_instances.h"
+#include "files/gltf_json.h"
 #include "files/gltf_mesh.h"
 #include "files/gltf_nodes.h"
 #include "files/gltf_notes.h"
@@ -9,10 +10,13 @@
 #include "files/gltf_pose.h"
 #include "files/gltf_schema.h"
 #include "surfels/errors.h"
+#include "surfels/labels.h"
 #include "surfels/number_text.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
+
+#include <nlohmann/json.hpp>
 
 #include <tiny_gltf.h>
 
@@ -150,13 +154,17 @@ public:
                 meshes_[use.mesh] = resolve_mesh(model_, use.mesh, asset_);
         }
         reserve();
-        for (const MeshNode& use : nodes_.mesh_nodes)
+        for (const MeshNode& use : nodes_.mesh_nodes) {
+            first_triangles_.push_back(static_cast<std::uint32_t>(scene_.triangles.size()));
             add_uses(use);
+        }
+        first_triangles_.push_back(static_cast<std::uint32_t>(scene_.triangles.size()));
         if (nodes_.mesh_nodes.empty())
             fail("", nodes_.hidden_count > 0 ? "hides all that its scene holds"
                                              : "has no node with a mesh in its scene");
         if (scene_.triangles.empty())
             fail("", "has meshes of points and lines only, no triangles");
+        scene_.labels = labels();
         scene_.notes = gltf_notes(asset_, nodes_);
         drop_own_corners();
         if (lost_count_ > 0)
@@ -214,6 +222,35 @@ private:
                 (uvs.values.size() == scene_.positions.size() && uvs.corners == scene_.triangles))
                 uvs.corners = {};
         }
+    }
+
+    /// Nodes with all that lies below them, meshes, and the materials of primitives. O(nodes +
+    /// parts log parts).
+    std::vector<Label> labels() const
+    {
+        LabelMaker maker;
+        const auto add = [&](LabelKind kind, const std::string& name, std::uint32_t begin,
+                             std::uint32_t end) { maker.add(kind, name, begin, end - begin); };
+        for (const NodeBranch& branch : nodes_.branches)
+            add(LabelKind::node, model_.nodes[branch.node].name, first_triangles_[branch.first_use],
+                first_triangles_[branch.end_use]);
+        for (std::size_t use = 0; use < nodes_.mesh_nodes.size(); ++use)
+            add(LabelKind::mesh, model_.meshes[nodes_.mesh_nodes[use].mesh].name,
+                first_triangles_[use], first_triangles_[use + 1]);
+        for (const GltfPart& part : asset_.parts) {
+            const nlohmann::json& primitives =
+                (*asset_.document)["meshes"][asset_.uses[part.use].mesh]["primitives"];
+            for (const GltfTriangles& of_primitive : part.primitives) {
+                const nlohmann::json& material =
+                    entry(*asset_.document, "materials",
+                          member(primitives[of_primitive.primitive], "material"));
+                const nlohmann::json& name = member(material, "name");
+                if (name.is_string())
+                    maker.add(LabelKind::material, name.get_ref<const std::string&>(),
+                              of_primitive.first, of_primitive.count);
+            }
+        }
+        return maker.finish();
     }
 
     /// The parts of one node: the groups of its mesh, for each instance.
@@ -439,6 +476,7 @@ private:
     /// Of the part that is being added: where the values of each set's accessors begin.
     std::array<std::map<int, std::uint32_t>, kMostUvSets> part_uvs_;
     std::uint64_t lost_count_ = 0;
+    std::vector<std::uint32_t> first_triangles_;  // of nodes_.mesh_nodes, and where the last ends
     std::vector<std::optional<std::vector<Group>>> meshes_;       // those that are used
     std::vector<std::optional<std::vector<glm::dmat4>>> joints_;  // per skin that is used
 };

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <set>
 #include <vector>
 
 namespace surfelao {
@@ -163,7 +164,8 @@ public:
 
     void refine()
     {
-        const std::vector<std::size_t> meshes = separate_uses(document_, asset_.uses);
+        const std::vector<std::size_t> meshes =
+            separate_uses(document_, asset_.uses, uses_to_cut());
         for (std::size_t p = 0; p < scene_.parts.size(); ++p) {
             if (middles_.of_part[p].empty())
                 continue;
@@ -172,6 +174,20 @@ public:
     }
 
 private:
+    /// Those of which a part is cut, and the other instances of their nodes, which stay in order.
+    [[nodiscard]] std::vector<bool> uses_to_cut() const
+    {
+        std::vector<bool> wanted(asset_.uses.size(), false);
+        std::set<std::size_t> nodes;
+        for (std::size_t p = 0; p < scene_.parts.size(); ++p) {
+            if (!middles_.of_part[p].empty())
+                nodes.insert(asset_.uses[asset_.parts[p].use].node);
+        }
+        for (std::size_t u = 0; u < wanted.size(); ++u)
+            wanted[u] = nodes.contains(asset_.uses[u].node);
+        return wanted;
+    }
+
     /// primitives: of the mesh. Those that share the part's vertices go on sharing them.
     void refine_part(std::size_t p, json& primitives)
     {

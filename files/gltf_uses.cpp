@@ -106,7 +106,8 @@ void release_weights(json& document, const std::vector<bool>& is_split)
 }
 
 /// The node that shows each use, after nodes with instances are split.
-std::vector<std::size_t> nodes_of_uses(json& document, std::span<const GltfUse> uses)
+std::vector<std::size_t> nodes_of_uses(json& document, std::span<const GltfUse> uses,
+                                       const std::vector<bool>& wanted)
 {
     json& nodes = document["nodes"];
     std::vector<bool> is_split(nodes.size(), false);
@@ -116,12 +117,14 @@ std::vector<std::size_t> nodes_of_uses(json& document, std::span<const GltfUse> 
         std::size_t count = 1;  // uses of one node follow each other
         while (first + count < uses.size() && uses[first + count].node == uses[first].node)
             ++count;
-        if (uses[first].instance) {
+        const auto begin = wanted.begin() + static_cast<std::ptrdiff_t>(first);
+        const auto end = begin + static_cast<std::ptrdiff_t>(count);
+        if (uses[first].instance && std::find(begin, end, true) != end) {
             const std::vector<std::size_t> added = split_node(nodes, uses.subspan(first, count));
             nodes_of.insert(nodes_of.end(), added.begin(), added.end());
             is_split[uses[first].node] = has_instances = true;
         } else {
-            nodes_of.push_back(uses[first].node);
+            nodes_of.insert(nodes_of.end(), count, uses[first].node);
         }
         first += count;
     }
@@ -140,14 +143,19 @@ void mark_copy(json& mesh, std::size_t original)
         mesh["extras"][kMarkKey] = original;
 }
 
-std::vector<std::size_t> separate_uses(json& document, std::span<const GltfUse> uses)
+std::vector<std::size_t> separate_uses(json& document, std::span<const GltfUse> uses,
+                                       const std::vector<bool>& wanted)
 {
-    const std::vector<std::size_t> nodes_of = nodes_of_uses(document, uses);
+    const std::vector<std::size_t> nodes_of = nodes_of_uses(document, uses, wanted);
     json& nodes = document["nodes"];
     json& meshes = document["meshes"];
     std::vector<bool> is_of_use(nodes.size(), false);
-    for (const std::size_t node : nodes_of)
-        is_of_use[node] = true;
+    for (std::size_t u = 0; u < uses.size(); ++u) {
+        if (wanted[u])
+            is_of_use[nodes_of[u]] = true;
+        else
+            nodes[nodes_of[u]]["mesh"] = uses[u].mesh;  // also of an instance that is a node now
+    }
     std::vector<bool> taken(meshes.size(), false);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         if (!is_of_use[i] && nodes[i].contains("mesh"))
@@ -156,6 +164,10 @@ std::vector<std::size_t> separate_uses(json& document, std::span<const GltfUse> 
     std::vector<std::size_t> meshes_of;
     for (std::size_t u = 0; u < uses.size(); ++u) {
         std::size_t mesh = uses[u].mesh;
+        if (!wanted[u]) {
+            meshes_of.push_back(mesh);
+            continue;
+        }
         if (taken[mesh]) {
             json copy = meshes[mesh];
             mark_copy(copy, mesh);

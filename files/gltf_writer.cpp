@@ -65,29 +65,39 @@ std::vector<float> bent_normal_values(std::span<const Occlusion> occlusion, cons
     return values;
 }
 
+/// Of the primitives that a part stands for, those that share its vertices, all but those of which
+/// nothing was baked.
+std::vector<std::size_t> baked_primitives(const GltfAsset& asset, std::size_t part,
+                                          const std::vector<bool>& unbaked)
+{
+    std::vector<std::size_t> baked;
+    for (const GltfTriangles& triangles : asset.parts[part].primitives) {
+        if (is_baked(triangles, unbaked))
+            baked.push_back(triangles.primitive);
+    }
+    return baked;
+}
+
 /// Adds the attributes of all parts; returns notes on how they are shown.
 std::vector<std::string> add_attributes(json& document, const GltfAsset& asset, const Scene& scene,
                                         std::span<const Occlusion> occlusion,
                                         const WriteOptions& options, AddedData& added)
 {
-    const std::vector<std::size_t> meshes = separate_uses(document, asset.uses);
+    const std::vector<std::size_t> meshes =
+        separate_uses(document, asset.uses, asset.baked_uses(options.unbaked));
     GltfLooks looks(document, asset, options, added);
     for (std::size_t p = 0; p < scene.parts.size(); ++p) {
         const Part& part = scene.parts[p];
-        if (part.vertex_count == 0)
+        const std::vector<std::size_t> baked = baked_primitives(asset, p, options.unbaked);
+        if (part.vertex_count == 0 || baked.empty())
             continue;
         const auto values = occlusion.subspan(part.first_vertex, part.vertex_count);
         const std::size_t scalar = added.add_floats(1, occlusion_values(values));
         const std::size_t bent = added.add_floats(3, bent_normal_values(values, asset.parts[p]));
 
-        // the primitives that this part stands for: those that share its vertices
         json& primitives = document["meshes"][meshes[asset.parts[p].use]]["primitives"];
-        const std::vector<std::int32_t>& groups =
-            asset.group_of_primitive[static_cast<std::size_t>(part.mesh)];
         std::vector<json*> of_part;
-        for (std::size_t i = 0; i < groups.size(); ++i) {
-            if (groups[i] != part.primitive)
-                continue;
+        for (const std::size_t i : baked) {
             json& attributes = primitives[i]["attributes"];
             attributes["_OCCLUSION"] = scalar;
             attributes["_BENT_NORMAL"] = bent;
@@ -204,19 +214,19 @@ std::string refined_gltf(const Scene& scene, const Refinement& refinement)
 WrittenFile gltf_contents_with_blended_map(const fs::path& path, const Scene& scene,
                                            const BlendedMap& map, const WriteOptions& options)
 {
-    return contents_with(path, scene, options,
-                         [&](json& document, const GltfAsset& asset, AddedData& added) {
-                             return add_blended_map(document, asset, scene, map, added);
-                         });
+    return contents_with(
+        path, scene, options, [&](json& document, const GltfAsset& asset, AddedData& added) {
+            return add_blended_map(document, asset, scene, map, options.unbaked, added);
+        });
 }
 
 WrittenFile gltf_contents_with_map(const fs::path& path, const Scene& scene,
                                    const OcclusionMap& map, const WriteOptions& options)
 {
-    return contents_with(path, scene, options,
-                         [&](json& document, const GltfAsset& asset, AddedData& added) {
-                             return add_map(document, asset, scene, map, path, added);
-                         });
+    return contents_with(
+        path, scene, options, [&](json& document, const GltfAsset& asset, AddedData& added) {
+            return add_map(document, asset, scene, map, path, options.unbaked, added);
+        });
 }
 
 }  // namespace surfelao

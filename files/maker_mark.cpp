@@ -51,13 +51,14 @@ std::string_view mark_behind(std::string_view prefix, std::string_view line)
     return command_of_mark(line).empty() ? std::string_view() : line;
 }
 
-std::string mark_of_ply(std::string_view text)
+/// Of a header of lines that ends with one that begins with `last`.
+std::string mark_of_header(std::string_view text, std::string_view comment, std::string_view last)
 {
     while (!text.empty()) {
         const std::string_view line = first_line(text);
-        if (line == "end_header")
+        if (line.starts_with(last))
             break;
-        if (const std::string_view mark = mark_behind("comment ", line); !mark.empty())
+        if (const std::string_view mark = mark_behind(comment, line); !mark.empty())
             return std::string(mark);
         text.remove_prefix(std::min(text.size(), line.size() + 1));
     }
@@ -137,10 +138,13 @@ std::string read_mark(const fs::path& path)
 {
     switch (type_of(path)) {
         case FileType::ply:
-            return mark_of_ply(part_of(path, false));
+            return mark_of_header(part_of(path, false), "comment ", "end_header");
+        case FileType::pcd:
+            return mark_of_header(part_of(path, false), "# ", "DATA ");
         case FileType::obj:
             return mark_of_obj(part_of(path, false));
         case FileType::off:
+        case FileType::xyz:
             return std::string(off_mark(part_of(path, true)).mark);
         case FileType::gltf:
         case FileType::glb:

@@ -9,6 +9,8 @@
 ///   .ply          a comment behind the line `format`
 ///   .obj          a comment, the first line
 ///   .off          a comment, the last line: not every reader takes one in front of the counts
+///   .pcd          a comment in front of the line `FIELDS`
+///   .xyz .pts .txt .asc   likewise
 ///   .gltf .glb    the string `surfelao` in `asset.extras` (none where extras are no object)
 ///   pictures      the description (image/image_file.h: read_description)
 ///   .html         the content of <meta name="generator">, in the first line

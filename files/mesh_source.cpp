@@ -73,6 +73,18 @@ std::uint64_t place_unused(std::vector<glm::dvec3>& positions, std::uint32_t use
     return count;
 }
 
+/// Makes normals zero that are not finite; returns how many are zero then.
+std::uint64_t clear_odd_normals(std::vector<glm::vec3>& normals)
+{
+    std::uint64_t count = 0;
+    for (glm::vec3& normal : normals) {
+        if (!std::isfinite(normal.x) || !std::isfinite(normal.y) || !std::isfinite(normal.z))
+            normal = glm::vec3(0.0f);
+        count += normal == glm::vec3(0.0f) ? 1 : 0;
+    }
+    return count;
+}
+
 /// Where the only triangle of a polygon of three corners lies.
 constexpr glm::uvec3 kWhole(0, 1, 2);
 
@@ -177,6 +189,48 @@ Scene make_mesh_scene(std::string_view file_name, std::vector<glm::dvec3> positi
         source->polygons = std::move(polygons);
     scene.asset = std::move(source);
     return scene;
+}
+
+Scene make_scene_of(std::string_view file_name, std::vector<glm::dvec3> positions,
+                    Polygons polygons, std::shared_ptr<MeshSource> source, PolygonCorners given)
+{
+    if (polygons.count() > 0 || polygons.small_count > 0 || positions.empty())
+        return make_mesh_scene(file_name, std::move(positions), std::move(polygons),
+                               std::move(source), std::move(given));
+    if (positions.size() > kMostElements)
+        refuse(file_name, "has more than " + std::to_string(kMostElements) + " points");
+    Scene scene;
+    const auto first = std::ranges::find_if(positions, has_place);
+    if (first == positions.end())
+        refuse(file_name, "has no point with finite coordinates up to 1e100");
+    const glm::dvec3 stand_in = *first;
+    for (std::size_t point = 0; point < positions.size(); ++point) {
+        if (has_place(positions[point]))
+            continue;
+        positions[point] = stand_in;
+        scene.placeless.push_back(static_cast<std::uint32_t>(point));
+    }
+    add_note(scene.notes, scene.placeless.size(), "point",
+             "without a finite place: kept in the file, with occlusion 0");
+    if (given.normals.values.size() == positions.size()) {
+        scene.normals.values = std::move(given.normals.values);
+        const std::uint64_t lost = clear_odd_normals(scene.normals.values);
+        if (lost == positions.size())
+            scene.normals.values.clear();
+        else
+            add_note(scene.notes, lost, "point", "without a normal, although others have one");
+    }
+    scene.positions = std::move(positions);
+    Part part;
+    part.vertex_count = static_cast<std::uint32_t>(scene.positions.size());
+    scene.parts = {part};
+    scene.asset = std::move(source);
+    return scene;
+}
+
+std::optional<glm::dvec3> as_viewpoint(const glm::dvec3& place)
+{
+    return has_place(place) && place != glm::dvec3(0.0) ? std::optional(place) : std::nullopt;
 }
 
 const Polygons* source_polygons(const Scene& scene)

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -87,6 +88,18 @@ void add_note(std::vector<std::string>& notes, std::uint64_t count, const std::s
 [[nodiscard]] Scene make_mesh_scene(std::string_view file_name, std::vector<glm::dvec3> positions,
                                     Polygons polygons, std::shared_ptr<MeshSource> source,
                                     PolygonCorners given = {});
+
+/// The same for what may be a cloud: where there is no polygon at all, not even a small one, a
+/// scene without triangles (scene.h). Its normals are those of the vertices (zero: a vertex has
+/// none), empty where none has one. A note counts points without a place (Scene::placeless) and,
+/// where others have one, without a normal. Throws InputError where no point has a place.
+[[nodiscard]] Scene make_scene_of(std::string_view file_name, std::vector<glm::dvec3> positions,
+                                  Polygons polygons, std::shared_ptr<MeshSource> source,
+                                  PolygonCorners given = {});
+
+/// What a file gives as the place of its scanner: none where it is not finite, and none at the
+/// origin, which programs write that know no place.
+[[nodiscard]] std::optional<glm::dvec3> as_viewpoint(const glm::dvec3& place);
 
 /// Calls visit(corners) with a span of the vertex indices of each face, in the file's order: the
 /// source's polygons where it has them, else the scene's triangles.

@@ -10,17 +10,8 @@
 namespace surfelao {
 namespace {
 
-/// What stands behind the cursor on its line, without blanks at the end.
-std::string_view rest_of_line(TextCursor& cursor, std::string_view text)
-{
-    if (cursor.at_line_end())
-        return {};
-    std::string_view rest = text.substr(cursor.offset());
-    rest = rest.substr(0, rest.find_first_of("\r\n"));
-    return rest.substr(0, rest.find_last_not_of(" \t") + 1);
-}
-
-/// Materials by name, each with Kd and map_Kd; the options of a map count as words before its name.
+/// Materials by name, each with Kd, map_Kd, d (or Tr) and map_d; the options of a map count as
+/// words before its name.
 class MaterialFiles {
 public:
     explicit MaterialFiles(BaseColors& colors) : colors_(colors) {}
@@ -32,16 +23,39 @@ public:
         while (cursor.next_line()) {
             const std::string_view statement = cursor.word();
             if (statement == "newmtl") {
-                by_name_.insert_or_assign(std::string(rest_of_line(cursor, text)),
+                const std::string name(cursor.rest_of_line());
+                by_name_.insert_or_assign(name,
                                           static_cast<std::uint32_t>(colors_.materials.size()));
-                colors_.materials.emplace_back();
-            } else if (statement == "Kd" && !by_name_.empty()) {
+                colors_.materials.emplace_back().name = name;
+            } else if (by_name_.empty()) {
+                continue;
+            } else if (statement == "Kd") {
                 for (int k = 0; k < 3; ++k) {
                     const auto number = number_in(cursor.word());
                     colors_.materials.back().factor[k] = number ? linear_of(*number) : 1.0f;
                 }
-            } else if (statement == "map_Kd" && !by_name_.empty()) {
-                add_picture(path.parent_path(), rest_of_line(cursor, text));
+            } else if (statement == "map_Kd") {
+                colors_.materials.back().picture =
+                    picture_in(path.parent_path(), cursor.rest_of_line());
+            } else if (statement == "map_d") {
+                BaseColor& material = colors_.materials.back();
+                material.alpha_picture = picture_in(path.parent_path(), cursor.rest_of_line());
+                material.grey_is_alpha = true;
+                material.opacity = material.alpha_picture ? Opacity::cut : material.opacity;
+            } else if (statement == "d" || statement == "Tr") {
+                set_opacity(colors_.materials.back(), statement == "Tr", cursor);
+            }
+        }
+    }
+
+    /// Those behind `mtllib`. The materials of what cannot be read are white.
+    void read_named(const std::filesystem::path& folder, std::string_view words)
+    {
+        for (const NamedFile& named : files_named(folder, words)) {
+            try {
+                if (!named.file.empty())
+                    read(named.file);
+            } catch (const InputError&) {
             }
         }
     }
@@ -54,15 +68,30 @@ public:
     }
 
 private:
-    void add_picture(const std::filesystem::path& folder, std::string_view words)
+    /// The number of the first file there that is one.
+    std::optional<std::uint32_t> picture_in(const std::filesystem::path& folder,
+                                            std::string_view words)
     {
         for (const NamedFile& named : files_named(folder, words)) {
             if (named.file.empty())
                 continue;
-            colors_.materials.back().picture = static_cast<std::uint32_t>(colors_.pictures.size());
             colors_.pictures.push_back({named.file.filename().string(), named.file, {}});
-            return;
+            return static_cast<std::uint32_t>(colors_.pictures.size() - 1);
         }
+        return {};
+    }
+
+    /// `d OPACITY`, `d -halo OPACITY` or `Tr TRANSPARENCY`. With holes by map_d those count.
+    static void set_opacity(BaseColor& material, bool is_transparency, TextCursor& cursor)
+    {
+        std::string_view word = cursor.word();
+        if (word == "-halo")
+            word = cursor.word();
+        const auto number = number_in(word);
+        if (!number || material.opacity == Opacity::cut)
+            return;
+        const double opacity = is_transparency ? 1.0 - *number : *number;
+        material.opacity = opacity < 1.0 ? Opacity::clear : Opacity::solid;
     }
 
     BaseColors& colors_;
@@ -70,6 +99,17 @@ private:
 };
 
 }  // namespace
+
+bool ObjSource::has_openings() const
+{
+    BaseColors colors;
+    MaterialFiles files(colors);
+    for (const std::string& words : libraries)
+        files.read_named(folder, words);
+    return std::ranges::any_of(colors.materials, [](const BaseColor& material) {
+        return material.opacity != Opacity::solid;
+    });
+}
 
 BaseColors ObjSource::base_colors() const
 {
@@ -81,15 +121,9 @@ BaseColors ObjSource::base_colors() const
     while (cursor.next_line()) {
         const std::string_view statement = cursor.word();
         if (statement == "mtllib") {
-            for (const NamedFile& named : files_named(folder, rest_of_line(cursor, text))) {
-                try {
-                    if (!named.file.empty())
-                        files.read(named.file);
-                } catch (const InputError&) {  // its materials are white
-                }
-            }
+            files.read_named(folder, cursor.rest_of_line());
         } else if (statement == "usemtl") {
-            material = files.number_of(rest_of_line(cursor, text));
+            material = files.number_of(cursor.rest_of_line());
         } else if (statement == "f" || statement == "fo") {
             std::size_t corners = 0;
             for (; !cursor.at_line_end(); ++corners)

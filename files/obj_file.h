@@ -15,7 +15,8 @@ class ObjSource : public MeshSource {
 public:
     std::string text;
     std::size_t vertex_count = 0;
-    bool has_colors = false;  ///< at some vertex
+    bool has_colors = false;             ///< at some vertex
+    std::vector<std::string> libraries;  ///< what stands behind each `mtllib`
 
     struct Own {
         std::string_view text;  ///< without the comments that keep colours
@@ -27,6 +28,7 @@ public:
         return own().colors.linear();
     }
     [[nodiscard]] BaseColors base_colors() const override;  // obj_base_colors.cpp
+    [[nodiscard]] bool has_openings() const override;       // the same
 };
 
 }  // namespace surfelao

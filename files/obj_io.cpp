@@ -3,6 +3,7 @@
 #include "files/obj_file.h"
 #include "files/own_colors.h"
 #include "surfels/errors.h"
+#include "surfels/labels.h"
 
 #include <limits>
 
@@ -79,8 +80,57 @@ struct NamedValues : PolygonValues<Value> {
     }
 };
 
+/// Which faces have which names. A name holds until the next of its kind.
+class FaceNames {
+public:
+    /// `o NAME`, `usemtl NAME`: all that stands on the line.
+    void set(LabelKind kind, std::string_view name, std::size_t triangles)
+    {
+        end(of(kind), kind, triangles);
+        of(kind).names = {name};
+    }
+    /// `g NAME NAME ...`
+    void set_groups(TextCursor& cursor, std::size_t triangles)
+    {
+        end(groups_, LabelKind::group, triangles);
+        groups_.names.clear();
+        while (!cursor.at_line_end())
+            groups_.names.push_back(cursor.word());
+    }
+    std::vector<Label> finish(std::size_t triangles)
+    {
+        end(object_, LabelKind::object, triangles);
+        end(groups_, LabelKind::group, triangles);
+        end(material_, LabelKind::material, triangles);
+        return maker_.finish();
+    }
+
+private:
+    struct Current {
+        std::vector<std::string_view> names;
+        std::size_t first = 0;
+    };
+    Current& of(LabelKind kind) { return kind == LabelKind::object ? object_ : material_; }
+    void end(Current& current, LabelKind kind, std::size_t triangles)
+    {
+        for (const std::string_view name : current.names)
+            maker_.add(kind, name, static_cast<std::uint32_t>(current.first),
+                       static_cast<std::uint32_t>(triangles - current.first));
+        current.first = triangles;
+    }
+
+    Current object_, groups_, material_;
+    LabelMaker maker_;
+};
+
 class Reader {
 public:
+    /// That the faces so far are cut into.
+    [[nodiscard]] std::size_t triangle_count() const
+    {
+        return polygons.corners.size() - 2 * polygons.count();
+    }
+
     void read_face(TextCursor& cursor)
     {
         std::uint32_t size = 0;
@@ -100,7 +150,8 @@ public:
             throw InputError(file_name + ": line " + std::to_string(farthest_line_) +
                              ": the face uses vertex " + std::to_string(farthest_ + 1) +
                              ", but there are " + std::to_string(positions.size()) + " vertices");
-        normals.finish();
+        if (polygons.count() > 0)  // a cloud's are those of its points
+            normals.finish();
         uvs.finish();
     }
 
@@ -154,6 +205,7 @@ Scene read_obj(const std::string& file_name, std::string contents)
     source->folder = std::filesystem::absolute(file_name).parent_path();
     source->text = std::move(contents);
     Reader reader;
+    FaceNames names;
     TextCursor cursor(file_name, source->text, kObjRules);
     while (cursor.next_line()) {
         const std::string_view statement = cursor.word();
@@ -165,14 +217,22 @@ Scene read_obj(const std::string& file_name, std::string contents)
             reader.normals.values.push_back(read_normal(cursor));
         } else if (statement == "vt") {
             reader.uvs.values.push_back(read_uv(cursor));
+        } else if (statement == "mtllib") {
+            source->libraries.emplace_back(cursor.rest_of_line());
+        } else if (statement == "g") {
+            names.set_groups(cursor, reader.triangle_count());
+        } else if (statement == "o" || statement == "usemtl") {
+            names.set(statement == "o" ? LabelKind::object : LabelKind::material,
+                      cursor.rest_of_line(), reader.triangle_count());
         }
     }
     reader.finish(file_name);
     const std::uint64_t lost_normals = reader.normals.lost, lost_uvs = reader.uvs.lost;
     source->vertex_count = reader.positions.size();
-    Scene scene =
-        make_mesh_scene(file_name, std::move(reader.positions), std::move(reader.polygons), source,
-                        {std::move(reader.normals), std::move(reader.uvs)});
+    const std::size_t triangles = reader.triangle_count();
+    Scene scene = make_scene_of(file_name, std::move(reader.positions), std::move(reader.polygons),
+                                source, {std::move(reader.normals), std::move(reader.uvs)});
+    scene.labels = names.finish(triangles);  // at most as many as 32 bits count, by now
     add_note(scene.notes, lost_normals, "corner",
              "of faces with a normal that the file does not have: taken as without");
     add_note(scene.notes, lost_uvs, "corner",

@@ -7,8 +7,9 @@
 /// v/vt/vn, counted from 1 or backwards from the last vertex, texture coordinate or normal so far;
 /// comments, continued lines, any line ends. A face may use vertices, texture coordinates and
 /// normals that come later, and have the latter two at some corners only. Points, lines, curves,
-/// groups, materials and unknown statements are no surface and are passed over (a material file
-/// need not be there).
+/// and unknown statements are no surface and are passed over (a material file need not be there).
+/// Names behind `o`, `g` (several on a line: the faces have all of them) and `usemtl` become
+/// Scene::labels.
 ///
 /// Passed over and counted in Scene::notes: faces of fewer than three corners (unless the file ends
 /// within: it may be cut), normals and texture coordinates of corners that the file does not have,
@@ -26,8 +27,8 @@ namespace surfelao {
 
 /// file_name is what faults are reported of; contents is the file. Vertices are those of the `v`
 /// lines, in order; normals and texture coordinates (one set) those of the `vn` and `vt` lines, if
-/// a face uses any. Faults name the line, or
-/// the vertex and face, counted from 0.
+/// a face uses any. Without any face it is a cloud of points, with the normals of `vn` if there are
+/// as many as points. Faults name the line, or the vertex and face, counted from 0.
 [[nodiscard]] Scene read_obj(const std::string& file_name, std::string contents);
 
 /// The scene as OBJ with colours (vertex_colors.h), `v x y z r g b` with six decimals; `automatic`

@@ -171,8 +171,8 @@ Scene read_off(const std::string& file_name, std::string contents)
     Polygons polygons;
     for (std::uint64_t face = 0; face < header.faces; ++face)
         read_face(cursor, face, header, polygons);
-    Scene scene = make_mesh_scene(file_name, std::move(positions), std::move(polygons), source,
-                                  std::move(given));
+    Scene scene = make_scene_of(file_name, std::move(positions), std::move(polygons), source,
+                                std::move(given));
     add_note(scene.notes, header.is_glued, "space", "missing between OFF and the counts");
     return scene;
 }

@@ -6,7 +6,8 @@
 /// under ST two texture coordinates as the last, v running up, nan for a vertex without). Faces of
 /// fewer than three corners are passed over and counted in Scene::notes, as are vertices without a
 /// finite place that no face uses (mesh_source.h); a face's colour is passed over. The edge count
-/// may be missing and is not used. Homogeneous (4), n-dimensional (n) and BINARY files are refused.
+/// may be missing and is not used. Without any face it is a cloud of points. Homogeneous (4),
+/// n-dimensional (n) and BINARY files are refused.
 #pragma once
 
 #include "files/scene_io.h"

@@ -5,26 +5,13 @@
 namespace surfelao::ply {
 namespace {
 
-struct TypeName {
-    std::string_view name;
-    Type type;
-};
-constexpr TypeName kTypeNames[] = {
-    {"char", Type::int8},      {"uchar", Type::uint8},    {"short", Type::int16},
-    {"ushort", Type::uint16},  {"int", Type::int32},      {"uint", Type::uint32},
-    {"float", Type::float32},  {"double", Type::float64}, {"int8", Type::int8},
-    {"uint8", Type::uint8},    {"int16", Type::int16},    {"uint16", Type::uint16},
-    {"int32", Type::int32},    {"uint32", Type::uint32},  {"float32", Type::float32},
-    {"float64", Type::float64}};
-
 Type read_type(TextCursor& cursor)
 {
     const std::string_view word = cursor.word();
-    for (const TypeName& entry : kTypeNames) {
-        if (entry.name == word)
-            return entry.type;
-    }
-    cursor.fail(quoted(word) + " is not a type");
+    const std::optional<Type> type = type_named(word);
+    if (!type)
+        cursor.fail(quoted(word) + " is not a type");
+    return *type;
 }
 
 /// Names of what was declared so far; views into the file.
@@ -87,6 +74,17 @@ Format read_format(TextCursor& cursor)
     cursor.fail("format " + quoted(format) + " is not known");
 }
 
+/// Of a comment `viewpoint X Y Z`; none for any other.
+std::optional<glm::dvec3> read_viewpoint(TextCursor& cursor)
+{
+    if (cursor.word() != "viewpoint")
+        return std::nullopt;
+    glm::dvec3 place;
+    for (int axis = 0; axis < 3; ++axis)
+        place[axis] = number_in(cursor.word()).value_or(std::numeric_limits<double>::quiet_NaN());
+    return cursor.at_line_end() ? as_viewpoint(place) : std::nullopt;
+}
+
 /// The end of a line that stands at this byte.
 std::string newline_at(std::string_view contents, std::size_t offset)
 {
@@ -98,34 +96,15 @@ std::string newline_at(std::string_view contents, std::size_t offset)
 
 }  // namespace
 
-std::string_view name_of(Type type)
-{
-    return kTypeNames[static_cast<std::size_t>(type)].name;  // the first ones, in their order
-}
-
 std::size_t line_after(std::string_view contents, std::size_t offset)
 {
     return offset + newline_at(contents, offset).size();
-}
-
-std::string row_name(const Element& element, std::uint64_t row)
-{
-    const std::string name = surfelao::quoted(element.name);
-    return name.substr(1, name.size() - 2) + " " + std::to_string(row);
 }
 
 const Element* find_element(const Header& header, std::string_view name)
 {
     const auto found = std::ranges::find(header.elements, name, &Element::name);
     return found == header.elements.end() ? nullptr : &*found;
-}
-
-std::size_t find_scalar(const Element& element, std::string_view name)
-{
-    const auto found = std::ranges::find(element.properties, name, &Property::name);
-    if (found == element.properties.end() || found->count_type)
-        return element.properties.size();
-    return static_cast<std::size_t>(found - element.properties.begin());
 }
 
 std::size_t index_list_of(const Element& element)
@@ -153,8 +132,11 @@ Header read_header(const std::string& file_name, std::string_view contents)
         if (keyword == "end_header")
             break;
         // Blender 2.47 forgot the word "comment" before its "Created by"
-        if (keyword == "comment" || keyword == "obj_info" || keyword == "Created")
+        if (keyword == "comment" || keyword == "obj_info" || keyword == "Created") {
+            if (keyword == "comment" && !header.viewpoint)
+                header.viewpoint = read_viewpoint(cursor);
             continue;
+        }
         if (keyword == "format") {
             if (has_format)
                 cursor.fail("a second line \"format\"");

@@ -2,18 +2,11 @@
 /// numbers. Internal to ply_reader.cpp and ply_writer.cpp.
 #pragma once
 
-#include "files/mesh_source.h"
-#include "files/own_colors.h"
-#include "files/text_cursor.h"
-#include "surfels/errors.h"
+#include "files/table_rows.h"
 
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
+#include <glm/vec3.hpp>
+
 #include <cstdint>
-#include <cstring>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,35 +14,7 @@
 
 namespace surfelao::ply {
 
-enum class Type : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
-
-/// Bytes in a binary file.
-inline std::size_t size_of(Type type)
-{
-    constexpr std::size_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-    return kSizes[static_cast<std::size_t>(type)];
-}
-
-inline bool is_integer(Type type)
-{
-    return type != Type::float32 && type != Type::float64;
-}
-
-struct Property {
-    std::string name;
-    std::optional<Type> count_type;  ///< of a list
-    Type type = Type::int8;
-    bool is_second = false;  ///< the element has another of this name, which comes first
-};
-
-struct Element {
-    std::string name;
-    std::uint64_t count = 0;
-    std::vector<Property> properties;
-    std::size_t lines_end = 0;  ///< byte behind the last header line of this element
-};
-
-enum class Format : std::uint8_t { ascii, little_endian, big_endian };
+using namespace table;
 
 struct Header {
     Format format = Format::ascii;
@@ -57,6 +22,9 @@ struct Header {
     std::size_t data_begin = 0;    ///< first byte behind the header
     std::uint64_t line_count = 0;  ///< lines of the header
     std::string newline;
+    std::optional<glm::dvec3> viewpoint;  ///< of a comment `viewpoint X Y Z`
+
+    [[nodiscard]] RowForm form() const { return {format, line_count + 1, {}}; }
 };
 
 /// Throws InputError with the line for anything that is no PLY header.
@@ -65,44 +33,14 @@ struct Header {
 /// Null when there is none.
 [[nodiscard]] const Element* find_element(const Header& header, std::string_view name);
 
-/// Which property of the element is the scalar of this name; none: past the last.
-[[nodiscard]] std::size_t find_scalar(const Element& element, std::string_view name);
-
 /// Which property of the element is the list of vertex indices; none: past the last.
 [[nodiscard]] std::size_t index_list_of(const Element& element);
 
 /// The byte behind the end of a line (LF, CRLF or CR) that stands at `offset`.
 [[nodiscard]] std::size_t line_after(std::string_view contents, std::size_t offset);
 
-/// "face 12", also for names that are too long or too strange for a sentence.
-[[nodiscard]] std::string row_name(const Element& element, std::uint64_t row);
-
-/// red, green, blue among the properties of the vertex.
-using Channels = std::array<std::size_t, 3>;
-
-/// Where the colours of the vertices stand.
-///
-/// A result has the visibility behind its other properties (`bent_nz red green blue`) where its
-/// source had no colours; else in their place, and the source's behind its own properties
-/// (`bent_nz own_red own_green own_blue`). So the order tells whose they are.
-struct ColorPlaces {
-    /// Scalars `red green blue`, also `diffuse_red ...`, `r ...`, `diffuse_r ...`. None where a
-    /// result made them of nothing.
-    std::optional<Channels> shown;
-    /// The file's own: those that are shown, or `own_red own_green own_blue` of the same types.
-    std::optional<Channels> own;
-    std::optional<std::size_t> alpha;  ///< if there are any
-};
-[[nodiscard]] ColorPlaces color_places(const Element& vertices);
-
-/// What white is for numbers of this type. largest: of the file's numbers.
-[[nodiscard]] double white_of(Type type, double largest);
-
-/// "uchar"
-[[nodiscard]] std::string_view name_of(Type type);
-
 /// The file itself, for the writer.
-class PlySource : public MeshSource {
+class PlySource : public RowSource {
 public:
     std::string contents;
     Header header;
@@ -115,207 +53,20 @@ public:
     {
         return std::string_view(contents).substr(header.data_begin);
     }
-    [[nodiscard]] std::string_view vertex_rows() const
+    [[nodiscard]] const Element& vertices() const override
+    {
+        return *find_element(header, "vertex");
+    }
+    [[nodiscard]] std::string_view vertex_rows() const override
     {
         return data().substr(vertices_begin, vertices_end - vertices_begin);
     }
+    [[nodiscard]] RowForm form() const override { return header.form(); }
 
     [[nodiscard]] std::string_view face_rows() const
     {
         return data().substr(faces_begin, faces_end - faces_begin);
     }
-
-    struct Own {
-        std::vector<glm::vec4> colors;  ///< own_colors()
-        double largest = 0.0;           ///< of the numbers in the file
-    };
-    [[nodiscard]] Own own() const;
-    [[nodiscard]] std::vector<glm::vec4> own_colors() const override { return own().colors; }
 };
-
-/// Rows of numbers in an ascii file: one row, one line.
-class AsciiData {
-public:
-    /// rows: from the beginning of some row on; lines are counted from the end of the header.
-    AsciiData(const std::string& file_name, std::string_view rows, const Header& header)
-        : cursor_(file_name, rows, {}, header.line_count + 1)
-    {
-    }
-
-    /// The fewest bytes that one row takes.
-    static std::size_t least_bytes(const Element& element) { return 2 * element.properties.size(); }
-
-    void begin_row(const Element& element, std::uint64_t row)
-    {
-        element_ = &element;
-        row_ = row;
-        if (!cursor_.next_line())
-            fail("of " + std::to_string(element.count) + " is missing: the file ends");
-    }
-    void end_row()
-    {
-        if (!cursor_.at_line_end())
-            fail("has more numbers than the header says");
-    }
-    /// May be infinite or nan.
-    double any_number(Type)
-    {
-        demand_word();
-        return cursor_.any_number({});
-    }
-    std::int64_t integer(Type)
-    {
-        demand_word();
-        return cursor_.integer({});
-    }
-    /// nan for what is no number.
-    double loose_number(Type)
-    {
-        demand_word();
-        return number_in(cursor_.word()).value_or(std::numeric_limits<double>::quiet_NaN());
-    }
-    void skip(Type, std::uint64_t count)
-    {
-        for (; count > 0; --count) {
-            demand_word();
-            cursor_.word();
-        }
-    }
-    [[nodiscard]] std::size_t remaining() const { return cursor_.remaining(); }
-    [[nodiscard]] std::size_t offset() const { return cursor_.offset(); }
-    [[noreturn]] void fail(const std::string& fault) const
-    {
-        cursor_.fail(row_name(*element_, row_) + " " + fault);
-    }
-
-private:
-    void demand_word()
-    {
-        if (cursor_.at_line_end())
-            fail("has fewer numbers than the header says");
-    }
-
-    TextCursor cursor_;
-    const Element* element_ = nullptr;
-    std::uint64_t row_ = 0;
-};
-
-/// Rows of numbers in a binary file.
-class BinaryData {
-public:
-    BinaryData(const std::string& file_name, std::string_view rows, const Header& header)
-        : file_name_(file_name),
-          rows_(rows),
-          swapped_((header.format == Format::big_endian) !=
-                   (std::endian::native == std::endian::big))
-    {
-    }
-
-    static std::size_t least_bytes(const Element& element)
-    {
-        std::size_t bytes = 0;
-        for (const Property& property : element.properties)
-            bytes += size_of(property.count_type.value_or(property.type));
-        return bytes;
-    }
-
-    void begin_row(const Element& element, std::uint64_t row)
-    {
-        element_ = &element;
-        row_ = row;
-    }
-    void end_row() {}
-    /// May be infinite or nan.
-    double any_number(Type type)
-    {
-        switch (type) {
-            case Type::float32:
-                return std::bit_cast<float>(take<std::uint32_t>());
-            case Type::float64:
-                return std::bit_cast<double>(take<std::uint64_t>());
-            default:
-                return static_cast<double>(integer(type));
-        }
-    }
-    double loose_number(Type type) { return any_number(type); }
-    std::int64_t integer(Type type)
-    {
-        switch (type) {
-            case Type::int8:
-                return static_cast<std::int8_t>(take<std::uint8_t>());
-            case Type::uint8:
-                return take<std::uint8_t>();
-            case Type::int16:
-                return static_cast<std::int16_t>(take<std::uint16_t>());
-            case Type::uint16:
-                return take<std::uint16_t>();
-            case Type::int32:
-                return static_cast<std::int32_t>(take<std::uint32_t>());
-            default:
-                return take<std::uint32_t>();
-        }
-    }
-    void skip(Type type, std::uint64_t count)
-    {
-        if (count > remaining() / size_of(type))
-            fail_at_end();
-        offset_ += count * size_of(type);
-    }
-    [[nodiscard]] std::size_t remaining() const { return rows_.size() - offset_; }
-    [[nodiscard]] std::size_t offset() const { return offset_; }
-    [[noreturn]] void fail(const std::string& fault) const
-    {
-        throw InputError(file_name_ + ": " + row_name(*element_, row_) + " " + fault);
-    }
-
-private:
-    template <class Unsigned>
-    Unsigned take()
-    {
-        if (remaining() < sizeof(Unsigned))
-            fail_at_end();
-        unsigned char bytes[sizeof(Unsigned)];
-        std::memcpy(bytes, rows_.data() + offset_, sizeof(Unsigned));
-        if (swapped_)
-            std::reverse(bytes, bytes + sizeof(Unsigned));
-        offset_ += sizeof(Unsigned);
-        Unsigned value = 0;
-        std::memcpy(&value, bytes, sizeof(Unsigned));
-        return value;
-    }
-    [[noreturn]] void fail_at_end() const
-    {
-        fail("of " + std::to_string(element_->count) + " is cut: the file ends");
-    }
-
-    const std::string& file_name_;
-    std::string_view rows_;
-    std::size_t offset_ = 0;
-    bool swapped_;
-    const Element* element_ = nullptr;
-    std::uint64_t row_ = 0;
-};
-
-/// The length of a list.
-template <class Data>
-std::uint64_t read_length(Data& data, const Property& property)
-{
-    const std::int64_t length = data.integer(*property.count_type);
-    if (length < 0)
-        data.fail("has a list of negative length " + std::to_string(length));
-    // a list cannot be longer than what is left of the file
-    if (static_cast<std::uint64_t>(length) > data.remaining())
-        data.fail("has a list of length " + std::to_string(length) + ", but the file ends");
-    return static_cast<std::uint64_t>(length);
-}
-
-template <class Data>
-void skip_property(Data& data, const Property& property)
-{
-    std::uint64_t count = 1;
-    if (property.count_type)
-        count = read_length(data, property);
-    data.skip(property.type, count);
-}
 
 }  // namespace surfelao::ply

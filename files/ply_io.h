@@ -12,6 +12,10 @@
 /// Blender 2.47 wrote it so. Faces of fewer than three corners are passed over and counted in
 /// Scene::notes, as are vertices without a finite place that no face uses (mesh_source.h) and lists
 /// `texcoord` of another length.
+///
+/// Without any face it is a cloud of points, and Scene::viewpoint is what a comment `viewpoint X Y
+/// Z` says, or else view_px, view_py, view_pz of the first row of element `camera` (MeshLab, PCL);
+/// 0 0 0 is none.
 #pragma once
 
 #include "files/scene_io.h"
@@ -42,7 +46,8 @@ namespace surfelao {
 /// is above 2) keep their place and their type; where others are shown there, they stand last, as
 /// `own_red own_green own_blue`. Alpha is left alone. A file without any gets `uchar red green
 /// blue`. Seen from the folder of `path`, comments `TextureFile` name the same files as before.
-/// Any other scene gives binary_little_endian with the polygons of its source and its colours.
+/// Any other scene gives binary_little_endian with the polygons of its source and its colours; a
+/// cloud with its normals, all single numbers that a point has in its source, and its viewpoint.
 /// Coordinates are float, or double where rounding to float would move some vertex by more than
 /// kFloatSlack of the bounding box's diagonal (small things far from the origin).
 /// options.mark: a comment behind the line `format`, in the place of an older one (maker_mark.h).

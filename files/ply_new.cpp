@@ -4,9 +4,6 @@
 #include "files/ply_text.h"
 #include "surfels/number_text.h"
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -49,19 +46,15 @@ NewFaces new_faces(const Scene& scene, Type length_type, const PlyTexture* textu
     return faces;
 }
 
-/// Whether rounding to float would move some vertex by a visible share of the scene.
-bool needs_double(const std::vector<glm::dvec3>& positions)
+/// As it is read again (ply_io.h).
+void append_viewpoint_line(std::string& text, const Scene& scene)
 {
-    glm::dvec3 low = positions[0];
-    glm::dvec3 high = positions[0];
-    double largest_shift = 0.0;
-    for (const glm::dvec3& p : positions) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-        const glm::dvec3 shift = glm::abs(p - glm::dvec3(glm::vec3(p)));
-        largest_shift = std::max({largest_shift, shift.x, shift.y, shift.z});
-    }
-    return !(largest_shift <= kFloatSlack * glm::distance(low, high));
+    if (!scene.viewpoint)
+        return;
+    text += "comment viewpoint";
+    for (int axis = 0; axis < 3; ++axis)
+        append_shortest(text += ' ', (*scene.viewpoint)[axis]);
+    text += '\n';
 }
 
 }  // namespace
@@ -78,32 +71,32 @@ std::string new_ply(const Scene& scene, const PlyValues& values, std::string_vie
     append_mark_line(text, mark, "\n");
     if (texture)
         append_texture_line(text, texture->name, "\n");
+    append_viewpoint_line(text, scene);
     text += "element vertex ";
     append_integer(text, static_cast<std::int64_t>(scene.positions.size()));
     text += '\n';
     for (const char* axis : {"x\n", "y\n", "z\n"})
         text.append(wide ? "property double " : "property float ").append(axis);
     append_property_lines(text, values.properties, "\n");
-    text += "element face ";
-    append_integer(text, static_cast<std::int64_t>(faces.count));
-    text.append("\nproperty list ")
-        .append(name_of(length_type))
-        .append(many ? " uint" : " int")
-        .append(" vertex_indices\n");
+    if (!scene.triangles.empty()) {
+        text += "element face ";
+        append_integer(text, static_cast<std::int64_t>(faces.count));
+        text.append("\nproperty list ")
+            .append(name_of(length_type))
+            .append(many ? " uint" : " int")
+            .append(" vertex_indices\n");
+    }
     if (texture)
         text.append("property ").append(kPlacesProperty).append("\n");
     text += "end_header\n";
 
     // of the values 19 bytes: what a bake has at a vertex
     text.reserve(text.size() + scene.positions.size() * (wide ? 43 : 31) + faces.bytes.size());
+    FilePlaces places(scene);
     for (std::size_t v = 0; v < scene.positions.size(); ++v) {
-        for (int axis = 0; axis < 3; ++axis) {
-            const double value = scene.positions[v][axis];
-            if (wide)
-                append_bytes(text, value);
-            else
-                append_bytes(text, static_cast<float>(value));
-        }
+        const glm::dvec3 place = places.next();
+        for (int axis = 0; axis < 3; ++axis)
+            append_channel(text, wide ? Type::float64 : Type::float32, place[axis], {});
         values.append(text, v);
     }
     return text += faces.bytes;

@@ -41,7 +41,9 @@ template <class Data>
 class Reader {
 public:
     Reader(const std::string& file_name, PlySource& source)
-        : file_name_(file_name), source_(source), data_(file_name, source.data(), source.header)
+        : file_name_(file_name),
+          source_(source),
+          data_(file_name, source.data(), source.header.form())
     {
         const Element* vertices = find_element(source.header, "vertex");
         if (!vertices)
@@ -59,6 +61,8 @@ public:
                 read_faces(element);
             else if (element.name == "tristrips" && element.count > 0)
                 read_strips(element);
+            else if (element.name == "camera" && !element.properties.empty())
+                read_camera(element);
             else
                 skip_rows(element);
         }
@@ -72,15 +76,10 @@ public:
     std::vector<glm::dvec3> positions;
     PolygonCorners given;
     Polygons polygons;
+    std::optional<glm::dvec3> camera;
     std::uint64_t odd_uv_lists = 0;  ///< whose numbers are not two for each corner, nor none
 
 private:
-    /// What a property of a vertex is: all axes of a kind are there, or none.
-    struct Role {
-        enum { none, position, normal, uv } kind = none;
-        int axis = 0;
-    };
-
     /// Refuses a count for which the file is too short before anything of that size is reserved.
     void check_size(const Element& element) const
     {
@@ -93,74 +92,34 @@ private:
         }
     }
 
-    /// The roles of the vertex' properties.
-    std::vector<Role> roles_of(const Element& element) const
-    {
-        const std::size_t count = element.properties.size();
-        std::vector<Role> roles(count);
-        constexpr std::string_view kAxes[] = {"x", "y", "z"};
-        for (int axis = 0; axis < 3; ++axis) {
-            const std::size_t property = find_scalar(element, kAxes[axis]);
-            if (property == count) {
-                throw InputError(file_name_ + ": element \"vertex\" has no scalar property " +
-                                 quoted(kAxes[axis]));
-            }
-            roles[property] = {Role::position, axis};
-        }
-        const std::size_t normal[] = {find_scalar(element, "nx"), find_scalar(element, "ny"),
-                                      find_scalar(element, "nz")};
-        if (std::ranges::find(normal, count) == std::end(normal)) {
-            for (int axis = 0; axis < 3; ++axis)
-                roles[normal[axis]] = {Role::normal, axis};
-        }
-        constexpr std::string_view kUvNames[][2] = {
-            {"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
-        for (const auto& names : kUvNames) {
-            const std::size_t uv[] = {find_scalar(element, names[0]),
-                                      find_scalar(element, names[1])};
-            if (uv[0] == count || uv[1] == count)
-                continue;
-            for (int axis = 0; axis < 2; ++axis)
-                roles[uv[axis]] = {Role::uv, axis};
-            break;
-        }
-        return roles;
-    }
-
     void read_vertices(const Element& element)
     {
-        const std::vector<Role> roles = roles_of(element);
+        const std::vector<Role> roles = roles_of(file_name_, element);
         source_.vertices_begin = data_.offset();
-        positions.resize(element.count);
-        if (std::ranges::find(roles, Role::normal, &Role::kind) != roles.end())
-            given.normals.values.resize(element.count);
-        if (std::ranges::find(roles, Role::uv, &Role::kind) != roles.end())
-            given.uvs.values.resize(element.count);
+        VertexValues values = table::read_vertices(data_, element, roles);
+        source_.vertices_end = data_.offset();
+        positions = std::move(values.positions);
+        given.normals.values = std::move(values.normals);
+        given.uvs.values = std::move(values.uvs);
+    }
+
+    /// Where the first camera stood, as MeshLab and PCL write it.
+    void read_camera(const Element& element)
+    {
+        constexpr std::string_view kPlace[] = {"view_px", "view_py", "view_pz"};
+        glm::dvec3 place(std::numeric_limits<double>::quiet_NaN());
         for (std::uint64_t row = 0; row < element.count; ++row) {
             data_.begin_row(element, row);
-            for (std::size_t p = 0; p < roles.size(); ++p) {
-                const Property& property = element.properties[p];
-                const auto [kind, axis] = roles[p];
-                if (kind == Role::position)
-                    positions[row][axis] = data_.any_number(property.type);
-                else if (kind == Role::normal)
-                    given.normals.values[row][axis] =
-                        static_cast<float>(data_.any_number(property.type));
-                else if (kind == Role::uv)
-                    given.uvs.values[row][axis] = uv_number(property.type, axis);
+            for (const Property& property : element.properties) {
+                const auto axis = std::ranges::find(kPlace, property.name) - kPlace;
+                if (row == 0 && axis < 3 && !property.count_type)
+                    place[static_cast<int>(axis)] = data_.loose_number(property.type);
                 else
                     skip_property(data_, property);
             }
             data_.end_row();
         }
-        source_.vertices_end = data_.offset();
-    }
-
-    /// As UvSet has it: in the file v runs up. What is no number is nan.
-    double uv_number(Type type, int axis)
-    {
-        const double number = data_.loose_number(type);
-        return axis == 0 ? number : 1.0 - number;
+        camera = as_viewpoint(place);
     }
 
     /// Calls read(p, length) for the lists p that it is asked of with is_read(p).
@@ -212,7 +171,7 @@ private:
             const int axis = static_cast<int>(i % 2);
             if (axis == 0)
                 uvs.emplace_back(0.0);
-            uvs.back()[axis] = uv_number(type, axis);
+            uvs.back()[axis] = uv_number(data_.loose_number(type), axis);
         }
     }
 
@@ -233,6 +192,8 @@ private:
             read_row(
                 element, row, [&](std::size_t p) { return p == list; },
                 [&](std::size_t, std::uint64_t length) { read_strip_list(length); });
+        if (polygons.corners.empty())  // no cloud, but a mesh of nothing
+            ++polygons.small_count;
     }
 
     std::uint32_t checked(std::int64_t index) const
@@ -297,8 +258,10 @@ Scene read_with(const std::string& file_name, std::shared_ptr<PlySource> source)
 {
     Reader<Data> reader(file_name, *source);
     reader.run();
-    Scene scene = make_mesh_scene(file_name, std::move(reader.positions),
-                                  std::move(reader.polygons), source, std::move(reader.given));
+    Scene scene = make_scene_of(file_name, std::move(reader.positions), std::move(reader.polygons),
+                                source, std::move(reader.given));
+    if (scene.triangles.empty())
+        scene.viewpoint = source->header.viewpoint ? source->header.viewpoint : reader.camera;
     add_note(scene.notes, reader.odd_uv_lists, "face",
              "with a list texcoord that has not two numbers for each corner: taken as without");
     for (const Element& element : source->header.elements)

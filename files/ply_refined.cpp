@@ -34,12 +34,12 @@ public:
     PlyVertices(const PlySource& source, const Element& vertices)
         : header_(source.header),
           vertices_(vertices),
-          notation_(notation_of(header_)),
+          notation_(notation_of(header_.form())),
           place_(triple_of(vertices, {"x", "y", "z"})),
           normal_(triple_of(vertices, {"nx", "ny", "nz"})),
           text_(source.vertex_rows())
     {
-        Data data(no_name_, text_, header_);
+        Data data(no_name_, text_, header_.form());
         for (std::uint64_t row = 0; row < vertices_.count; ++row) {
             data.begin_row(vertices_, row);
             begins_.push_back(data.offset());
@@ -65,7 +65,7 @@ private:
     std::vector<Cell> read(std::uint32_t row) const
     {
         const std::string_view text = std::string_view(text_).substr(begins_[row]);
-        Data data(no_name_, text, header_);
+        Data data(no_name_, text, header_.form());
         data.begin_row(vertices_, row);
         std::vector<Cell> cells;
         for (const Property& property : vertices_.properties) {
@@ -135,9 +135,9 @@ public:
           faces_(*find_element(source.header, "face")),
           scene_(scene),
           refinement_(refinement),
-          notation_(notation_of(source.header)),
+          notation_(notation_of(source.form())),
           refined_(scene, refinement),
-          data_(no_name_, source.face_rows(), source.header)
+          data_(no_name_, source.face_rows(), source.form())
     {
         for (places_ = 0; places_ < faces_.properties.size(); ++places_) {
             if (faces_.properties[places_].name == "texcoord" &&

@@ -1,12 +1,29 @@
 #include "files/ply_text.h"
 
-#include "files/ply_io.h"
 #include "files/sidecars.h"
-#include "surfels/number_text.h"
 
-#include <cmath>
+#include <algorithm>
 
 namespace surfelao::ply {
+
+void append_property_lines(std::string& text, std::span<const std::string> properties,
+                           std::string_view newline)
+{
+    for (const std::string& property : properties)
+        text.append("property ").append(property).append(newline);
+}
+
+std::vector<std::string> property_words(std::span<const Column> columns)
+{
+    std::vector<std::string> words;
+    for (const Column& column : columns) {
+        words.push_back(std::string(name_of(column.type)) + " " + column.name);
+        std::ranges::replace(
+            words.back().begin() + static_cast<std::ptrdiff_t>(name_of(column.type).size()) + 1,
+            words.back().end(), ' ', '_');
+    }
+    return words;
+}
 
 void append_mark_line(std::string& text, std::string_view mark, std::string_view newline)
 {
@@ -18,38 +35,6 @@ void append_texture_line(std::string& text, std::string_view texture, std::strin
 {
     if (!texture.empty())
         text.append("comment ").append(kTextureKeyword).append(" ").append(texture).append(newline);
-}
-
-Notation notation_of(const Header& header)
-{
-    return {header.format == Format::ascii,
-            header.format == Format::big_endian ? std::endian::big : std::endian::little};
-}
-
-void append_channel(std::string& text, Type type, double value, Notation notation)
-{
-    const std::int64_t whole = std::llround(value);
-    if (notation.ascii) {
-        if (is_integer(type))
-            append_integer(text, whole);
-        else
-            append_shortest(text, static_cast<float>(value));
-    } else if (type == Type::float32) {
-        append_bytes(text, static_cast<float>(value), notation.endian);
-    } else if (type == Type::float64) {
-        append_bytes(text, value, notation.endian);
-    } else if (size_of(type) == 1) {
-        append_bytes(text, static_cast<std::uint8_t>(whole), notation.endian);
-    } else if (size_of(type) == 2) {
-        append_bytes(text, static_cast<std::uint16_t>(whole), notation.endian);
-    } else {
-        append_bytes(text, static_cast<std::uint32_t>(whole), notation.endian);
-    }
-}
-
-void append_number(std::string& text, Type type, double value, Notation notation)
-{
-    append_channel(notation.ascii ? text += ' ' : text, type, value, notation);
 }
 
 void append_places(std::string& text, const UvSet& uvs, std::span<const std::uint32_t> places,

@@ -23,76 +23,6 @@ namespace {
 
 using namespace ply;
 
-constexpr std::string_view kMeasured[] = {"float occlusion", "float bent_nx", "float bent_ny",
-                                          "float bent_nz"};
-constexpr std::string_view kColor[] = {"red", "green", "blue"};
-constexpr std::string_view kOwnColor[] = {"own_red", "own_green", "own_blue"};
-
-void append_measured(std::string& text, const Occlusion& o, Notation notation)
-{
-    for (const float value : {o.occlusion, o.bent_normal.x, o.bent_normal.y, o.bent_normal.z}) {
-        if (notation.ascii)
-            append_shortest(text += ' ', value);
-        else
-            append_bytes(text, value, notation.endian);
-    }
-}
-
-void append_color_bytes(std::string& text, const glm::vec3& numbers, Notation notation)
-{
-    for (int channel = 0; channel < 3; ++channel) {
-        if (notation.ascii)
-            text += ' ';
-        append_channel(text, Type::uint8, byte_of(numbers[channel]), notation);
-    }
-}
-
-bool names(std::span<const std::string_view> properties, std::string_view name)
-{
-    return std::ranges::any_of(properties, [&](std::string_view property) {
-        return property.substr(property.find(' ') + 1) == name;  // npos + 1 is 0
-    });
-}
-
-/// What becomes of a file's vertices.
-struct VertexChanges {
-    ColorPlaces places;
-    ColorPlan plan;
-    double largest = 0.0;                          ///< of the numbers of the file's colours
-    std::vector<std::string> new_properties = {};  ///< behind the others: "float occlusion"
-
-    /// An earlier result's, or in the way of one of ours.
-    [[nodiscard]] bool drops(std::string_view property) const
-    {
-        return names(kMeasured, property) || names(kOwnColor, property) ||
-               (!places.shown && names(kColor, property));
-    }
-};
-
-VertexChanges changes_of(const PlySource& source, const WriteOptions& options, bool is_measured,
-                         std::vector<std::string>& notes)
-{
-    const Element& vertices = *find_element(source.header, "vertex");
-    PlySource::Own own = source.own();
-    VertexChanges changes{
-        color_places(vertices),
-        plan_colors(options, std::move(own.colors), OcclusionPlace::beside, notes), own.largest};
-    if (is_measured)
-        changes.new_properties.assign(std::begin(kMeasured), std::end(kMeasured));
-    for (std::size_t c = 0; c < 3; ++c) {
-        std::string line;
-        if (changes.plan.replaces())
-            line.append(name_of(vertices.properties[(*changes.places.own)[c]].type))
-                .append(" ")
-                .append(kOwnColor[c]);
-        else if (!changes.plan.has_own() && changes.plan.writes())
-            line.append("uchar ").append(kColor[c]);
-        if (!line.empty())
-            changes.new_properties.push_back(std::move(line));
-    }
-    return changes;
-}
-
 /// What becomes of a file's faces.
 struct FaceChanges {
     std::string texture;         ///< the name of a picture; empty: there is none
@@ -115,7 +45,7 @@ public:
                  std::filesystem::path folder)
         : source_(source), changes_(changes), faces_(faces), folder_(std::move(folder))
     {
-        insert(*find_element(source.header, "vertex"), changes.new_properties);
+        insert(*find_element(source.header, "vertex"), property_words(changes.added));
         if (faces.uvs)
             insert(*find_element(source.header, "face"), faces.new_properties);
         std::ranges::sort(inserts_, {}, &Insert::at);
@@ -216,74 +146,6 @@ private:
     std::vector<Insert> inserts_;
 };
 
-/// The number itself, without the blanks that stand before it in an ascii file.
-std::string_view word_of(std::string_view property, Notation notation)
-{
-    if (notation.ascii)
-        property.remove_prefix(std::min(property.find_first_not_of(" \t\v\f"), property.size()));
-    return property;
-}
-
-/// Appends the rows of the vertices with what changes. occlusion: empty for a map.
-template <class Data>
-void append_vertex_rows(std::string& text, const PlySource& source,
-                        std::span<const Occlusion> occlusion, const VertexChanges& changes)
-{
-    const Element& vertices = *find_element(source.header, "vertex");
-    const std::vector<Property>& properties = vertices.properties;
-    const Notation notation = notation_of(source.header);
-    const ColorPlan& plan = changes.plan;
-    constexpr int kStays = -1, kGoes = -2;
-    std::vector<int> fates(properties.size(), kStays);  // or a channel of the colour
-    for (std::size_t p = 0; p < fates.size(); ++p)
-        fates[p] = changes.drops(properties[p].name) ? kGoes : kStays;
-    for (int c = 0; c < 3 && changes.places.shown; ++c)
-        fates[(*changes.places.shown)[static_cast<std::size_t>(c)]] = c;
-    std::vector<std::string_view> old(properties.size());
-    const auto own_word = [&](std::size_t c) {
-        return word_of(old[(*changes.places.own)[c]], notation);
-    };
-
-    const std::string_view rows = source.vertex_rows();
-    const std::string no_name;
-    Data data(no_name, rows, source.header);
-    std::size_t row_end = 0;
-    for (std::uint64_t row = 0; row < vertices.count; ++row) {
-        data.begin_row(vertices, row);
-        text.append(rows.substr(row_end, data.offset() - row_end));
-        for (std::size_t p = 0; p < old.size(); ++p) {
-            const std::size_t begin = data.offset();
-            skip_property(data, properties[p]);
-            old[p] = rows.substr(begin, data.offset() - begin);
-        }
-        row_end = data.offset();
-        glm::vec3 numbers(0.0f);
-        if (plan.what != VertexColors::keep)
-            numbers = plan.numbers(row, occlusion[row]);
-        for (std::size_t p = 0; p < old.size(); ++p) {
-            if (fates[p] == kStays)
-                text.append(old[p]);
-            if (fates[p] < 0)
-                continue;
-            const std::string_view word = word_of(old[p], notation);
-            text.append(old[p].substr(0, old[p].size() - word.size()));
-            const Type type = properties[p].type;
-            if (plan.what == VertexColors::keep)
-                text.append(own_word(static_cast<std::size_t>(fates[p])));
-            else
-                append_channel(text, type, numbers[fates[p]] * white_of(type, changes.largest),
-                               notation);
-        }
-        if (!occlusion.empty())
-            append_measured(text, occlusion[row], notation);
-        if (!plan.has_own() && plan.writes())
-            append_color_bytes(text, numbers, notation);
-        for (std::size_t c = 0; c < 3 && plan.replaces(); ++c)
-            text.append(notation.ascii ? " " : "").append(own_word(c));
-    }
-    text.append(rows.substr(row_end));
-}
-
 /// The rows of the faces with places in a map; counts them.
 template <class Data>
 class FaceRows {
@@ -292,9 +154,9 @@ public:
         : source_(source),
           faces_(*find_element(source.header, "face")),
           uvs_(uvs),
-          notation_(notation_of(source.header)),
+          notation_(notation_of(source.form())),
           places_(scene, uvs, FaceShape::triangles),
-          data_(no_name_, source.face_rows(), source.header)
+          data_(no_name_, source.face_rows(), source.form())
     {
     }
 
@@ -386,11 +248,8 @@ WrittenFile spliced(const PlySource& source, const Scene& scene,
     };
     WrittenFile written;
     const VertexChanges changes = changes_of(source, options, !occlusion.empty(), written.notes);
-    std::vector<Piece> pieces{{source.vertices_begin, source.vertices_end, {}}};
-    const bool ascii = source.header.format == Format::ascii;
-    pieces[0].text.reserve(source.vertices_end - source.vertices_begin +
-                           occlusion.size() * (ascii ? 60 : 19));
-    append_vertex_rows<Data>(pieces[0].text, source, occlusion, changes);
+    std::vector<Piece> pieces{
+        {source.vertices_begin, source.vertices_end, changed_rows(source, occlusion, changes)}};
     if (faces.uvs) {
         faces.new_properties = {kPlacesProperty};
         pieces.push_back({source.faces_begin, source.faces_end,
@@ -431,33 +290,9 @@ WrittenFile ply_contents(const std::filesystem::path& path, const Scene& scene,
     if (const auto* source = dynamic_cast<const PlySource*>(scene.asset.get()))
         return spliced(*source, scene, occlusion, {}, options, path.parent_path());
     WrittenFile written;
-    const ColorPlan plan =
-        plan_colors(options, own_colors_of(scene), OcclusionPlace::beside, written.notes);
-    const auto shown = [&](std::size_t v) {
-        return plan.what == VertexColors::keep ? numbers_of(plan.own[v])
-                                               : plan.numbers(v, occlusion[v]);
-    };
-    PlyValues values;
-    const auto add_color = [&](std::span<const std::string_view> names) {
-        for (const std::string_view name : names)
-            values.properties.push_back("uchar " + std::string(name));
-    };
-    if (plan.has_own())
-        add_color(kColor);
-    values.properties.insert(values.properties.end(), std::begin(kMeasured), std::end(kMeasured));
-    if (plan.replaces())
-        add_color(kOwnColor);
-    else if (!plan.has_own() && plan.writes())
-        add_color(kColor);
-    values.append = [&](std::string& row, std::size_t v) {
-        if (plan.has_own())
-            append_color_bytes(row, shown(v), {});
-        append_measured(row, occlusion[v], {});
-        if (plan.replaces())
-            append_color_bytes(row, numbers_of(plan.own[v]), {});
-        else if (!plan.has_own() && plan.writes())
-            append_color_bytes(row, shown(v), {});
-    };
+    const NewRows rows(scene, occlusion, options, ColorForm::apart, written.notes);
+    const PlyValues values{property_words(rows.columns()),
+                           [&](std::string& row, std::size_t v) { rows.append(row, v, {}); }};
     written.contents = new_ply(scene, values, options.mark);
     return written;
 }
@@ -491,14 +326,16 @@ WrittenFile ply_contents_with_map(const std::filesystem::path& path, const Scene
     WrittenFile written;
     if (source)
         written.notes.push_back("strips become faces, and only coordinates and colours are kept");
+    constexpr const char* kColor[] = {"red", "green", "blue"};
     const ColorPlan plan =
         plan_colors(keeping, own_colors_of(scene), OcclusionPlace::beside, written.notes);
     PlyValues values;
     for (std::size_t c = 0; c < 3 && plan.has_own(); ++c)
-        values.properties.push_back("uchar " + std::string(kColor[c]));
+        values.properties.push_back(std::string("uchar ") + kColor[c]);
     values.append = [&](std::string& row, std::size_t v) {
-        if (plan.has_own())
-            append_color_bytes(row, numbers_of(plan.own[v]), {});
+        const glm::vec3 numbers = plan.has_own() ? numbers_of(plan.own[v]) : glm::vec3(0.0f);
+        for (int c = 0; c < 3 && plan.has_own(); ++c)
+            append_number(row, Type::uint8, byte_of(numbers[c]), {});
     };
     const PlyTexture texture{picture, map.uvs ? *map.uvs : scene.uvs[map.uv_set]};
     written.contents = new_ply(scene, values, options.mark, PlyCoordinates::near_enough, &texture);

@@ -8,8 +8,10 @@
 #include "files/obj_io.h"
 #include "files/obj_materials.h"
 #include "files/off_io.h"
+#include "files/pcd_io.h"
 #include "files/ply_io.h"
 #include "files/stl_io.h"
+#include "files/xyz_io.h"
 #include "surfels/atomic_file.h"
 #include "surfels/errors.h"
 
@@ -30,10 +32,16 @@ std::string unknown_type(const fs::path& path, const std::string& known)
            " is not known, only " + known;
 }
 
-Scene read_any(const fs::path& path)
+Scene read_any(const fs::path& path, const ReadOptions& options)
 {
     const std::string name = path.string();
+    require(options.columns.empty() || type_of(path) == FileType::xyz,
+            name + ": columns are told of .xyz .pts .txt .asc only");
     switch (type_of(path)) {
+        case FileType::pcd:
+            return read_pcd(name, read_contents(path, name));
+        case FileType::xyz:
+            return read_xyz(name, read_contents(path, name), options.columns);
         case FileType::obj:
             return read_obj(name, read_contents(path, name));
         case FileType::ply:
@@ -46,9 +54,18 @@ Scene read_any(const fs::path& path)
         case FileType::glb:
             return read_gltf(path, read_contents(path, name));
         default:
-            throw InputError(name + ": " + unknown_type(path, ".obj .ply .off .stl .gltf .glb"));
+            throw InputError(
+                name + ": " +
+                unknown_type(path, ".obj .ply .off .stl .gltf .glb .pcd .xyz .pts .txt .asc"));
     }
 }
+
+bool holds_points_only(FileType type)
+{
+    return type == FileType::xyz || type == FileType::pcd;
+}
+
+constexpr const char* kLosesFaces = "a mesh cannot be written as points alone, use .ply";
 
 WrittenFile contents_for(const fs::path& path, const Scene& scene,
                          std::span<const Occlusion> occlusion, const WriteOptions& options)
@@ -60,6 +77,10 @@ WrittenFile contents_for(const fs::path& path, const Scene& scene,
             return off_contents(scene, occlusion, options);
         case FileType::ply:
             return ply_contents(path, scene, occlusion, options);
+        case FileType::pcd:
+            return pcd_contents(scene, occlusion, options);
+        case FileType::xyz:
+            return xyz_contents(path, scene, occlusion, options);
         default:
             return gltf_contents(path, scene, occlusion, options);
     }
@@ -102,9 +123,9 @@ void check_places(const Scene& scene, const UvSet& uvs)
 
 }  // namespace
 
-Scene read_scene(const fs::path& path)
+Scene read_scene(const fs::path& path, const ReadOptions& options)
 {
-    Scene scene = read_any(path);
+    Scene scene = read_any(path, options);
     scene.name = path.filename().string();
     return scene;
 }
@@ -118,10 +139,18 @@ void check_output(const fs::path& input, const fs::path& output)
     if (type == FileType::stl)
         refuse("STL has no place for occlusion, use .ply");
     if (type == FileType::unknown)
-        refuse(unknown_type(output, ".ply .obj .off .gltf .glb"));
+        refuse(unknown_type(output, ".ply .obj .off .gltf .glb .pcd .xyz .pts .txt .asc"));
     if (is_gltf(type) && !is_gltf(type_of(input)))
         refuse("only a scene that was read from glTF can be written as glTF, use .ply or .obj");
+    if (holds_points_only(type) && (is_gltf(type_of(input)) || type_of(input) == FileType::stl))
+        refuse(kLosesFaces);
     check_writable(output);
+}
+
+void check_output(const Scene& scene, const fs::path& output)
+{
+    if (holds_points_only(type_of(output)) && !scene.triangles.empty())
+        throw InputError(output.string() + ": " + kLosesFaces);
 }
 
 std::vector<std::string> write_scene(const fs::path& path, const Scene& scene,
@@ -138,6 +167,7 @@ std::vector<std::string> write_scene(const fs::path& path, const Scene& scene,
     if (!covered)
         throw InputError(path.string() + ": the scene's parts do not cover its vertices");
     check_output(path, path);
+    check_output(scene, path);
     WrittenFile written = contents_for(path, scene, occlusion, options);
     write_atomically(path, written.contents);
     return std::move(written.notes);

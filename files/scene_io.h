@@ -1,9 +1,10 @@
-/// scene_io.h: mesh files in, mesh files with occlusion out.
+/// scene_io.h: files of meshes and clouds in, the same with occlusion out.
 ///
-/// Read: .obj .ply .off .stl .gltf .glb (by extension, any case). Written: .ply .obj .off, and
-/// .gltf/.glb for a scene that came from glTF. The file's own order and number of vertices are
-/// kept, also on non-manifold meshes and at seams (STL has no vertices of its own: equal corners
-/// are one).
+/// Read: .obj .ply .off .stl .gltf .glb, and the clouds .pcd .xyz .pts .txt .asc (by extension, any
+/// case); .ply, .obj and .off without faces are clouds too. Written: .ply .obj .off, .gltf/.glb for
+/// a scene that came from glTF, and for clouds .pcd .xyz .pts .txt .asc. The file's own order and
+/// number of vertices are kept, also on non-manifold meshes and at seams (STL has no vertices of
+/// its own: equal corners are one). No faces are invented.
 #pragma once
 
 #include "files/vertex_colors.h"
@@ -20,15 +21,30 @@
 
 namespace surfelao {
 
-/// Reads a file. Throws InputError with one sentence that names file, element and fault for
-/// anything that is not a complete, finite, consistent mesh with at least one triangle. Time and
-/// memory stay in proportion to the file's size, whatever its counts claim.
-[[nodiscard]] Scene read_scene(const std::filesystem::path& path);
+struct ReadOptions {
+    /// What the columns of a text cloud are, "x y z intensity r g b nx ny nz"; `-` and any other
+    /// word: kept and not used (xyz_io.h). Empty: as they are found.
+    std::string columns = {};
+};
+
+/// Throws SettingsError for columns that do not name x, y and z once each; empty is right.
+void check_columns(const std::string& columns);
+
+/// Reads a file. A file without faces is a cloud: a scene without triangles. Throws InputError with
+/// one sentence that names file, element and fault for anything that is not a complete, finite,
+/// consistent mesh or cloud; SettingsError for columns that make no point and for columns of a file
+/// that is no text cloud. Time and memory stay in proportion to the file's size, whatever its
+/// counts claim.
+[[nodiscard]] Scene read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 struct WriteOptions {
     VertexColors colors = VertexColors::automatic;  ///< vertex_colors.h
     Encoding encoding = Encoding::automatic;        ///< of the colours that are written
     std::string mark = {};  ///< who made the file, and how (maker_mark.h); empty: it says nothing
+    /// Scene triangles that were not baked; empty: all were. glTF keeps primitives of such alone
+    /// exactly as they are. In other formats a vertex has its occlusion in any case: there it is
+    /// what the answers say, 0 for what nobody asked.
+    std::vector<bool> unbaked = {};
 };
 
 /// A result as the writers of the formats make it.
@@ -38,9 +54,12 @@ struct WrittenFile {
 };
 
 /// Throws InputError when a scene from `input` could not be written to `output` at all: unknown
-/// extension, STL, a glTF asked of a scene that is none, folder missing or not writable, output is
-/// a folder. For use before any work is done.
+/// extension, STL, a glTF asked of a scene that is none, points alone asked of STL or glTF, folder
+/// missing or not writable, output is a folder. For use before any work is done.
 void check_output(const std::filesystem::path& input, const std::filesystem::path& output);
+
+/// The same, once the scene has been read: a mesh is not written as points alone.
+void check_output(const Scene& scene, const std::filesystem::path& output);
 
 /// Writes the scene with one Occlusion per scene vertex, in scene order. The file appears under its
 /// name only when it is complete (written to a temporary name beside it, then renamed): on any
@@ -59,6 +78,11 @@ struct OcclusionMap {
     /// New ones, in place of uv_set: finite, one for each corner or vertex (UvSet). As they are in
     /// files they are floats.
     std::optional<UvSet> uvs = {};
+    /// Maps of the pages behind the first, over the same coordinates: in glTF only, without uvs.
+    std::vector<std::string> more_pngs = {};
+    /// Of each scene triangle: its page, 0 for `png`; the same for all triangles of a material.
+    /// Empty: all lie on the first.
+    std::vector<std::uint32_t> pages = {};
 };
 
 /// Where the map of a result at `output` stands: STEM.ao.png beside a .gltf, .obj or .ply; nothing

@@ -3,6 +3,7 @@
 #include "files/mesh_source.h"
 #include "files/text_cursor.h"
 #include "surfels/errors.h"
+#include "surfels/labels.h"
 
 #include <algorithm>
 #include <bit>
@@ -167,7 +168,8 @@ public:
             if (keyword == (in_solid ? "endsolid" : "solid")) {
                 in_solid = !in_solid;
                 solid_count += in_solid;
-                skip_line();  // the name of the solid
+                name_solid(in_solid ? cursor_.rest_of_line() : std::string_view());
+                skip_line();
             } else if (keyword == "facet" && in_solid) {
                 read_facet();
             } else if (keyword.starts_with('#') || (!in_solid && !is_of_solid(keyword))) {
@@ -183,6 +185,7 @@ public:
         if (in_solid)
             refuse({}, "\"endsolid\"");
         Scene scene = make_stl_scene(file_name_, std::move(corners_), std::move(polygons_));
+        scene.labels = labels_.finish();
         add_note(scene.notes, other_lines, "line", "of comment or outside of solids passed over");
         add_note(scene.notes, split_count_, "keyword", "in two words, as \"end loop\"");
         return scene;
@@ -262,10 +265,22 @@ private:
             polygons_.corners.push_back(corners_.index_of(position));
     }
 
+    /// At the begin of a solid, and without a name at its end.
+    void name_solid(std::string_view name)
+    {
+        const auto triangles = static_cast<std::uint32_t>(polygons_.corners.size() / 3);
+        labels_.add(LabelKind::object, solid_, solid_begin_, triangles - solid_begin_);
+        solid_ = name;
+        solid_begin_ = triangles;
+    }
+
     const std::string& file_name_;
     TextCursor cursor_;
     Corners corners_;
     Polygons polygons_;
+    LabelMaker labels_;
+    std::string_view solid_;
+    std::uint32_t solid_begin_ = 0;
     std::uint64_t split_count_ = 0;
 };
 

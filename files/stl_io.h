@@ -3,7 +3,8 @@
 ///
 /// A file is ascii when its first kilobyte has no zero byte and its size is not what the count of a
 /// binary file says: binary files that begin with `solid` are known by that. Ascii files may hold
-/// several solids, in capitals or not; facet normals and names are passed over.
+/// several solids, in capitals or not, whose names become Scene::labels; facet normals are passed
+/// over.
 ///
 /// Let pass and counted in Scene::notes: `end loop` for `endloop` and the like; lines outside
 /// of solids and lines of comment (`#`) between facets; ascii facets of fewer than three vertices;

@@ -14,11 +14,6 @@ namespace {
 constexpr std::size_t kLongestQuote = 40;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-bool is_blank(char c)
-{
-    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
-}
-
 bool is_newline(char c)
 {
     return c == '\n' || c == '\r';
@@ -70,6 +65,17 @@ TextCursor::TextCursor(std::string_view file_name, std::string_view text, TextRu
         at_ += 3;
 }
 
+bool TextCursor::is_blank(char c) const
+{
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == rules_.separator;
+}
+
+bool TextCursor::begins_comment(const char* at) const
+{
+    return (*at == rules_.comment && rules_.comment != '\0') ||
+           (rules_.slashes && *at == '/' && at + 1 != end_ && at[1] == '/');
+}
+
 void TextCursor::skip_newline()
 {
     if (at_ == end_)
@@ -87,7 +93,7 @@ bool TextCursor::at_line_end()
             ++at_;
             skip_newline();
         } else {
-            return is_newline(*at_) || (*at_ == rules_.comment && rules_.comment != '\0');
+            return is_newline(*at_) || begins_comment(at_);
         }
     }
     return true;
@@ -126,6 +132,15 @@ std::string_view TextCursor::word()
     while (!ends_word(at_))
         ++at_;
     return {first, static_cast<std::size_t>(at_ - first)};
+}
+
+std::string_view TextCursor::rest_of_line()
+{
+    if (at_line_end())
+        return {};
+    std::string_view rest(at_, remaining());
+    rest = rest.substr(0, rest.find_first_of("\r\n"));
+    return rest.substr(0, rest.find_last_not_of(" \t") + 1);
 }
 
 template <bool kFinite>

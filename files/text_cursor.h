@@ -24,6 +24,8 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 struct TextRules {
     char comment = '\0';        ///< from here to the end of the line is nothing; '\0': no comments
     bool continuation = false;  ///< a backslash at the end of a line joins it with the next
+    bool slashes = false;       ///< `//` begins a comment too
+    char separator = ' ';       ///< stands between words, as blanks do
 };
 
 class TextCursor {
@@ -42,6 +44,9 @@ public:
 
     /// The next word on this line; empty at its end.
     std::string_view word();
+
+    /// What stands on this line from the next word on, without blanks at the end; it is not taken.
+    [[nodiscard]] std::string_view rest_of_line();
 
     /// The next word as a finite number. `what` names it in the sentence when it is missing.
     double number(std::string_view what);
@@ -72,6 +77,8 @@ private:
     /// Steps over the line's end; a no-op at the end of the text.
     void skip_newline();
     [[nodiscard]] bool ends_word(const char* at) const;
+    [[nodiscard]] bool is_blank(char c) const;
+    [[nodiscard]] bool begins_comment(const char* at) const;
 
     std::string_view file_name_;
     const char* begin_;

@@ -5,6 +5,7 @@
 #include "gpu/receiver_grid.h"
 #include "gpu/rows.h"
 #include "tree/disks/gather.h"
+#include "tree/ground.h"
 #include "tree/receiver_groups.h"
 
 #include <glm/vec4.hpp>
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -169,6 +171,17 @@ struct GpuDisks::Impl {
 
 namespace {
 
+/// What the ground covers, as disks_gather.frag begins with it: one texel per slot.
+TextureBuffer upload_ground(const GlContext& context, const Definition& definition,
+                            const ReceiverGroups& groups, std::span<const Receiver> receivers)
+{
+    std::vector<glm::vec4> texels;
+    for (const std::uint32_t receiver : groups.order)
+        texels.emplace_back(ground_direction(definition, receivers[receiver]),
+                            ground_share(definition, receivers[receiver]));
+    return TextureBuffer(context, TexelFormat::rgba32f, std::span<const glm::vec4>(texels));
+}
+
 /// What the passes of one solve share.
 class Solver {
 public:
@@ -201,7 +214,7 @@ public:
             double change = 0.0;
             for (FarSide& side : sides) {
                 gather(side.gathered, correction_opening(options_.opening),
-                       0.5f * options_.definition.max_distance, meter);
+                       0.5f * options_.definition.max_distance, nullptr, meter);
                 change += fit(side, pass == 1 ? 1.0f : kDamping);
             }
             average(sides);
@@ -210,7 +223,7 @@ public:
             if (residuals.back() <= kSettled)
                 break;
         }
-        return {answer(groups, receivers.size(), meter), std::move(residuals)};
+        return {answer(groups, receivers, meter), std::move(residuals)};
     }
 
 private:
@@ -222,13 +235,21 @@ private:
         return std::string("TWO_SIDED ") + (two_sided_ ? "1" : "0");
     }
 
-    void gather(GatherGrid& gathered, float opening, float max_distance, ProgressMeter& meter)
+    /// ground: what it covers of each slot (upload_ground), where it counts; else null.
+    void gather(GatherGrid& gathered, float opening, float max_distance,
+                const TextureBuffer* ground, ProgressMeter& meter)
     {
         const bool bunnell = options_.definition.kernel == Kernel::bunnell;
         Program& program = scene_.context.program(
             "fullscreen.vert", "disks_gather.frag",
             {two_sided_definition(), std::string("LIMITED ") + (limited_ ? "1" : "0"),
-             std::string("BUNNELL ") + (bunnell ? "1" : "0")});
+             std::string("BUNNELL ") + (bunnell ? "1" : "0"),
+             std::string("GROUND ") + (ground ? "1" : "0")});
+        if (ground) {
+            program.set("u_ground", *ground);
+            program.set("u_up", options_.definition.ground->up);
+            program.set("u_ground_height", options_.definition.ground->height);
+        }
         program.set("u_records", scene_.records_texture);
         program.set("u_record_count", static_cast<int>(record_count()));
         program.set("u_opening", opening);
@@ -298,10 +319,16 @@ private:
         scene_.context.finish("averaging visibility");
     }
 
-    TextureBuffer answer(const ReceiverGroups& groups, std::size_t count, ProgressMeter& meter)
+    TextureBuffer answer(const ReceiverGroups& groups, std::span<const Receiver> receivers,
+                         ProgressMeter& meter)
     {
+        const std::size_t count = receivers.size();
         GatherGrid gathered(scene_.context, groups);
-        gather(gathered, options_.opening, options_.definition.max_distance, meter);
+        std::optional<TextureBuffer> ground;
+        if (options_.definition.ground)
+            ground = upload_ground(scene_.context, options_.definition, groups, receivers);
+        gather(gathered, options_.opening, options_.definition.max_distance,
+               ground ? &*ground : nullptr, meter);
         const TextureBuffer slots = upload_slots(scene_.context, slots_of_receivers(groups, count));
         const Framebuffer rows = make_rows(scene_.context, count, {TexelFormat::rgba32f});
         Program& program = scene_.context.program("fullscreen.vert", "disks_result.frag");

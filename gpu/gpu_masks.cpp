@@ -13,12 +13,14 @@
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -132,10 +134,24 @@ struct GpuMasks::Impl {
 
 namespace {
 
+/// As masks_face.frag and masks_result.frag read them, one per slot of the leaves.
+TextureBuffer upload_skies(const GlContext& context, const MaskSkies& skies, float limit,
+                           const ReceiverGroups& groups, std::span<const std::uint32_t> leaves)
+{
+    std::vector<glm::vec2> texels;
+    for (const std::uint32_t leaf : leaves) {
+        for (std::size_t i = groups.groups[leaf].begin; i < groups.groups[leaf].end; ++i) {
+            const MaskSkies::Sky sky = skies.at(limit, groups.order[i]);
+            texels.emplace_back(sky.share, sky.above);
+        }
+    }
+    return TextureBuffer(context, TexelFormat::rg32f, std::span<const glm::vec2>(texels));
+}
+
 class Solver {
 public:
     Solver(const GpuMasks::Impl& scene, const MaskOptions& options)
-        : scene_(scene), settings_(mask_settings(options))
+        : scene_(scene), definition_(options.definition), settings_(mask_settings(options))
     {
     }
 
@@ -144,6 +160,7 @@ public:
     {
         const ReceiverGroups groups = group_receivers(receivers, kMaskFrame);
         const std::span<const std::uint32_t> leaves(groups.leaves);
+        const MaskSkies skies(definition_, receivers);
         ProgressMeter meter(progress, leaves.size() * limits.size() * kMaskFaces * kHalves);
         const Framebuffer sums =
             make_rows(scene_.context, leaves.size() * kGroupSize, {TexelFormat::rgba32f});
@@ -151,8 +168,12 @@ public:
         for (std::size_t first = 0; first < leaves.size(); first += kBatchGroups) {
             const auto batch = leaves.subspan(first, std::min(kBatchGroups, leaves.size() - first));
             Batch work(scene_.context, groups, batch);
-            for (const float limit : limits)
-                solve_batch(work, limit, first * kGroupSize, sums, meter);
+            for (const float limit : limits) {
+                std::optional<TextureBuffer> sky;
+                if (definition_.ground)
+                    sky = upload_skies(scene_.context, skies, limit, groups, batch);
+                solve_batch(work, limit, sky, first * kGroupSize, sums, meter);
+            }
         }
 
         const Framebuffer rows =
@@ -197,9 +218,11 @@ private:
     };
 
     /// Adds, per slot from `first_slot` on, bent normal of any length in the mask frame, occlusion.
-    void solve_batch(Batch& batch, float limit, std::size_t first_slot, const Framebuffer& sums,
-                     ProgressMeter& meter)
+    /// skies: with a ground.
+    void solve_batch(Batch& batch, float limit, const std::optional<TextureBuffer>& skies,
+                     std::size_t first_slot, const Framebuffer& sums, ProgressMeter& meter)
     {
+        const std::vector<std::string> defined = {skies ? "GROUND 1" : "GROUND 0"};
         const ReceiverGrid& grid = batch.halves[0];
         for (std::size_t i = 0; i < 4; ++i)
             batch.sums.clear_color(glm::vec4(0.0f), i);
@@ -216,7 +239,11 @@ private:
         walk.set("u_max_distance", std::min(limit, std::numeric_limits<float>::max()));
         walk.set("u_exact_radius", settings_.exact_radius > 0.0f ? 0.0f : -1.0f);
         walk.set("u_step_limit", kStepLimit);
-        Program& worth = scene_.context.program("fullscreen.vert", "masks_face.frag");
+        Program& worth = scene_.context.program("fullscreen.vert", "masks_face.frag", defined);
+        if (skies) {
+            worth.set("u_skies", *skies);
+            worth.set("u_max_distance", std::min(limit, std::numeric_limits<float>::max()));
+        }
         worth.set("u_fill", settings_.fill ? 1 : 0);
         worth.set("u_moments", scene_.moments);
         worth.set("u_receivers", grid.receivers());
@@ -225,6 +252,8 @@ private:
         for (int face = 0; face < kMaskFaces; ++face) {
             walk.set("u_face", axes_of_face(face));
             worth.set("u_face", axes_of_face(face));
+            if (skies)
+                worth.set("u_up", axes_of_face(face) * kMaskFrame * definition_.ground->up);
             walk.set("u_half", 0);
             batch.halves[0].compute(walk, static_cast<std::uint32_t>(scene_.node_count), meter);
             walk.set("u_half", 1);
@@ -240,7 +269,9 @@ private:
                                     });
         }
 
-        Program& answer = scene_.context.program("fullscreen.vert", "masks_result.frag");
+        Program& answer = scene_.context.program("fullscreen.vert", "masks_result.frag", defined);
+        if (skies)
+            answer.set("u_skies", *skies);
         const char* const inputs[] = {"u_share", "u_bent", "u_bent_filled", "u_bent_closed"};
         for (std::size_t i = 0; i < std::size(inputs); ++i)
             answer.set(inputs[i], batch.sums.color(i));
@@ -255,6 +286,7 @@ private:
     }
 
     const GpuMasks::Impl& scene_;
+    Definition definition_;
     MaskSettings settings_;
 };
 

@@ -119,6 +119,8 @@ public:
         ray.org_x[lane % width] = position.x;
         ray.org_y[lane % width] = position.y;
         ray.org_z[lane % width] = position.z;
+        if (definition_.ground)
+            above_[lane] = glm::dot(definition_.ground->up, position) - definition_.ground->height;
     }
 
     /// valid[lane] is -1 where there is a ray, else 0.
@@ -129,6 +131,25 @@ public:
     }
 
 private:
+    /// Rays that reach the ground end there. Where its distance does not count they need not be
+    /// traced.
+    template <class Rays>
+    void end_at_ground(Rays& ray, const float* above, int* mask, bool* on_ground) const
+    {
+        const glm::vec3 up = definition_.ground->up;
+        for (int lane = 0; lane < width; ++lane) {
+            const float rise =
+                ray.dir_x[lane] * up.x + ray.dir_y[lane] * up.y + ray.dir_z[lane] * up.z;
+            const bool meets = above[lane] >= 0.0f ? rise < 0.0f : rise > 0.0f;
+            if (!meets || !(-above[lane] / rise < ray.tfar[lane]))
+                continue;
+            ray.tfar[lane] = -above[lane] / rise;
+            on_ground[lane] = true;
+            if (definition_.falloff == Falloff::none)
+                mask[lane] = 0;
+        }
+    }
+
     void trace_part(const DirectionPacket& directions, int first, const int* valid, LaneSums& sums)
     {
         auto& part = rays_[first / width];
@@ -140,13 +161,17 @@ private:
         }
         alignas(64) int mask[width];
         std::copy_n(valid, width, mask);
+        bool on_ground[width] = {};
+        if (definition_.ground)
+            end_at_ground(part.ray, above_ + first, mask, on_ground);
 
         // any hit is as good as another unless its distance counts
         float hit[width];
         if (definition_.falloff == Falloff::none) {
             Packets<width>::occluded(mask, scene_, &context_, &part.ray);
             for (int lane = 0; lane < width; ++lane)
-                hit[lane] = part.ray.tfar[lane] < 0.0f ? 1.0f : 0.0f;  // Embree's mark: -infinity
+                hit[lane] = part.ray.tfar[lane] < 0.0f || on_ground[lane] ? 1.0f : 0.0f;
+            // tfar: Embree's mark, -infinity
         } else {
             std::fill_n(part.hit.geomID, width, RTC_INVALID_GEOMETRY_ID);
             Packets<width>::intersect(mask, scene_, &context_, &part);
@@ -169,6 +194,7 @@ private:
     RTCScene scene_;
     Definition definition_;
     RTCIntersectContext context_;
+    float above_[kPacket] = {};  ///< the ground, signed
     typename Packets<width>::RayHit rays_[kPacket / width] = {};
 };
 

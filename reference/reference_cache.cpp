@@ -71,6 +71,10 @@ ContentHash key_of(const Geometry& geometry, std::span<const Receiver> receivers
     hash.add_word(std::bit_cast<std::uint32_t>(options.definition.max_distance));
     hash.add_word(static_cast<std::uint64_t>(options.definition.falloff));
     hash.add_word(static_cast<std::uint64_t>(options.definition.kernel));
+    if (const auto& ground = options.definition.ground) {
+        for (const float value : {ground->up.x, ground->up.y, ground->up.z, ground->height})
+            hash.add_word(std::bit_cast<std::uint32_t>(value));
+    }
     hash.add_word(options.rays);
     hash.add_word(options.find_ill_defined);
     return hash;

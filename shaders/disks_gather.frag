@@ -10,8 +10,8 @@
 //
 // Vertices     fullscreen.vert
 // Drawn by     gpu/gpu_disks.cpp, in pieces (gpu/receiver_grid.h)
-// Definitions  TWO_SIDED LIMITED BUNNELL: 0 or 1. Some surfels occlude from both sides; max_distance
-//              is finite; Kernel::bunnell
+// Definitions  TWO_SIDED LIMITED BUNNELL GROUND: 0 or 1. Some surfels occlude from both sides;
+//              max_distance is finite; Kernel::bunnell; there is a ground
 // Reads        u_records         octree, 3 texels a record (disk_record.glsl)
 //              u_record_count
 //              u_two_sided_from  records from here on occlude from both sides   (TWO_SIDED)
@@ -28,6 +28,8 @@
 //              u_opening         as DiskOptions::opening
 //              u_max_distance    in diagonals                                   (LIMITED)
 //              u_smooth          1: Falloff::smooth, 0: none                    (LIMITED)
+//              u_ground          RGBA32F, one a slot: what the ground covers, as out_sum (GROUND)
+//              u_up, u_ground_height  Ground of surfels/occlusion.h             (GROUND)
 // Writes       out_sum           RGBA32F: sum of form factors times direction | sum of form factors
 //              out_at            R32UI: record to go on with; u_record_count or more: done
 // CPU twin     tree/disks/gather.cpp; formulas: tree/disks/form_factor.h;
@@ -40,6 +42,9 @@
 #endif
 #ifndef BUNNELL
 #define BUNNELL 0
+#endif
+#ifndef GROUND
+#define GROUND 0
 #endif
 
 uniform usamplerBuffer u_records;
@@ -61,6 +66,11 @@ uniform sampler2D u_far_back;
 #if LIMITED
 uniform float u_max_distance;
 uniform int u_smooth;
+#endif
+#if GROUND
+uniform samplerBuffer u_ground;
+uniform vec3 u_up;
+uniform float u_ground_height;
 #endif
 
 layout(location = 0) out vec4 out_sum;
@@ -89,6 +99,12 @@ void main()
     float rise     = rest.y;
 
     vec4 sum = u_continued != 0 ? texelFetch(u_sums, pixel, 0) : vec4(0.0);
+#if GROUND
+    if (u_continued == 0)
+        sum = texelFetch(u_ground, slot);
+    float over    = dot(u_up, position) - u_ground_height;
+    vec3  towards = over < 0.0 ? u_up : -u_up;
+#endif
     int  at  = u_continued != 0 ? int(texelFetch(u_at, pixel, 0).x) : 0;
     int  steps = 0;
     while (at < u_record_count && steps < u_step_limit) {
@@ -160,14 +176,34 @@ void main()
         float form_factor = at_receiver > 0.0 ? (flat_part + spread_part) / (1.0 + all) : 0.0;
 #endif
         form_factor *= clamp(seen, 0.0, 1.0);
+        float weight = 1.0;
 #if LIMITED
         float distance = 1.0 / inverse;
         float width    = min(2.0 * sqrt(area / kPi), u_max_distance);
         float share    = clamp(0.5 + (u_max_distance - distance) / width, 0.0, 1.0);
         float t        = distance / u_max_distance;
         float fading   = max(0.0, 1.0 - t * t);
-        form_factor *= u_smooth != 0 ? fading * fading : share;
+        weight       = u_smooth != 0 ? fading * fading : share;
 #endif
+#if GROUND
+        // ground_weight of tree/disks/form_factor.h
+        float height  = dot(c, towards);
+        float radius  = sqrt(area / kPi);
+        float inside  = height;
+#if LIMITED
+        float edge = abs(over) / u_max_distance;
+        inside -= distance * edge;
+#endif
+        float covered = clamp(0.5 + 0.5 * inside / radius, 0.0, 1.0);
+#if LIMITED
+        covered *= clamp(distance * distance * (1.0 - edge * edge) / (radius * radius), 0.0, 1.0);
+        float hit      = abs(over) * distance / max(height, kTinyLength) / u_max_distance;
+        float fading_hit = max(0.0, 1.0 - hit * hit);
+        covered *= u_smooth != 0 ? fading_hit * fading_hit : 1.0;
+#endif
+        weight = max(0.0, weight - covered);
+#endif
+        form_factor *= weight;
         sum += vec4(w, 1.0) * form_factor;
         at = int(links.x);
     }

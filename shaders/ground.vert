@@ -3,7 +3,7 @@
 // ground.vert: the square under the model, as two triangles.
 //
 // Drawn by   viewer/renderer.cpp, 6 vertices
-// Reads      u_corner u_axis_x u_axis_y  Ground of viewer/model.h
+// Reads      u_corner u_axis_x u_axis_y  ShadowSquare of viewer/model.h
 //            u_view_projection
 // Writes     v_place  0..1 along both axes
 

@@ -6,6 +6,7 @@
 //
 // Vertices   fullscreen.vert
 // Drawn by   gpu/gpu_masks.cpp, after masks_walk.frag
+// Definitions  GROUND: 0 or 1. There is a ground: it takes what it covers out of the hemisphere
 // Reads      u_low_words0, u_low_words1, u_low_sheets0, u_low_sheets1
 //                              outputs of masks_walk.frag for half 0: rows, and what sheets have set
 //            u_high_words0, u_high_words1, u_high_sheets0, u_high_sheets1
@@ -18,12 +19,19 @@
 //            u_receivers       RGBA32F, 2 texels a slot, mask frame: position.xyz 0 | normal.xyz 0
 //            u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
 //            u_face            from the mask frame to the face's axes
+//            u_skies           RG32F, one a slot: sky's share | signed height over the ground (GROUND)
+//            u_up              the ground's, in the face's axes                               (GROUND)
+//            u_max_distance    no limit: the largest float                                    (GROUND)
 // Writes     out_share         RGBA32F: integral of n.w over the hemisphere, over the open bits, over
 //                              those left open by filling, over those left open by closing
 //            out_bent, out_bent_filled, out_bent_closed
 //                              RGBA32F: integral of w (n.w) over the same bits, mask frame, 0
-// CPU twin   first_moments and second_moments in tree/masks/kernel_sums.h, horizon in _raster.h, fill
-//            and close in _cracks.h
+// CPU twin   first_moments and second_moments in tree/masks/kernel_sums.h, horizon and take_ground in
+//            _raster.h, fill and close in _cracks.h
+#ifndef GROUND
+#define GROUND 0
+#endif
+
 uniform usampler2D u_low_words0;
 uniform usampler2D u_low_words1;
 uniform usampler2D u_low_sheets0;
@@ -38,6 +46,11 @@ uniform samplerBuffer u_receivers;
 uniform int u_slot_count;
 uniform int u_blocks_per_row;
 uniform mat3 u_face;
+#if GROUND
+uniform samplerBuffer u_skies;
+uniform vec3 u_up;
+uniform float u_max_distance;
+#endif
 
 layout(location = 0) out vec4 out_share;
 layout(location = 1) out vec4 out_bent;
@@ -95,6 +108,18 @@ uint grown_across(uint rows[18], int y)
     return rows[y + 1] | low | beside(low, y - 1, y) | high | beside(high, y + 1, y);
 }
 
+#if GROUND
+// The bits of quarter q that the ground covers, seen from a signed height over it.
+uvec4 ground_bits(float height, int q)
+{
+    vec3  towards = height < 0.0 ? u_up : -u_up;
+    float edge    = abs(height) / u_max_distance;
+    if (edge >= 1.0)
+        return uvec4(0u);
+    return edge < kMaskConeFlat ? bits_of(side_of(towards), q) : cone_bits(towards, edge, q);
+}
+#endif
+
 // long: one row after the other, with the same dozen sums at hand
 void main()
 {
@@ -118,6 +143,9 @@ void main()
     Side horizon = side_of(n);
     for (int q = 0; q < 4; ++q) {
         uvec4 hemisphere = bits_of(horizon, q);
+#if GROUND
+        hemisphere &= ~ground_bits(texelFetch(u_skies, slot).y, q);
+#endif
         for (int i = 0; i < 4; ++i) {
             above[1 + 4 * q + i]  = hemisphere[i];
             closed[1 + 4 * q + i] = drawn[q][i] | ~hemisphere[i];

@@ -7,14 +7,21 @@
 //
 // Vertices   fullscreen.vert, over the part of the rows of all slots (rows.glsl) that is computed
 // Drawn by   gpu/gpu_masks.cpp, once per distance limit, added by blending
+// Definitions  GROUND: 0 or 1. There is a ground
 // Reads      u_share, u_bent, u_bent_filled, u_bent_closed
 //                              outputs of masks_face.frag, summed over the faces
 //            u_close           how much cracks of two bits count as closed
 //            u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
 //            u_first_slot      before those that are computed
+//            u_skies           RG32F, one a slot that is computed: share of the hemisphere that the
+//                              ground leaves | of masks_face.frag                      (GROUND)
 // Writes     out_result      RGBA32F: bent normal, mask frame, any length, zero where all is closed |
 //                            occlusion (surfels/occlusion.h)
 // CPU twin   openness_of in tree/masks/kernel_solve.h
+#ifndef GROUND
+#define GROUND 0
+#endif
+
 uniform sampler2D u_share;
 uniform sampler2D u_bent;
 uniform sampler2D u_bent_filled;
@@ -23,6 +30,9 @@ uniform float u_close;
 uniform int u_slot_count;
 uniform int u_blocks_per_row;
 uniform int u_first_slot;
+#if GROUND
+uniform samplerBuffer u_skies;
+#endif
 
 out vec4 out_result;
 
@@ -35,6 +45,9 @@ void main()
     ivec2 pixel = pixel_of_slot(slot, u_blocks_per_row);
     vec4  share = texelFetch(u_share, pixel, 0);
     vec3  shares = share.yzw / share.x;
+#if GROUND
+    shares = share.x > 0.0 ? shares : vec3(1.0);
+#endif
     float openness = shares.x;
     out_result.xyz = texelFetch(u_bent, pixel, 0).xyz;
 
@@ -48,5 +61,9 @@ void main()
             out_result.xyz = texelFetch(u_bent_closed, pixel, 0).xyz;
         }
     }
-    out_result.w = 1.0 - clamp(openness, 0.0, 1.0);
+    openness = clamp(openness, 0.0, 1.0);
+#if GROUND
+    openness *= texelFetch(u_skies, slot).x;
+#endif
+    out_result.w = 1.0 - openness;
 }

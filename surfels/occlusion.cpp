@@ -14,6 +14,13 @@ void check_definition(const Definition& definition)
     require(definition.max_distance > 0.0f, "max_distance must be above 0");
     require(definition.falloff == Falloff::none || std::isfinite(definition.max_distance),
             "a falloff needs a max_distance");
+    if (!definition.ground)
+        return;
+    constexpr float kUnit = 1e-4f;  // a direction of floats, normalised, is off by 1e-7
+    const glm::vec3 up = definition.ground->up;
+    require(std::abs(glm::dot(up, up) - 1.0f) <= kUnit, "up of the ground must be of length 1");
+    require(std::isfinite(definition.ground->height), "height of the ground must be finite");
+    require(definition.kernel == Kernel::cosine, "a ground is for the cosine kernel only");
 }
 
 float hit_weight(const Definition& definition, float t)

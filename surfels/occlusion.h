@@ -15,12 +15,24 @@
 ///
 /// bent normal = normalised integral of (1 - H(w)) w (n.w) dw; n itself where nothing is open.
 ///
+/// A ground is one more occluder: an infinite plane, without triangles, that counts from both sides
+/// as they do. A receiver at the height h over it sees it along every w with w.up < 0, at the
+/// distance h / -w.up: with a max_distance R only inside of the cone -w.up > h / R. A receiver
+/// below it sees it along w.up > 0 alike, one in the plane counts as above. Of triangle and ground
+/// the nearer is the hit.
+///
+///           o---> n           on a convex body: occlusion = (1 - n.up) / 2
+///          /|
+///      R  / | h               on a wall (n.up = 0) with R, x = h / R:
+///     ___/__|____ ground      occlusion = 1/2 - (asin x + x sqrt(1 - x^2)) / pi
+///
 /// All lengths are in diagonals of the scene's bounding box (geometry.h).
 #pragma once
 
 #include <glm/vec3.hpp>
 
 #include <limits>
+#include <optional>
 
 namespace surfelao {
 
@@ -45,11 +57,19 @@ enum class Falloff {
              ///< limit. A choice of taste.
 };
 
+/// An infinite plane that occludes: all p with p.up = height.
+struct Ground {
+    glm::vec3 up{0.0f, 1.0f, 0.0f};  ///< unit length
+    float height = 0.0f;             ///< finite, in diagonals from the centre of the box
+    bool operator==(const Ground&) const = default;
+};
+
 /// Everything that changes what is measured, and nothing that changes how.
 struct Definition {
     float max_distance = std::numeric_limits<float>::infinity();  ///< > 0, in diagonals
     Falloff falloff = Falloff::none;  ///< must be `none` where max_distance is infinite
     Kernel kernel = Kernel::cosine;
+    std::optional<Ground> ground = {};  ///< with the cosine kernel only
     bool operator==(const Definition&) const = default;
 };
 

@@ -47,7 +47,9 @@ struct Part {
 enum class LabelKind { node, mesh, object, group, material };
 
 /// Triangles that have a name in the file in common. Those of different kinds overlap: a triangle
-/// has a node, a mesh and a material. Labels of one kind and name are one.
+/// has a node, a mesh and a material, and of nodes (glTF) also all that its node lies below. Labels
+/// of one kind and name are one. OBJ has objects (o), groups (g) and materials (usemtl), text STL
+/// objects (solid), PLY and OFF nothing (labels.h).
 struct Label {
     struct Range {
         std::uint32_t first = 0, count = 0;
@@ -92,6 +94,8 @@ public:
     /// What the file paints its surfaces with, vertex colours apart; no materials where it says
     /// nothing of it. What is malformed in it is white. O(bytes).
     [[nodiscard]] virtual BaseColors base_colors() const { return {}; }
+    /// Whether any of these materials is not Opacity::solid: known without a look at all triangles.
+    [[nodiscard]] virtual bool has_openings() const { return false; }
     /// The number of the texture coordinates (Scene::uvs) over which the file has a map of
     /// occlusion already; of several the first. O(primitives).
     [[nodiscard]] virtual std::optional<std::uint32_t> occlusion_uvs() const { return {}; }
@@ -112,6 +116,10 @@ struct Scene {
     std::vector<Label> labels;  ///< in the order in which their first triangles stand
     /// Clouds: where the scanner stood, in the coordinates of the points.
     std::optional<glm::dvec3> viewpoint;
+    /// Clouds: points without a finite place in the file, rising (an organised cloud has them where
+    /// the scanner saw nothing). They stand where the first other point stands, occlude nothing and
+    /// get occlusion 0.
+    std::vector<std::uint32_t> placeless;
     bool free_vertices = false;  ///< the file has none of its own (STL): they may be split
     /// What the file holds and nobody honours, and what in it was let pass: a sentence each.
     std::vector<std::string> notes;

@@ -514,6 +514,7 @@ void keep_triangles(Mesh& mesh, const std::function<bool(std::size_t triangle)>&
     Geometry& geometry = mesh.geometry;
     std::vector<std::uint32_t> kept;
     std::vector<bool> in_use(mesh.surface.normals.size(), false);
+    std::vector<bool> has_kept(mesh.surface.vertex_count(), false);
     for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
         const std::size_t in_scene = geometry.scene_triangle(t);
         if (!wanted(in_scene))
@@ -521,8 +522,20 @@ void keep_triangles(Mesh& mesh, const std::function<bool(std::size_t triangle)>&
         geometry.triangles[kept.size()] = geometry.triangles[t];
         mesh.surface.corners[kept.size()] = mesh.surface.corners[t];
         kept.push_back(static_cast<std::uint32_t>(in_scene));
-        for (int corner = 0; corner < 3; ++corner)
+        for (int corner = 0; corner < 3; ++corner) {
             in_use[mesh.surface.corners[t][corner]] = true;
+            has_kept[mesh.scene.triangles[in_scene][corner]] = true;
+        }
+    }
+    mesh.unbaked.assign(mesh.scene.triangles.size(), true);
+    for (std::size_t t = 0; t < mesh.scene.triangles.size(); ++t) {
+        if (!wanted(t))
+            continue;
+        mesh.unbaked[t] = false;
+        for (int corner = 0; corner < 3; ++corner) {  // of triangles without area: the vertex' own
+            const std::uint32_t vertex = mesh.scene.triangles[t][corner];
+            in_use[vertex] = in_use[vertex] || !has_kept[vertex];
+        }
     }
     for (std::size_t wedge = 0; wedge < in_use.size(); ++wedge) {
         if (!in_use[wedge])

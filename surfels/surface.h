@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -125,9 +126,13 @@ inline constexpr float kInset = 4.0f;
 
 /// A scene with its clean geometry and its shaded surface: what all jobs begin with.
 struct Mesh {
-    Scene scene;  ///< of free vertices: split at creases
-    Geometry geometry;
+    Scene scene;        ///< of free vertices: split at creases
+    Geometry geometry;  ///< what is asked, and what occludes it unless `occluders` are there
     Surface surface;
+    std::shared_ptr<const Geometry> occluders = {};  ///< in the frame of the geometry
+    std::vector<bool> unbaked = {};  ///< scene triangles of which nothing is asked; empty: none
+
+    [[nodiscard]] const Geometry& occluding() const { return occluders ? *occluders : geometry; }
 };
 
 /// Throws as make_geometry and make_surface, and InputError for a scene without triangles.
@@ -135,8 +140,9 @@ struct Mesh {
                              const GeometryScope& scope = {});
 
 /// Takes from the mesh's geometry and surface all triangles but those for which `wanted` says so,
-/// by their number in the scene. What is kept has the normals that it had among the others; wedges
-/// that no kept triangle uses have none any more, so that nothing is asked there. O(n).
+/// by their number in the scene; the others are Mesh::unbaked. What is kept has the normals that it
+/// had among the others; wedges that no wanted triangle uses have none any more, so that nothing is
+/// asked there. O(n).
 void keep_triangles(Mesh& mesh, const std::function<bool(std::size_t triangle)>& wanted);
 
 /// Whether two normals at one place count as one smooth surface: within half the crease angle.

@@ -62,7 +62,9 @@ BasePaint base_paint_of(const Mesh& mesh)
             std::optional<glm::dvec2> at;
             if (set < mesh.scene.uvs.size() && !mesh.scene.uvs[set].empty())
                 at = uv_at(geometry, mesh.scene.uvs[set], {t, corner});
-            paint.places.emplace_back(at.value_or(glm::dvec2(0.0)));
+            const BaseColor& material = paint.materials[paint.triangles.back()];
+            paint.places.emplace_back(material.uv_matrix * at.value_or(glm::dvec2(0.0)) +
+                                      material.uv_offset);
         }
     }
     return paint;

@@ -40,7 +40,8 @@ float cover_radius(float a2, float b2, float c2)
     return static_cast<float>(std::sqrt(c) * std::max(b / (b + c - a), a / (a + c - b)));
 }
 
-Ground make_ground(const std::vector<glm::vec3>& seen, glm::vec3 up)
+/// at: its height along up; empty: a little below all that is seen.
+ShadowSquare make_ground(const std::vector<glm::vec3>& seen, glm::vec3 up, std::optional<float> at)
 {
     glm::vec3 low(std::numeric_limits<float>::max());
     glm::vec3 high(std::numeric_limits<float>::lowest());
@@ -56,12 +57,13 @@ Ground make_ground(const std::vector<glm::vec3>& seen, glm::vec3 up)
     const glm::vec3 side(1.0f, 0.0f, 0.0f);
     const glm::vec3 across = glm::cross(up, side);
 
-    Ground ground;
+    ShadowSquare ground;
     ground.up = up;
     ground.axis_x = 2.0f * half * side;
     ground.axis_y = 2.0f * half * across;
     const glm::vec3 middle = 0.5f * (low + high);
-    ground.corner = middle - (0.5f * height + kGroundGap) * up - half * (side + across);
+    const float below = at ? glm::dot(middle, up) - *at : 0.5f * height + kGroundGap;
+    ground.corner = middle - below * up - half * (side + across);
     return ground;
 }
 
@@ -191,7 +193,8 @@ std::vector<float> covering_radii(const Geometry& geometry, float most)
     return radii;
 }
 
-Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings, float largest_splat)
+Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings, float largest_splat,
+                 const std::optional<GroundPlane>& plane)
 {
     Model model;
     model.mesh = std::make_shared<const Mesh>(std::move(mesh));
@@ -222,9 +225,14 @@ Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings, float lar
     model.points = surface_points(g, kModelPoints);
     model.point_receivers = receivers_at(g, model.mesh->surface, model.points, offset);
 
-    model.ground = make_ground(model.seen, up_direction(up));
+    model.ground_plane = plane;
+    model.occluding_ground = ground_of(plane, {g}, largest_offset_of(settings, g.frame));
+    std::optional<float> height_of_ground;
+    if (model.occluding_ground)
+        height_of_ground = model.occluding_ground->height;
+    model.ground = make_ground(model.seen, up_direction(up), height_of_ground);
     const float height = offset.value_or(kMostOffset);
-    const Ground& ground = model.ground;
+    const ShadowSquare& ground = model.ground;
     for (int y = 0; y <= kGroundCells; ++y) {
         for (int x = 0; x <= kGroundCells; ++x) {
             const float cell = 1.0f / static_cast<float>(kGroundCells);

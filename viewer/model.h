@@ -1,10 +1,12 @@
 /// model.h: a scene made ready to be drawn and solved: the same for the window and for a file.
 ///
-/// Under the scene lies a ground of receivers only: it is shaded by the scene, but shades nothing,
-/// so that no number of the scene changes because a picture is taken.
+/// Under the scene lies a square of receivers only: it is shaded by the scene, but shades nothing,
+/// so that no number of the scene changes because a picture is taken. Where a ground is asked for
+/// that occludes, the square lies in it.
 #pragma once
 
 #include "bake/vertex_target.h"
+#include "engines/engine.h"
 #include "surfels/geometry.h"
 #include "surfels/receiver.h"
 #include "viewer/camera.h"
@@ -15,6 +17,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,7 +27,7 @@ namespace surfelao {
 /// facing the sky.
 inline constexpr int kGroundCells = 96;
 inline constexpr int kGroundReceivers = (kGroundCells + 1) * (kGroundCells + 1);
-struct Ground {
+struct ShadowSquare {
     glm::vec3 corner{0.0f};  ///< of the first receiver; unit frame
     glm::vec3 axis_x{0.0f};  ///< to the last receiver of the first row
     glm::vec3 axis_y{0.0f};  ///< to the first receiver of the last row
@@ -56,13 +59,16 @@ struct Model {
     std::vector<float> levels;       ///< one per surfel: its leaf's depth in the octree, 0 = root
     std::vector<Splat> splats;       ///< they cover every triangle that has an area
     std::vector<float> splat_radii;  ///< one per splat
-    Ground ground;
+    std::optional<GroundPlane> ground_plane;  ///< that it was made with
+    std::optional<Ground> occluding_ground;   ///< the same in the unit frame
+    ShadowSquare ground;
     std::vector<Receiver> ground_receivers;
     std::vector<SurfacePoint> points;  ///< kModelPoints, all over the surface; none without area
     std::vector<Receiver> point_receivers;
     UpAxis up = UpAxis::y;
 
     const Geometry& geometry() const { return mesh->geometry; }
+    const Geometry& occluding() const { return mesh->occluding(); }
     /// Values that a picture needs: one per vertex, then the ground's.
     std::size_t answer_count() const
     {
@@ -73,8 +79,10 @@ struct Model {
 /// O(n log n). mesh: made with settings.normals. largest_splat: triangles that need larger
 /// disks at their corners are covered from inside; where that takes more than a few hundred
 /// thousand disks, larger ones are allowed. Infinite: one splat per surfel, however large.
+/// ground: that occludes, its up as `up` says. Throws as ground_of().
 [[nodiscard]] Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings = {},
-                               float largest_splat = kLargestSplat);
+                               float largest_splat = kLargestSplat,
+                               const std::optional<GroundPlane>& ground = {});
 
 /// The lowest and the highest level, at least 1 apart: what the ends of a colour scale stand for.
 [[nodiscard]] glm::vec2 level_range(const Model& model);

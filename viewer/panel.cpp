@@ -213,7 +213,7 @@ PanelInput Panel::build(PanelState& state, const Session& session, const PanelFi
     return input;
 }
 
-void Panel::solver_widgets(PanelState& state)
+void Panel::solver_widgets(PanelState& state, const Session& session)
 {
     if (!ImGui::IsAnyItemActive())
         edited_ = state.settings;
@@ -235,6 +235,7 @@ void Panel::solver_widgets(PanelState& state)
     }
     bool apply = edit_settings(edited_.engine);
     apply |= edit_distance(edited_.max_distance, falloff_);
+    apply |= edit_ground(edited_.ground, session.state().model.get());
     apply |= edit_target(edited_.target);
     apply |= edit_texels(edited_.texels, texels_);
     if (apply)
@@ -283,7 +284,7 @@ void Panel::widgets(PanelState& state, const Session& session, const PanelFigure
         ImGui::TextUnformatted("reading ...");
 
     if (ImGui::CollapsingHeader("Solve", ImGuiTreeNodeFlags_DefaultOpen)) {
-        solver_widgets(state);
+        solver_widgets(state, session);
         if (session.solving() && !session.opening()) {
             progress_line(!shown_state.is_solved ? "draft" : "solving", session.solve_progress());
             input.cancel |= ImGui::Button("cancel");
@@ -297,6 +298,8 @@ void Panel::widgets(PanelState& state, const Session& session, const PanelFigure
         stage_lines(shown_state);
         histogram(session);
     }
+    if (shown_state.model && ImGui::CollapsingHeader("Parts"))
+        edit_parts(shown_state.model->mesh->scene, state.settings.parts);
     if (ImGui::CollapsingHeader("Show", ImGuiTreeNodeFlags_DefaultOpen)) {
         input.view_changed |= view_widgets(state);
         input.frame_all |= ImGui::Button("frame all");

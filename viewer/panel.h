@@ -107,7 +107,7 @@ public:
 private:
     void widgets(PanelState& state, const Session& session, const PanelFigures& figures,
                  PanelInput& input);
-    void solver_widgets(PanelState& state);
+    void solver_widgets(PanelState& state, const Session& session);
     void mouse(PanelState& state, PanelInput& input, float wipe_x, float left);
     SessionSettings edited_;           ///< what the widgets show while they are dragged
     Falloff falloff_ = Falloff::none;  ///< kept while the distance is unlimited

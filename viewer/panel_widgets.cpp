@@ -1,6 +1,7 @@
 #include "viewer/panel_widgets.h"
 
 #include "image/color_map.h"
+#include "viewer/part_list.h"
 
 #include <imgui.h>
 
@@ -31,7 +32,7 @@ constexpr const char* kHelp[][2] = {
     {"R", "ray reference on or off"},
     {"W", "wipe to the reference on or off; drag the line"},
     {"S", "reference side by side on or off"},
-    {"G", "ground on or off"},
+    {"G", "shadow on the ground on or off"},
     {"Esc", "cancel what runs in the background"},
     {"Tab", "hide or show the panel"},
     {"P", "save the picture"},
@@ -95,6 +96,32 @@ bool edit_distance(DistanceLimit& limit, Falloff& falloff)
     return apply;
 }
 
+bool edit_ground(std::optional<GroundPlane>& ground, const Model* model)
+{
+    bool occludes = ground.has_value();
+    bool apply = false;
+    if (ImGui::Checkbox("ground occludes", &occludes)) {
+        ground.reset();
+        if (occludes)
+            ground = GroundPlane{model ? up_direction(model->up) : GroundPlane{}.up};
+        apply = true;
+    }
+    if (!ground || !model || !model->occluding_ground)
+        return apply;
+    const Frame& frame = model->geometry().frame;
+    double height = ground->height.value_or(*plane_of(*model->occluding_ground, frame).height);
+    constexpr double kPerPixel = 1e-3;  // diagonals
+    if (ImGui::DragScalar("height", ImGuiDataType_Double, &height,
+                          static_cast<float>(kPerPixel * frame.diagonal), nullptr, nullptr, "%.6g"))
+        ground->height = height;
+    apply |= was_set();
+    if (ground->height && ImGui::Button("below the lowest point")) {
+        ground->height.reset();
+        apply = true;
+    }
+    return apply;
+}
+
 bool edit_target(TargetSettings& target)
 {
     bool apply = false;
@@ -147,6 +174,55 @@ bool edit_texels(std::optional<TexelSettings>& texels, TexelSettings& chosen)
     return apply;
 }
 
+void edit_parts(const Scene& scene, PartChoice& parts)
+{
+    int clear = static_cast<int>(parts.clear);
+    if (ImGui::Combo("glass", &clear, "solid\0open\0cut by alpha\0"))
+        parts.clear = static_cast<ClearSurfaces>(clear);
+    std::vector<PartTick> ticks = part_ticks(scene, parts);
+    if (ticks.empty()) {
+        ImGui::TextDisabled("no part of it has a name");
+        return;
+    }
+    constexpr float kRowsShown = 9.5f;
+    const float row = ImGui::GetFrameHeightWithSpacing();
+    const float height = row * std::min(kRowsShown, static_cast<float>(ticks.size()) + 1.5f);
+    constexpr ImGuiTableFlags kFlags =
+        ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV;
+    if (!ImGui::BeginTable("parts", 3, kFlags, ImVec2(0.0f, height)))
+        return;
+    ImGui::TableSetupScrollFreeze(0, 1);
+    ImGui::TableSetupColumn("part", ImGuiTableColumnFlags_WidthStretch);
+    ImGui::TableSetupColumn("occludes", ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableSetupColumn("baked", ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableHeadersRow();
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(ticks.size()));
+    const std::vector<PartTick> before = ticks;
+    while (clipper.Step()) {
+        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+            PartTick& tick = ticks[static_cast<std::size_t>(i)];
+            ImGui::PushID(i);
+            ImGui::TableNextRow();
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(tick.name.c_str());
+            if (ImGui::IsItemHovered())
+                ImGui::SetTooltip("%s, %llu triangles", tick.name.c_str(),
+                                  static_cast<unsigned long long>(tick.triangles));
+            ImGui::TableNextColumn();
+            ImGui::Checkbox("##occludes", &tick.occludes);
+            ImGui::TableNextColumn();
+            ImGui::Checkbox("##baked", &tick.is_baked);
+            ImGui::PopID();
+        }
+    }
+    ImGui::EndTable();
+    const bool is_any_baked = std::ranges::any_of(ticks, &PartTick::is_baked);
+    if (ticks == before || !is_any_baked)
+        return;
+    parts = choice_of(ticks, std::move(parts));
+}
+
 bool view_widgets(PanelState& state)
 {
     ViewOptions& view = state.view;
@@ -172,7 +248,7 @@ bool view_widgets(PanelState& state)
     if (view.colors == Colors::difference)
         changed |= ImGui::SliderFloat("full scale", &view.difference_scale, 0.001f, 1.0f, "%.3f",
                                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    changed |= ImGui::Checkbox("ground", &view.ground);
+    changed |= ImGui::Checkbox("shadow on the ground", &view.ground);
     return changed;
 }
 

@@ -15,12 +15,19 @@ bool edit_settings(EngineSettings& engine);
 /// The same for the limit, in % of the diagonal. falloff: what a limit has, once there is one.
 bool edit_distance(DistanceLimit& limit, Falloff& falloff);
 
+/// The same for a ground that occludes. model: as it is shown, or null.
+bool edit_ground(std::optional<GroundPlane>& ground, const Model* model);
+
 /// The same for the surface's normals and what the values at vertices are.
 bool edit_target(TargetSettings& target);
 
 /// The same for where values are: at vertices, or at the texels of a map. chosen: what a map has,
 /// once there is one.
 bool edit_texels(std::optional<TexelSettings>& texels, TexelSettings& chosen);
+
+/// The parts of the model's scene with two ticks each, and what light goes through. The last part
+/// that is baked stays so.
+void edit_parts(const Scene& scene, PartChoice& parts);
 
 /// How the model is shown. True when anything changed.
 bool view_widgets(PanelState& state);

@@ -123,7 +123,7 @@ struct Upload {
     TextureBuffer splats, radii, corners;
     VertexArray triangles;
     std::size_t vertex_count = 0, index_count, splat_count;
-    Ground ground;
+    ShadowSquare ground;
     float radius = 0.0f;  ///< of a ball about the origin that holds all that is drawn
     std::optional<Texture2D> ground_occlusion;
     std::vector<glm::vec2> ground_values =

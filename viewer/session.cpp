@@ -1,6 +1,7 @@
 #include "viewer/session.h"
 
 #include "bake/bake.h"
+#include "bake/texel_layout.h"
 #include "files/file_type.h"
 #include "files/scene_io.h"
 #include "gpu/context.h"
@@ -26,6 +27,15 @@ EngineSettings draft_of(EngineSettings settings)
     else
         settings.quality = std::min(settings.quality, kDraft);
     return settings;
+}
+
+Mesh mesh_of(Scene scene, const NormalSettings& normals, const PartChoice& parts)
+{
+    std::vector<Scene> input, others;
+    input.push_back(std::move(scene));
+    for (const std::filesystem::path& file : parts.occluders)
+        others.push_back(read_scene(file));
+    return std::move(make_world(std::move(input), others, normals, parts).meshes.front());
 }
 
 }  // namespace
@@ -92,7 +102,7 @@ struct Session::Engines {
         if (model != wanted)
             layout.reset();
         model = wanted;
-        prepared.emplace(prepare(wanted->geometry(), choice));
+        prepared.emplace(prepare(wanted->occluding(), choice));
         untold_s = prepared->seconds().surfels + prepared->seconds().tree;
     }
 
@@ -109,10 +119,17 @@ Session::Session() : engines_(std::make_unique<Engines>()), solver_([this] { eng
 }
 Session::~Session() = default;
 
-void Session::open(const std::filesystem::path& path, UpAxis up)
+void Session::open(const std::filesystem::path& path, UpAxis up, const ReadOptions& reading)
 {
     state_.message.clear();
-    start_making({path, up, nullptr, settings_.target});
+    start_making({path, up, nullptr, settings_.target, settings_.parts, settings_.ground, reading});
+}
+
+void Session::open(const std::filesystem::path& path, UpAxis up, const SessionSettings& settings,
+                   const ReadOptions& reading)
+{
+    settings_ = settings;
+    open(path, up, reading);
 }
 
 void Session::start_making(Making making)
@@ -124,11 +141,12 @@ void Session::start_making(Making making)
         auto made = std::make_unique<Made>();
         made->number = number;
         try {
-            Scene scene = making.scene ? *making.scene : read_scene(making.path);
+            Scene scene = making.scene ? *making.scene : read_scene(making.path, making.reading);
             if (scene.free_vertices)  // make_mesh splits them, for these normals alone
                 made->scene = making.scene ? making.scene : std::make_shared<const Scene>(scene);
-            made->model = std::make_shared<const Model>(make_model(
-                make_mesh(std::move(scene), making.target.normals), making.up, making.target));
+            made->model = std::make_shared<const Model>(
+                make_model(mesh_of(std::move(scene), making.target.normals, making.parts),
+                           making.up, making.target, kLargestSplat, making.ground));
             const std::shared_ptr<const Mesh>& mesh = made->model->mesh;
             if (!made->scene)
                 made->scene = std::shared_ptr<const Scene>(mesh, &mesh->scene);
@@ -149,9 +167,12 @@ void Session::solve(const SessionSettings& settings)
         settings.max_distance != settings_.max_distance || settings.texels != settings_.texels;
     settings_ = settings;
     if (making_) {  // its model is solved with them
-        if (making_->target != settings_.target) {
+        if (making_->target != settings_.target || making_->parts != settings_.parts ||
+            making_->ground != settings_.ground) {
             Making anew = *making_;
             anew.target = settings_.target;
+            anew.parts = settings_.parts;
+            anew.ground = settings_.ground;
             start_making(std::move(anew));
         }
         return;
@@ -167,23 +188,32 @@ void Session::solve(const SessionSettings& settings)
 void Session::solve_or_make()
 {
     was_cancelled_ = false;
-    if (state_.model->settings == settings_.target)
+    if (state_.model->settings == settings_.target && state_.parts == settings_.parts &&
+        state_.model->ground_plane == settings_.ground)
         start_solve();
     else
-        start_making({state_.path, state_.model->up, scene_, settings_.target});
+        start_making({state_.path, state_.model->up, scene_, settings_.target, settings_.parts,
+                      settings_.ground});
+}
+
+Definition Session::definition() const
+{
+    Definition definition =
+        definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry().frame);
+    definition.ground = state_.model->occluding_ground;
+    return definition;
 }
 
 void Session::start_solve()
 {
     const std::uint64_t number = ++solve_number_;
     EngineSettings whole = settings_.engine;
-    whole.definition =
-        definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry().frame);
+    whole.definition = definition();
     std::vector<EngineSettings> steps = {draft_of(whole), whole};
     if (steps[0] == steps[1])
         steps.pop_back();
     solver_.start([this, number, steps, limit = settings_.max_distance, texels = settings_.texels,
-                   model = state_.model](const Progress& progress) {
+                   parts = state_.parts, model = state_.model](const Progress& progress) {
         try {
             EngineChoice choice = steps[0];
             choice.context = choice.device == Device::gpu ? engines_->context() : nullptr;
@@ -193,7 +223,8 @@ void Session::start_solve()
                 answer->number = number;
                 answer->is_draft = i + 1 < steps.size();
                 answer->build_s = engines_->untold_s;
-                answer->settings = {steps[i], limit, model->settings, texels};
+                answer->settings = {steps[i], limit, model->settings,
+                                    texels,   parts, model->ground_plane};
                 answer->found =
                     solve_model(*engines_->prepared, *model, steps[i],
                                 {.vertices = !texels, .ground = true, .points = !texels},
@@ -245,10 +276,8 @@ void Session::start_reference()
         tracer_.cancel();
         return;
     }
-    const Definition definition =
-        definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry().frame);
     tracer_.start(
-        [this, number, definition, rays = reference_rays_, model = state_.model,
+        [this, number, definition = definition(), rays = reference_rays_, model = state_.model,
          layout = settings_.texels ? state_.layout : nullptr,
          padding = settings_.texels ? settings_.texels->padding : 0](const Progress& progress) {
             try {
@@ -290,7 +319,8 @@ void Session::measure()
 {
     state_.error.reset();
     if (state_.is_solved && !state_.layout && !state_.reference.empty() &&
-        !truth_.truth.points.empty() && solved_with_.max_distance == settings_.max_distance)
+        !truth_.truth.points.empty() && solved_with_.max_distance == settings_.max_distance &&
+        solved_with_.ground == settings_.ground)
         state_.error = error_of(*state_.model, truth_, occlusion_, at_points_);
 }
 
@@ -316,6 +346,7 @@ Session::Changes Session::update()
         if (changes.model) {
             state_.path = making.path;
             state_.model = made->model;
+            state_.parts = making.parts;
             state_.read_s = made->seconds;
             state_.is_solved = false;
             state_.layout.reset();
@@ -368,31 +399,33 @@ void Session::save(const std::filesystem::path& path) const
     made.output = path;
     made.engine = solved_with_.engine;
     made.max_distance = solved_with_.max_distance;
+    made.ground = solved_with_.ground;
     made.target = solved_with_.target;
     made.texels = solved_with_.texels;
+    made.parts = solved_with_.parts;
     if (state_.layout)
         return save_map(path, mark_of(made));
     check_output(state_.path, path);
     const Scene& scene = state_.model->mesh->scene;
     write_scene(path, scene, std::span(occlusion()).first(scene.positions.size()),
-                {.mark = mark_of(made)});
+                {.mark = mark_of(made), .unbaked = state_.model->mesh->unbaked});
 }
 
 void Session::save_map(const std::filesystem::path& path, const std::string& mark) const
 {
-    if (state_.map->visibility.size() > 1)
+    const std::vector<Map>& pages = state_.map->visibility;
+    const bool is_picture = type_of(path) == FileType::unknown;
+    if (pages.size() > 1 && (is_picture || state_.layout->layout.materials.empty()))
         throw InputError(path.string() + ": holds a map of one page");
-    const Map& map = state_.map->visibility[0];
-    if (type_of(path) == FileType::unknown) {
-        write_map(path, map, MapDepth::byte, mark);
+    if (is_picture) {
+        write_map(path, pages[0], MapDepth::byte, mark);
         return;
     }
     check_output_with_map(state_.path, path);
-    OcclusionMap picture{map_bytes(map, MapDepth::byte), state_.layout->uv_set.value_or(0), {}};
-    if (!state_.layout->uv_set)
-        picture.uvs = state_.layout->layout.pages[0];
-    static_cast<void>(
-        write_scene_with_map(path, state_.model->mesh->scene, picture, {.mark = mark}));
+    const OcclusionMap picture =
+        occlusion_map_of(state_.layout->layout, state_.layout->uv_set, pages, MapDepth::byte);
+    static_cast<void>(write_scene_with_map(path, state_.model->mesh->scene, picture,
+                                           {.mark = mark, .unbaked = state_.model->mesh->unbaked}));
 }
 
 }  // namespace surfelao

@@ -2,7 +2,9 @@
 /// answer first, and tracing the reference. Knows no window.
 #pragma once
 
+#include "bake/world.h"
 #include "engines/engine.h"
+#include "files/scene_io.h"
 #include "surfels/occlusion.h"
 #include "surfels/scene.h"
 #include "viewer/background_worker.h"
@@ -30,6 +32,9 @@ struct SessionSettings {
     TargetSettings target;
     /// A map in place of values at vertices: its charts, size and padding count.
     std::optional<TexelSettings> texels = {};
+    PartChoice parts = {};  ///< who occludes, who is baked and shown
+    /// That occludes; its up is the model's.
+    std::optional<GroundPlane> ground = {};
     bool operator==(const SessionSettings&) const = default;
 };
 
@@ -37,6 +42,7 @@ struct SessionSettings {
 struct SessionState {
     std::filesystem::path path;          ///< of the model shown
     std::shared_ptr<const Model> model;  ///< null until a file was read
+    PartChoice parts;                    ///< that it was made with
     bool is_solved = false;              ///< there is an answer: Session::occlusion()
     bool is_draft = false;               ///< it is the rough one
     std::vector<Occlusion> reference;    ///< empty until it was traced for the same definition
@@ -70,11 +76,15 @@ public:
 
     /// Reads a file in the background, then solves it with the last settings. What is shown stays
     /// until the file turns out to be readable.
-    void open(const std::filesystem::path& path, UpAxis up);
+    void open(const std::filesystem::path& path, UpAxis up, const ReadOptions& reading = {});
+    /// The same with these settings.
+    void open(const std::filesystem::path& path, UpAxis up, const SessionSettings& settings,
+              const ReadOptions& reading = {});
 
     /// Solves the model with these settings: a draft first where the engine has one, then the
-    /// whole. What is running is given up. Other targets need another model: it is made first, of
-    /// the scene that was read. Does nothing when they are the last settings.
+    /// whole. What is running is given up. Other targets, parts or another ground need another
+    /// model: it is made first, of the scene that was read. Does nothing when they are the last
+    /// settings.
     void solve(const SessionSettings& settings);
 
     /// An even number of rays: the reference is traced now and whenever the definition changes.
@@ -122,6 +132,9 @@ private:
         UpAxis up = UpAxis::y;
         std::shared_ptr<const Scene> scene;  ///< null: the file is read
         TargetSettings target;
+        PartChoice parts;
+        std::optional<GroundPlane> ground;
+        ReadOptions reading = {};
     };
     struct Made;
     struct Answer;
@@ -129,6 +142,7 @@ private:
     struct Engines;
     void start_making(Making making);
     void solve_or_make();
+    [[nodiscard]] Definition definition() const;
     void start_solve();
     void start_reference();
     void save_map(const std::filesystem::path& path, const std::string& mark) const;

@@ -9,7 +9,7 @@ namespace surfelao {
 
 ModelLayout layout_of(const Model& model, const TexelSettings& texels, const Progress& progress)
 {
-    TexelLayout found = layout_for(*model.mesh, texels, true, progress);
+    TexelLayout found = layout_for(*model.mesh, texels, {}, progress);
     LayoutFacts facts = facts_of(*model.mesh, found.layout);
     return {std::move(found.layout), std::move(facts), found.uv_set};
 }

@@ -69,7 +69,7 @@ ModelReference reference_of(const Model& model, const Definition& definition, st
     std::vector<Receiver> receivers(asked.begin(), asked.end());
     receivers.insert(receivers.end(), model.ground_receivers.begin(), model.ground_receivers.end());
     const Reference traced = trace_reference(
-        model.geometry(), receivers,
+        model.occluding(), receivers,
         {.definition = definition, .rays = rays, .find_ill_defined = false}, progress);
     const std::span<const Occlusion> answers = traced.occlusion;
     ModelReference reference{model.target->values(answers.first(asked.size())), traced.from_cache};
@@ -89,12 +89,12 @@ ModelTruth truth_of(const Model& model, const Definition& definition, std::uint3
     found.truth = trace_truth(*model.mesh, settings, stage(progress, 0.0, 0.2));
     const auto find = [&](const VertexTarget& fitted) {
         found.floor =
-            find_floor(fitted, geometry, found.truth, settings, stage(progress, 0.2, 0.6));
+            find_floor(fitted, *model.mesh, found.truth, settings, stage(progress, 0.2, 0.6));
     };
     if (model.settings.values == VertexValues::fit) {
         find(*model.target);
         const Reference ground =
-            trace_reference(geometry, model.ground_receivers,
+            trace_reference(model.occluding(), model.ground_receivers,
                             {.definition = definition, .rays = rays, .find_ill_defined = false},
                             stage(progress, 0.6, 1.0));
         found.reference = {found.floor.values, found.floor.from_cache && ground.from_cache};

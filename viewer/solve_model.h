@@ -29,7 +29,7 @@ struct ModelAnswer {
     double seconds = 0.0;              ///< with the fit
 };
 
-/// prepared: of this model's geometry. Throws as solve().
+/// prepared: of what occludes this model. Throws as solve().
 [[nodiscard]] ModelAnswer solve_model(const Prepared& prepared, const Model& model,
                                       const SolveSettings& settings, const SolveWith& with = {},
                                       const Progress& progress = {});

@@ -77,7 +77,7 @@ public:
         panel_state_.wants_reference |= needs_reference(panel_state_);
         session_.solve(panel_state_.settings);
         if (!options.input.empty())
-            session_.open(options.input, options.up);
+            session_.open(options.input, options.up, options.reading);
     }
 
     void run()
@@ -112,8 +112,11 @@ private:
             if (glfwGetTime() - start < timeout)
                 echo_frames_ = kEchoFrames;
         }
-        if (!inbox_.path.empty())
-            session_.open(std::exchange(inbox_.path, {}), options_.up);
+        if (inbox_.path.empty())
+            return;
+        PartChoice& parts = panel_state_.settings.parts;  // names are of the file that is shown
+        parts.exclude = parts.receivers = {};
+        session_.open(std::exchange(inbox_.path, {}), options_.up, panel_state_.settings);
     }
 
     bool has_view() const { return session_.state().model != nullptr; }

@@ -15,6 +15,7 @@ namespace surfelao {
 
 struct WindowOptions {
     std::filesystem::path input;  ///< may be empty: files can be dropped on the window
+    ReadOptions reading = {};     ///< of the input
     int width = 1280, height = 800;
     UpAxis up = UpAxis::y;
     std::string camera;                ///< parse_camera's words, for every file that is opened

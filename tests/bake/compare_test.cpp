@@ -218,7 +218,7 @@ TEST_F(Compare, OfMapsJudgesWhatABakeWouldShow)
 {
     const CompareSettings settings = quick_map(folder_ / "in.obj");
     const Comparison c = compare(settings);
-    const MapLayout layout = layout_for(*c.mesh, *settings.texels, true).layout;
+    const MapLayout layout = layout_for(*c.mesh, *settings.texels).layout;
     const MapBake bake = bake_map(*c.mesh, layout, {.depth = MapDepth::whole, .check = 1000},
                                   c.rows[0].settings, {});
     EXPECT_EQ(c.receivers, bake.receivers);

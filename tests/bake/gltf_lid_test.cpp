@@ -53,6 +53,7 @@ int add_mesh(GltfMaker& maker, const Scene& scene, float up = 0.0f)
 struct LidAndFloor {
     GltfMaker maker;
     std::size_t lid_vertices = 0;
+    std::vector<std::string> notes = {};  ///< of the bake
 
     explicit LidAndFloor(float up = 0.0f)
     {
@@ -68,14 +69,15 @@ struct LidAndFloor {
     json& lid_primitive() { return maker.document["meshes"][1]["primitives"][0]; }
 
     /// Occlusion at the centre of the floor, out of the file that bake() writes.
-    double centre() const
+    double centre(const PartChoice& parts = {})
     {
         const TemporaryFolder folder;
         BakeSettings settings;
         settings.input = folder.file("in.glb", maker.glb());
         settings.output = folder / "out.glb";
         settings.target.values = VertexValues::point;
-        static_cast<void>(bake(settings));
+        settings.parts = parts;
+        notes = bake(settings).notes;
         const std::string glb = contents_of(settings.output);
         std::uint32_t text_size = 0;
         std::memcpy(&text_size, glb.data() + 12, sizeof text_size);
@@ -148,6 +150,50 @@ TEST(GltfLid, ACentreFarAwayChangesNothing)
     world.maker.document["extensionsRequired"] = {"CESIUM_RTC"};
     world.maker.document["extensions"]["CESIUM_RTC"]["center"] = {6e6, 1e6, 2e6};
     EXPECT_NEAR(world.centre(), kUnderTheLid, 0.01);
+}
+
+// MASK without a texture is there or gone as a whole; what light goes through is told, and open on
+// request.
+TEST(GltfLid, MaterialsWithAlphaOccludeAsTheySay)
+{
+    const struct {
+        json material;
+        ClearSurfaces clear;
+        double occlusion;
+        std::size_t notes;
+    } rows[] = {
+        {{{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0}}}}},
+         ClearSurfaces::solid,
+         0.0,
+         1},
+        {{{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.6}}}}},
+         ClearSurfaces::open,
+         kUnderTheLid,
+         0},
+        {{{"alphaMode", "MASK"},
+          {"alphaCutoff", 0.7},
+          {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.6}}}}},
+         ClearSurfaces::solid,
+         0.0,
+         1},
+        {{{"alphaMode", "BLEND"}}, ClearSurfaces::solid, kUnderTheLid, 1},
+        {{{"alphaMode", "BLEND"}}, ClearSurfaces::open, 0.0, 1},
+        {{{"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 0.5}}}}}},
+         ClearSurfaces::open,
+         0.0,
+         1},
+        {{{"extensions", {{"KHR_materials_transmission", json::object()}}}},
+         ClearSurfaces::open,
+         kUnderTheLid,
+         0},
+    };
+    for (const auto& row : rows) {
+        LidAndFloor world;
+        world.maker.document["materials"] = {row.material};
+        world.lid_primitive()["material"] = 0;
+        EXPECT_NEAR(world.centre({.clear = row.clear}), row.occlusion, 0.01) << row.material;
+        EXPECT_EQ(world.notes.size(), row.notes) << row.material;
+    }
 }
 
 }  // namespace

@@ -114,10 +114,7 @@ protected:
         settings.definition.max_distance = 0.3f;
         return settings;
     }
-    Floor find(std::uint32_t rays) const
-    {
-        return find_floor(target_, mesh_->geometry, truth_, near(rays));
-    }
+    Floor find(std::uint32_t rays) const { return find_floor(target_, *mesh_, truth_, near(rays)); }
     std::shared_ptr<const Mesh> mesh_ =
         mesh_of(scenes::room({0, 0, 0}, {4, 3, 2}, 3) + scenes::box({1, 1, 0}, {2, 2, 1}, 1));
     VertexTarget target_{mesh_, {}};

@@ -57,7 +57,7 @@ TEST(TexelLayout, TakesTheFilesCoordinatesWhereTheyCanHoldAMap)
                 {{bricks}, {}, "times over"},
                 {{line}, {}, "no triangle has an area"}};
     for (const auto& row : rows) {
-        const TexelLayout found = layout_for(square_with(row.sets), {.size = 64}, true);
+        const TexelLayout found = layout_for(square_with(row.sets), {.size = 64});
         EXPECT_EQ(found.uv_set, row.taken) << row.why_new;
         EXPECT_EQ(found.charts.has_value(), !row.taken);
         EXPECT_EQ(found.why_new.empty(), row.taken.has_value());
@@ -65,18 +65,66 @@ TEST(TexelLayout, TakesTheFilesCoordinatesWhereTheyCanHoldAMap)
         EXPECT_EQ(found.layout.pages.size(), 1u);
     }
     const Mesh mesh = square_with({folded});
-    EXPECT_EQ(layout_for(mesh, {.size = 64, .uvs = UvChoice::file}, true).uv_set, 0u);
-    EXPECT_THROW((void)layout_for(mesh, {.size = 64, .uvs = UvChoice::file, .uv_set = 1}, true),
+    EXPECT_EQ(layout_for(mesh, {.size = 64, .uvs = UvChoice::file}).uv_set, 0u);
+    EXPECT_THROW((void)layout_for(mesh, {.size = 64, .uvs = UvChoice::file, .uv_set = 1}),
                  InputError);
-    EXPECT_THROW((void)layout_for(square_with({}), {.size = 64}, false), InputError);
+    EXPECT_THROW((void)layout_for(square_with({}), {.size = 64}, {.new_places = false}),
+                 InputError);
 }
 
 TEST(TexelLayout, PrefersTheSetOfAMapThatTheFileHas)
 {
     const auto asset = std::make_shared<const MappedAsset>();
     const TexelSettings settings{.size = 64};
-    EXPECT_EQ(layout_for(square_with({flat, flat}, asset), settings, true).uv_set, 1u);
-    EXPECT_EQ(layout_for(square_with({flat}, asset), settings, true).uv_set, 0u);
+    EXPECT_EQ(layout_for(square_with({flat, flat}, asset), settings).uv_set, 1u);
+    EXPECT_EQ(layout_for(square_with({flat}, asset), settings).uv_set, 0u);
+}
+
+/// Triangle t has material t % 2.
+class PaintedAsset : public SourceAsset {
+public:
+    explicit PaintedAsset(std::size_t triangles) : triangles_(triangles) {}
+    [[nodiscard]] BaseColors base_colors() const override
+    {
+        BaseColors colors{.materials = std::vector<BaseColor>(2), .triangles = {}};
+        for (std::uint32_t t = 0; t < triangles_; ++t)
+            colors.triangles.push_back(t % 2);
+        return colors;
+    }
+
+private:
+    std::size_t triangles_;
+};
+
+// Each quad's two triangles cover the same half of it in the map: a page for each material has no
+// overlap. With one that lies on another of its material only who insists gets pages.
+TEST(TexelLayout, GivesEachMaterialAPageWhereTheyLieOnEachOther)
+{
+    for (const bool overlaps : {false, true}) {
+        Scene scene = scenes::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
+        UvSet& uvs = scene.uvs.emplace_back();
+        for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+            const auto quad = static_cast<double>(t / 2);
+            const double left = overlaps && t == 2 ? 0.0 : quad / 16.0;
+            for (const glm::dvec2 corner : {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(0, 1)})
+                uvs.values.emplace_back(left + corner.x / 16.0, corner.y);
+            const auto end = static_cast<std::uint32_t>(uvs.values.size());
+            uvs.corners.emplace_back(end - 3, end - 2, end - 1);
+        }
+        scene.asset = std::make_shared<const PaintedAsset>(scene.triangles.size());
+        const Mesh mesh = make_mesh(scene);
+        const auto pages = [&](TexelSettings settings, const MapRoom& room) {
+            settings.size = 64;
+            const TexelLayout found = layout_for(mesh, settings, room);
+            EXPECT_EQ(found.layout.materials.size(), found.layout.pages.size() == 2 ? 2u : 0u);
+            return std::pair(found.layout.pages.size(), found.uv_set.has_value());
+        };
+        using Found = std::pair<std::size_t, bool>;
+        EXPECT_EQ(pages({}, {}), overlaps ? Found(1, false) : Found(2, true));
+        EXPECT_EQ(pages({.uvs = UvChoice::file}, {}), Found(2, true));
+        EXPECT_EQ(pages({}, {.new_places = false}), Found(2, true));
+        EXPECT_EQ(pages({}, {.several_pages = false}), Found(1, false));
+    }
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ struct World {
         TexelSettings settings;
         settings.uvs = size > 0 ? UvChoice::made : UvChoice::file;
         settings.size = size > 0 ? size : settings.size;
-        layout = layout_for(mesh, settings, /*can_hold_new=*/true).layout;
+        layout = layout_for(mesh, settings).layout;
     }
     Mesh mesh;
     MapLayout layout;

@@ -111,6 +111,37 @@ TEST_F(BakeCommand, OptionsReachTheReport)
         EXPECT_TRUE(json.contains(key)) << key;
 }
 
+TEST_F(BakeCommand, AGroundIsToldEverywhereAndRefusedWhereItIsNone)
+{
+    write_obj(folder_ / "box.obj", scenes::box({0, 0, 0}, {1, 1, 1}, 1));
+    std::vector<std::string> arguments = {"bake",     folder_ / "box.obj",
+                                          "-o",       folder_ / "x.ply",
+                                          "--values", "point",
+                                          "--up",     "z",
+                                          "--json",   folder_ / "report.json",
+                                          "--ground"};
+    const Outcome outcome = run(arguments);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find(", over a ground at z = -0.000346407"), outcome.out.npos)
+        << outcome.out;
+    EXPECT_NE(contents_of(folder_ / "x.ply").find(" ground=z:lowest "), std::string::npos);
+    const Json ground = Json::parse(contents_of(folder_ / "report.json"))["settings"]["ground"];
+    EXPECT_EQ(ground["up"], (std::vector<double>{0, 0, 1}));
+    EXPECT_NEAR(ground["height"].get<double>(), -0.5 / std::sqrt(3.0) - 2e-4, 1e-6);
+    // by faces 0, 1/2 and 1: the mean over the corners of a box
+    EXPECT_NE(outcome.out.find("mean occlusion 0.5000"), outcome.out.npos) << outcome.out;
+    for (const std::vector<std::string>& wrong :
+         {std::vector<std::string>{"--ground=high"},
+          {"--ground", "nan"},
+          {"--ground", "--engine", "disks", "--kernel", "bunnell"},
+          {"--up", "w"}}) {
+        std::vector<std::string> asked = {"bake", folder_ / "box.obj", "-o", folder_ / "y.ply"};
+        asked.insert(asked.end(), wrong.begin(), wrong.end());
+        EXPECT_EQ(run(asked).code, 2) << wrong[0];
+        EXPECT_FALSE(fs::exists(folder_ / "y.ply"));
+    }
+}
+
 TEST_F(BakeCommand, EveryResultStatesItsErrorAndTheStatementChangesNoByte)
 {
     std::vector<std::string> bytes;
@@ -359,6 +390,37 @@ TEST_F(BakeCommand, AFullDiskIsAFailureThatLeavesTheOldFileAndNothingElse)
     EXPECT_EQ(contents_of(disk / "x.ply"), "old");
     EXPECT_EQ(std::distance(fs::directory_iterator(disk), {}), 1);
     umount(disk.c_str());
+}
+
+TEST_F(BakeCommand, PartsAndFilesTogether)
+{
+    std::ofstream(folder_ / "named.obj") << "o tri\n" << contents_of(folder_ / "a.obj");
+    const std::string named = folder_ / "named.obj", out = folder_ / "out";
+    const struct {
+        std::vector<std::string> arguments;
+        int code;
+        std::string words;
+    } rows[] = {
+        {{named, "-o", folder_ / "x.ply", "--exclude", "Tri"}, 1, "near it: tri"},
+        {{named, "-o", folder_ / "x.ply", "--receivers", "tri"}, 0, "mean occlusion"},
+        {{named, "-o", folder_ / "x.ply", "--together"}, 2, "--together is for several files."},
+        {{named, folder_ / "b.obj", "-o", out, "--together", "--occluders", named}, 0, "b.obj"},
+        {{named, "-o", named, "--occluders", folder_ / "b.obj"}, 2, "named.obj"},
+    };
+    for (const auto& row : rows) {
+        std::vector<std::string> arguments{"bake"};
+        arguments.insert(arguments.end(), row.arguments.begin(), row.arguments.end());
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.code, row.code) << outcome.err;
+        EXPECT_NE((outcome.out + outcome.err).find(row.words), std::string::npos)
+            << outcome.out << outcome.err;
+    }
+    const Json report = Json::parse(
+        run({"bake", named, "-o", folder_ / "x.ply", "--receivers", "t*", "--json", "-"}).out);
+    EXPECT_EQ(report["settings"]["parts"]["receivers"], Json({"t*"}));
+    EXPECT_EQ(report["baked_triangles"], report["triangles"]);
+    const Json info = Json::parse(run({"info", named, "--json", "-"}).out);
+    EXPECT_EQ(info["labels"][0]["name"], "tri");
 }
 
 }  // namespace

@@ -176,6 +176,29 @@ TEST(Engines, DistanceLimitsOfAUserAreRefusedByName)
                  InputError);
 }
 
+TEST(Engines, AGroundOfAUserLiesWhereItWasAskedForOrBelowAll)
+{
+    // lowest along z: 3
+    const Geometry box = make_geometry(scenes::box({1, 2, 3}, {2, 4, 6}, 1));
+    const double diagonal = box.frame.diagonal;
+    const float offset = 1e-3f;
+    const auto height_of = [&](std::optional<double> height) {
+        const auto ground = ground_of(GroundPlane{{0, 0, 1}, height}, {box}, offset);
+        return (*plane_of(*ground, box.frame).height - 3.0) / diagonal;
+    };
+    EXPECT_FALSE(ground_of(std::nullopt, {box}, offset).has_value());
+    // what stands on a ground does not stand in it
+    for (const std::optional<double> touching :
+         {std::optional<double>(), {3.0}, {3.0 + diagonal * 1.9e-3}, {3.0 - diagonal * 1.9e-3}})
+        EXPECT_NEAR(height_of(touching), -2e-3, 1e-6);
+    for (const double asked : {3.0 - diagonal * 2.1e-3, 4.5, -30.0})
+        EXPECT_NEAR(height_of(asked), (asked - 3.0) / diagonal, 1e-6);
+    EXPECT_THROW(static_cast<void>(height_of(1e30)), InputError);
+    EXPECT_EQ(text_of(GroundPlane{{0, 0, 1}, 0.1}), "z:0.1");
+    EXPECT_EQ(text_of(*ground_of(GroundPlane{{0, 0, 1}, 0.1}, {box}, offset), box.frame),
+              "z = 0.1");
+}
+
 TEST(Engines, ReceiversThatNoEngineCanAnswerAreRefusedByTheirNumber)
 {
     const World world;

@@ -114,6 +114,43 @@ TEST(GltfMap, LiesOverTheSetThatIsNamed)
               (json{{"index", 1}, {"texCoord", 1}}));
 }
 
+// A page for each material: two primitives with materials of their own, one without.
+TEST(GltfMap, MaterialsHaveMapsOfTheirOwn)
+{
+    GltfMaker maker = painted_square();
+    maker.add("materials", {{"name", "iron"}});
+    json& primitives = maker.document["meshes"][0]["primitives"];
+    for (const json& material : {json(1), json()}) {
+        primitives.push_back(primitives[0]);
+        primitives.back().erase("material");
+        if (!material.is_null())
+            primitives.back()["material"] = material;
+    }
+    const std::string bytes = maker.glb();
+    for (const char* path : {"out.glb", "out.gltf"}) {
+        const Scene scene = read_gltf("in.glb", bytes);
+        OcclusionMap map = map_over(0);
+        map.more_pngs = {"second", "third"};
+        map.pages = {0, 0, 2, 2, 1, 1};
+        const std::string once = gltf_contents_with_map(path, scene, map).contents;
+        EXPECT_EQ(gltf_contents_with_map(path, read_gltf(path, once), map).contents, once);
+        const Written written = take_apart(once);
+        const json& document = written.document;
+        const std::string pngs[] = {two_texels(), "third", "second"};
+        for (std::size_t p = 0; p < 3; ++p) {
+            const json& in_file = document["meshes"][0]["primitives"][p];
+            const json& material = document["materials"][in_file["material"].get<std::size_t>()];
+            const json& texture =
+                document["textures"][material["occlusionTexture"]["index"].get<std::size_t>()];
+            const json& image = document["images"][texture["source"].get<std::size_t>()];
+            const json& view = document["bufferViews"][image["bufferView"].get<std::size_t>()];
+            EXPECT_EQ(written.bin.substr(view["byteOffset"].get<std::size_t>(),
+                                         view["byteLength"].get<std::size_t>()),
+                      pngs[p]);
+        }
+    }
+}
+
 TEST(GltfMap, NodesThatShareAMeshShareTheMap)
 {
     GltfMaker maker = painted_square();

@@ -449,7 +449,6 @@ TEST(GltfNotes, ASentenceForEachKind)
         read_made(maker).notes,
         (std::vector<std::string>{"1 primitive of points or lines is left out",
                                   "3 corners behind the last whole triangles are left out",
-                                  "2 materials with alphaMode MASK or BLEND are taken as solid",
                                   "1 animation is not played: the default pose is baked"}));
 }
 

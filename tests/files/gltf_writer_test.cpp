@@ -357,5 +357,45 @@ TEST(GltfWriter, AssimpFindsTheSameModel)
     }
 }
 
+// Two nodes and two instances show one mesh. Who is not baked keeps what it had; a mesh is copied
+// and instances become nodes only where some of them are baked.
+TEST(GltfWriter, WhatIsNotBakedStaysAsItIs)
+{
+    GltfMaker maker = square();
+    const int places = maker.add_vectors<float>({0, 0, 1, 0, 0, 2});
+    maker.document["nodes"] = {
+        {{"mesh", 0}},
+        {{"mesh", 0}},
+        {{"mesh", 0},
+         {"extensions",
+          {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}}}}};
+    maker.document["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+    maker.document["scenes"][0]["nodes"] = {0, 1, 2};
+    const struct {
+        std::vector<bool> unbaked;  // two triangles each
+        std::size_t meshes, nodes;
+        std::vector<std::size_t> baked_nodes;
+    } rows[] = {
+        {{true, true, false, false, true, true, true, true}, 2, 3, {1}},
+        {{false, true, false, true, true, true, true, true}, 3, 3, {0, 1}},
+        {{true, true, true, true, true, true, false, false}, 2, 5, {4}},
+    };
+    for (const auto& row : rows) {
+        const Written written = round_trip(maker, {.unbaked = row.unbaked});
+        const json& nodes = written.document["nodes"];
+        EXPECT_EQ(written.document["meshes"].size(), row.meshes);
+        ASSERT_EQ(nodes.size(), row.nodes);
+        std::vector<std::size_t> baked;
+        for (std::size_t node = 0; node < nodes.size(); ++node) {
+            if (nodes[node].contains("mesh") &&
+                written.attributes(nodes[node]["mesh"]).contains("_OCCLUSION"))
+                baked.push_back(node);
+        }
+        EXPECT_EQ(baked, row.baked_nodes);
+        EXPECT_EQ(written.document["meshes"][0], maker.document["meshes"][0]);
+        EXPECT_EQ(nodes[2].contains("extensions"), row.nodes == 3);
+    }
+}
+
 }  // namespace
 }  // namespace surfelao

@@ -279,6 +279,33 @@ std::vector<Hostile> hostile_files()
         {"stl_EveryCornerOnce",
          [] { return binary_stl(100'000, [](int i) { return static_cast<float>(i); }); }, ""},
 
+        // clouds
+        {"xyz_Points", [] { return times(kMillion, "0 0 0\n"); }, ""},
+        {"xyz_LongLine", [] { return times(4 * kMillion, "1 "); }, "1000 columns"},
+        {"xyz_LongHeader", [] { return "x y z " + times(4 * kMillion, "a ") + "\n1 2 3\n"; },
+         "line 1: \"x\""},
+        {"xyz_Comments", [] { return times(kMillion, "# x y z\n") + "1 2 3\n"; }, ""},
+        {"xyz_Results", [] { return "1 2 3\n" + times(kMillion / 2, "# columns x y z\n"); }, ""},
+        {"pcd_Fields", [] { return "FIELDS " + times(4 * kMillion, "a "); }, "1000 fields"},
+        {"pcd_Array",
+         [] {
+             return "FIELDS x y z a\nSIZE 4 4 4 1\nTYPE F F F U\nCOUNT 1 1 1 4000000\nPOINTS 1\n"
+                    "DATA binary\n" +
+                    std::string(12 + 4 * kMillion, '\0');
+         },
+         ""},
+        {"pcd_Zeros",
+         [] {
+             // a point as it is, then 22 copies of it for three bytes
+             const std::uint32_t copies = kMillion / 10, points = 1 + 22 * copies;
+             const std::string packed =
+                 '\x0B' + std::string(12, '\0') + times(copies, std::string("\xE0\xFF\0", 3));
+             return "FIELDS x y z\nPOINTS " + std::to_string(points) +
+                    "\nDATA binary_compressed\n" +
+                    bytes_of({static_cast<std::uint32_t>(packed.size()), 12 * points}) + packed;
+         },
+         ""},
+
         // glTF
         {"glb_ChainOfNodes",
          [] {

@@ -310,9 +310,11 @@ TEST(SceneIo, OutputsThatCannotBeAreRefusedBeforehand)
     };
     EXPECT_EQ(sentence("a.obj", "b.stl"), ": STL has no place for occlusion, use .ply");
     EXPECT_EQ(sentence("a.obj", "b.fbx"),
-              ": the extension .fbx is not known, only .ply .obj .off .gltf .glb");
+              ": the extension .fbx is not known, only .ply .obj .off .gltf .glb .pcd .xyz .pts "
+              ".txt .asc");
     EXPECT_EQ(sentence("a.obj", "b"),
-              ": a file without extension is not known, only .ply .obj .off .gltf .glb");
+              ": a file without extension is not known, only .ply .obj .off .gltf .glb .pcd .xyz "
+              ".pts .txt .asc");
     EXPECT_EQ(sentence("a.obj", "b.glb"),
               ": only a scene that was read from glTF can be written as glTF, use .ply or .obj");
     EXPECT_NE(sentence("a.obj", "missing/b.ply").find("does not exist"), std::string::npos);

@@ -1,5 +1,6 @@
-/// mesh_fuzz.h: a reader of OBJ, PLY, OFF or STL on any bytes: refuses them in one sentence, or
-/// gives a scene that keeps its promises and survives being written in every format and read again.
+/// mesh_fuzz.h: a reader of meshes or clouds, all but glTF, on any bytes: refuses them in one
+/// sentence, or gives a scene that keeps its promises and survives being written in every format
+/// and read again.
 #pragma once
 
 #include "scene_checks.h"
@@ -7,7 +8,9 @@
 #include "files/maker_mark.h"
 #include "files/obj_io.h"
 #include "files/off_io.h"
+#include "files/pcd_io.h"
 #include "files/ply_io.h"
+#include "files/xyz_io.h"
 
 #include <cstring>
 #include <string>
@@ -51,7 +54,7 @@ void check_baked_twice(const Scene& scene, std::span<const Occlusion> occlusion,
                    write(scene, occlusion, keep).contents);
 }
 
-enum class From { obj, ply, other };
+enum class From { obj, ply, pcd, xyz, other };
 
 /// Over places for each corner that come apart in some faces.
 inline void check_maps(const Scene& scene)
@@ -99,6 +102,41 @@ inline void check_round_trips(const Scene& scene, From from)
                       [](auto&&... rest) { return ply_contents("x.ply", rest...); });
 }
 
+/// A result in one format: as many points, at the same places (to floats where `rounded`).
+template <class Read, class Write>
+void check_cloud(const Scene& scene, std::span<const Occlusion> occlusion, bool rounded,
+                 const Read& read, const Write& write)
+{
+    const Scene again = read("again", write(scene, occlusion, WriteOptions()).contents);
+    SURFELAO_CHECK(again.triangles.empty());
+    SURFELAO_CHECK(again.positions.size() == scene.positions.size());
+    SURFELAO_CHECK(rounded || again.positions == scene.positions);
+    SURFELAO_CHECK(rounded || again.viewpoint == scene.viewpoint || !again.viewpoint);
+    check_baked_twice(scene, occlusion, read, write);
+}
+
+/// Every format takes it; text leaves out the points that are nowhere.
+inline void check_clouds(const Scene& scene, From from)
+{
+    std::vector<Occlusion> occlusion(scene.positions.size());
+    for (std::size_t v = 0; v < occlusion.size(); ++v)
+        occlusion[v] = {static_cast<float>(v % 8) / 7.0f, {0.0f, 0.0f, 1.0f}};
+    const auto read_text = [](const char* name, const std::string& text) {
+        return read_xyz(name, text);
+    };
+    if (scene.placeless.empty()) {
+        for (const char* name : {"x.xyz", "x.pts"})
+            check_cloud(scene, occlusion, false, read_text,
+                        [name](auto&&... rest) { return xyz_contents(name, rest...); });
+    }
+    check_cloud(scene, occlusion, from != From::pcd, read_pcd, pcd_contents);
+    check_cloud(scene, occlusion, from != From::ply, read_ply,
+                [](auto&&... rest) { return ply_contents("x.ply", rest...); });
+    check_cloud(scene, occlusion, false, read_off, off_contents);
+    check_cloud(scene, occlusion, false, read_obj,
+                [](auto&&... rest) { return obj_contents("x.obj", rest...); });
+}
+
 template <class Read>
 int fuzz_mesh(From from, const Read& read, const std::uint8_t* data, std::size_t size)
 {
@@ -108,6 +146,10 @@ int fuzz_mesh(From from, const Read& read, const std::uint8_t* data, std::size_t
         check_invariants(scene);
         if (scene.positions.size() > 10'000)
             return 0;
+        if (scene.triangles.empty()) {
+            check_clouds(scene, from);
+            return 0;
+        }
         check_geometry(scene);
         check_round_trips(scene, from);
     } catch (const InputError& error) {

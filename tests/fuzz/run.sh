@@ -18,13 +18,14 @@ cmake --preset fuzz >/dev/null
 cmake --build --preset fuzz | tail -n 1
 ./build/fuzz/bin/fuzz_seeds build/fuzz/seeds
 
-failed=0
 mkdir -p build/fuzz/findings
-for name in "${names[@]}"; do
-    corpus=build/fuzz/corpus/$name
-    log=build/fuzz/$name.log
+
+# one reader or engine; its line tells what came of it
+fuzz() {
+    local name=$1
+    local corpus=build/fuzz/corpus/$name log=build/fuzz/$name.log
     mkdir -p "$corpus" "build/fuzz/seeds/$name"
-    options=(-max_total_time="$seconds" -timeout=10 -rss_limit_mb=4096 -max_len=65536
+    local options=(-max_total_time="$seconds" -timeout=10 -rss_limit_mb=4096 -max_len=65536
         -artifact_prefix="build/fuzz/findings/$name-" -print_final_stats=1)
     if [ -f "tests/fuzz/$name.dict" ]; then
         options+=(-dict="tests/fuzz/$name.dict")
@@ -35,7 +36,9 @@ for name in "${names[@]}"; do
     else
         echo "$name: finding, see $log" >&2
         tail -n 30 "$log" >&2
-        failed=1
+        return 1
     fi
-done
-exit $failed
+}
+export -f fuzz
+export seconds
+printf '%s\n' "${names[@]}" | xargs -P "$(nproc)" -I{} bash -c 'set -euo pipefail; fuzz {}'

@@ -13,7 +13,7 @@ namespace surfelao {
 
 inline void check_invariants(const Scene& scene)
 {
-    SURFELAO_CHECK(!scene.triangles.empty());
+    SURFELAO_CHECK(!scene.positions.empty());
     for (const glm::dvec3& position : scene.positions)
         SURFELAO_CHECK(std::isfinite(position.x + position.y + position.z));
     std::uint64_t vertices = 0;

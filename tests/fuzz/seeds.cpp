@@ -1,5 +1,7 @@
 // Small good files for the fuzzers to start from: fuzz_seeds FOLDER fills FOLDER/<fuzzer>.
+#include "files/cloud_cases.h"
 #include "files/gltf_maker.h"
+#include "surfels/extension.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -199,6 +201,20 @@ void save_ply_seeds(const fs::path& folder)
          "0 0 nan\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n3 1 2 3\n0\n");
 }
 
+/// The clouds of the tests of the readers: each kind of file, and what stands in it.
+void save_cloud_seeds(const fs::path& folder)
+{
+    for (const surfelao::test::CloudCase& cloud : surfelao::test::clouds()) {
+        const std::string extension = surfelao::lower_extension(cloud.name);
+        const bool is_text = extension != ".ply" && extension != ".pcd" && extension != ".obj" &&
+                             extension != ".off";
+        save(folder / (is_text ? "xyz" : extension.substr(1)) / cloud.name, cloud.contents);
+    }
+    save(folder / "xyz/result.txt",
+         "X,Y,Z,R,G,B,occlusion,bent_nx,bent_ny,bent_nz,own_red,own_green,own_blue\n"
+         "1,2,3,9,9,9,0.5,0,0,1,7,8,9\n# surfelao 0 bake: colors=grey\n");
+}
+
 /// Scenes of every engine, as solve_fuzz.cpp reads them: bytes that look like nothing in
 /// particular, and grids of places with the triangles between neighbours.
 void save_solve_seeds(const fs::path& folder)
@@ -238,5 +254,6 @@ int main(int argc, char** argv)
     save_gltf_seeds(folder / "gltf");
     save_ply_seeds(folder / "ply");
     save_text_seeds(folder);
+    save_cloud_seeds(folder);
     save_solve_seeds(folder / "solve");
 }

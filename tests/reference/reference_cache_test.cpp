@@ -70,11 +70,15 @@ TEST_F(ReferenceCache, AnythingElseAskedIsAnotherFile)
     limited.rays = 64;
     limited.definition.max_distance = 0.5f;
     EXPECT_FALSE(trace_reference(geometry_, receivers_, limited).from_cache);
+    for (const float height : {-0.6f, -0.7f}) {
+        limited.definition.ground = Ground{{0, 0, 1}, height};
+        EXPECT_FALSE(trace_reference(geometry_, receivers_, limited).from_cache);
+    }
     receivers_[3].position.x += 1e-3f;
     EXPECT_FALSE(trace(64).from_cache);
     geometry_.positions[5].x += 1e-3f;
     EXPECT_FALSE(trace(64).from_cache);
-    EXPECT_EQ(files().size(), 5u);
+    EXPECT_EQ(files().size(), 7u);
 }
 
 TEST_F(ReferenceCache, DamagedFilesAreTracedAnewAndReplaced)

@@ -230,7 +230,12 @@ TEST(Disks, OpeningZeroEqualsBruteForce)
         const World world(scenes::bumpy_sphere(10), side);
         for (const Definition& definition :
              {Definition{}, Definition{.kernel = Kernel::bunnell}, Definition{.max_distance = 0.2f},
-              Definition{.max_distance = 0.3f, .falloff = Falloff::smooth}}) {
+              Definition{.max_distance = 0.3f, .falloff = Falloff::smooth},
+              Definition{.ground = Ground{{0, 0, 1}, -0.25f}},
+              Definition{.max_distance = 0.2f, .ground = Ground{{0, 0, 1}, -0.25f}},
+              Definition{.max_distance = 0.3f,
+              .falloff = Falloff::smooth,
+              .ground = Ground{{0, 0, 1}, -0.1f}}}) {
             const DiskOptions options = {.definition = definition, .opening = 0.0f, .passes = 3};
             const DiskResult tree = solve_disks(world.octree, world.receivers, options);
             const DiskResult brute =

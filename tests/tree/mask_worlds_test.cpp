@@ -118,7 +118,11 @@ TEST(MaskWorlds, TheSameAnswerFromEveryKernel)
     const Geometry geometry =
         make_geometry(scenes::bumpy_sphere(8) + scenes::box({0.9, 0.9, 0.9}, {1.6, 1.5, 1.4}, 6));
     const std::vector<Receiver> receivers = vertex_receivers(geometry);
-    for (Setting setting : settings()) {
+    std::vector<Setting> all = settings();
+    const Ground ground{glm::normalize(glm::vec3(0.2f, 0.5f, 0.8f)), -0.2f};
+    all.push_back({"ground", {.definition = {.ground = ground}}});
+    all.push_back({"ground within", {.definition = {.max_distance = 0.4f, .ground = ground}}});
+    for (Setting setting : all) {
         setting.options.kernel = MaskKernelSet::portable;
         const std::vector<Occlusion> expected = solve(geometry, receivers, setting.options);
         for (const MaskKernelSet kernel : available_mask_kernels()) {

@@ -161,11 +161,21 @@ TEST(Model, GroundLiesUnderTheScene)
             EXPECT_GT(glm::dot(receiver.position, above), lowest - 0.01f);
             EXPECT_EQ(receiver.normal, above);
         }
-        const Ground& ground = model.ground;
+        const ShadowSquare& ground = model.ground;
         EXPECT_GT(glm::dot(glm::cross(ground.axis_x, ground.axis_y), above), 0.0f);
         EXPECT_NEAR(glm::distance(model.ground_receivers.back().position,
                                   ground.corner + ground.axis_x + ground.axis_y),
                     1e-4f, 1e-5f);
+    }
+}
+
+TEST(Model, TheShadowLiesInTheGroundThatOccludes)
+{
+    for (const std::optional<double> height : {std::optional<double>(), {2.5}, {-1.0}}) {
+        const Model model = make_model(make_mesh(scenes::box({1, 2, 3}, {2, 4, 6}, 2)), UpAxis::y,
+                                       {}, kLargestSplat, GroundPlane{{0, 1, 0}, height});
+        EXPECT_NEAR(model.ground.corner.y, model.occluding_ground->height, 1e-6f);
+        EXPECT_GT(model.ground_receivers[7].position.y, model.occluding_ground->height);
     }
 }
 

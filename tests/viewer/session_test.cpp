@@ -1,6 +1,7 @@
 #include "viewer/session.h"
 
 #include "bake/bake.h"
+#include "differences.h"
 #include "scenes.h"
 #include "temporary_folder.h"
 #include "viewer/solve_model.h"
@@ -275,6 +276,7 @@ Written written_by_both(const TemporaryFolder& folder, const std::filesystem::pa
                 .output = folder / "baked.ply",
                 .engine = settings.engine,
                 .max_distance = settings.max_distance,
+                .ground = settings.ground,
                 .target = settings.target});
     return {contents_of(folder / "saved.ply"), contents_of(folder / "baked.ply")};
 }
@@ -287,10 +289,37 @@ TEST_F(SessionTest, SavesTheBytesThatBakeWrites)
         for (const float quality : {kDraft, kGood}) {
             SessionSettings settings = of_quality(quality, engine);
             settings.max_distance = {40.0, true, Falloff::smooth};
+            settings.ground =
+                GroundPlane{{0, 1, 0}, quality == kDraft ? std::optional(-1.5) : std::nullopt};
             const Written written = written_by_both(folder_, input, settings);
             EXPECT_EQ(written.by_session, written.by_bake) << name_of(engine) << ", " << quality;
         }
     }
+}
+
+TEST_F(SessionTest, AGroundIsSwitchedOnMovedAndSwitchedOff)
+{
+    Session session;
+    session.open(ball(), UpAxis::y);
+    ASSERT_TRUE(wait_for_whole_answer(session));
+    const std::vector<Occlusion> without = session.occlusion();
+    const auto mean_with = [&](const std::optional<GroundPlane>& ground) {
+        SessionSettings settings = session.settings();
+        settings.ground = ground;
+        session.solve(settings);
+        EXPECT_TRUE(
+            wait_for(session, [&] { return session.state().model->ground_plane == ground; }));
+        EXPECT_TRUE(wait_for_whole_answer(session));
+        double mean = 0.0;
+        for (std::size_t v = 0; v < session.state().model->geometry().positions.size(); ++v)
+            mean += session.occlusion()[v].occlusion;
+        return mean / static_cast<double>(session.state().model->geometry().positions.size());
+    };
+    const double low = mean_with(GroundPlane{});
+    const double through = mean_with(GroundPlane{.height = 0.0});
+    EXPECT_GT(low, mean_with(std::nullopt) + 0.2);
+    EXPECT_GT(std::abs(low - through), 0.05);
+    EXPECT_TRUE(same_bytes(without, session.occlusion()));
 }
 
 /// Two walls that meet at a right angle, each a half of the map.

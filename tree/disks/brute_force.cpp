@@ -38,13 +38,22 @@ Sum gather(const Octree& octree, const FarSides& far, const Definition& definiti
         const double distance = std::sqrt(glm::dot(c, c) + double{kTinyLength} * kTinyLength);
         const glm::dvec3 w = c / distance;
         const Far& beyond = far[glm::dot(w, glm::dvec3(surfel.normal)) < 0.0 ? 1 : 0][s];
-        const double term = disk_form_factor(definition.kernel, position, normal,
-                                             {surfel.position, surfel.normal, surfel.area,
-                                              surfel.area, two_sided}) *
-                            distance_weight(definition, distance, surfel.area) *
-                            std::clamp(beyond.constant + glm::dot(beyond.slope, w), 0.0, 1.0);
+        double weight = distance_weight(definition, distance, surfel.area);
+        if (definition.ground) {
+            const GroundSight sight = sight_of(*definition.ground, receiver.position);
+            weight = std::max(0.0, weight - ground_weight(definition, sight, c, surfel.area));
+        }
+        const double term =
+            disk_form_factor(
+                definition.kernel, position, normal,
+                {surfel.position, surfel.normal, surfel.area, surfel.area, two_sided}) *
+            weight * std::clamp(beyond.constant + glm::dot(beyond.slope, w), 0.0, 1.0);
         sum.occlusion += term;
         sum.direction += term * w;
+    }
+    if (definition.ground) {
+        sum.occlusion += ground_share(definition, receiver);
+        sum.direction += glm::dvec3(ground_direction(definition, receiver));
     }
     return sum;
 }
@@ -65,6 +74,7 @@ DiskResult solve_disks_brute_force(const Octree& octree, std::span<const Receive
     const bool two_sided = limited || octree.two_sided_surfels < count;
     Definition beyond = options.definition;
     beyond.max_distance *= 0.5f;
+    beyond.ground.reset();
 
     DiskResult result;
     FarSides far = {std::vector<Far>(count), std::vector<Far>(count)};

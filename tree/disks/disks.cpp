@@ -3,6 +3,7 @@
 #include "surfels/errors.h"
 #include "surfels/surface.h"
 #include "tree/disks/gather.h"
+#include "tree/ground.h"
 #include "tree/receiver_groups.h"
 
 #include <glm/geometric.hpp>
@@ -107,6 +108,18 @@ struct FarSide {
     }
 };
 
+/// The disks have left out what the ground covers.
+void add_ground(const Definition& definition, std::span<const Receiver> receivers,
+                std::span<DiskSum> sums)
+{
+    tbb::parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t i) {
+        if (receivers[i].normal == glm::vec3(0.0f))
+            return;
+        sums[i].occlusion += ground_share(definition, receivers[i]);
+        sums[i].direction += ground_direction(definition, receivers[i]);
+    });
+}
+
 Occlusion to_occlusion(const DiskSum& sum, const glm::vec3& normal, float strength)
 {
     const DiskSum s = capped(sum);
@@ -166,6 +179,7 @@ std::vector<DiskResult> solve_disk_lists(const Octree& octree,
     GatherSettings settings = {definition, options.opening, std::isfinite(definition.max_distance)};
     GatherSettings beyond = settings;
     beyond.definition.max_distance *= 0.5f;
+    beyond.definition.ground.reset();  // nothing that still counts has the ground beyond it
     beyond.opening = correction_opening(options.opening);
     const bool two_sided =
         settings.all_two_sided || octree.two_sided_surfels < octree.surfels.size();
@@ -218,6 +232,8 @@ std::vector<DiskResult> solve_disk_lists(const Octree& octree,
         DiskResult& result = results.emplace_back();
         result.residuals = residuals;
         result.occlusion.resize(receivers.size());
+        if (definition.ground)
+            add_ground(definition, receivers, sums);
         for (std::size_t i = 0; i < receivers.size(); ++i)
             result.occlusion[i] = to_occlusion(sums[i], receivers[i].normal, options.strength);
     }

@@ -17,6 +17,9 @@
 /// carry two such functions, one for each side; the same is done to all surfaces where a maximum
 /// distance may end between a front and its back.
 ///
+/// A ground is no disk: what it covers is added as a whole (tree/ground.h), and disks count only
+/// where it does not, or where they are nearer and a falloff makes that more.
+///
 /// Known limits: surfaces nearer to each other than three times the vertex spacing; the foot of a
 /// concave edge (what a vertex's own triangles hide from it is no disk's: 0.29 too little at a
 /// right angle); closed rooms with much in them (every ray passes many layers); a ground of few

@@ -38,4 +38,21 @@ double distance_weight(const Definition& definition, double distance, double are
     return std::clamp(0.5 + (definition.max_distance - distance) / width, 0.0, 1.0);
 }
 
+double ground_weight(const Definition& definition, const GroundSight& sight, const glm::dvec3& c,
+                     double area)
+{
+    const double distance = std::sqrt(glm::dot(c, c) + double{kTinyLength} * kTinyLength);
+    const double along = glm::dot(c, glm::dvec3(sight.towards));
+    const double edge = sight.distance / definition.max_distance;
+    const double radius2 = area / std::numbers::pi;
+    const double inside = along - distance * edge;
+    double share = std::clamp(0.5 + 0.5 * inside / std::sqrt(radius2), 0.0, 1.0);
+    if (std::isfinite(definition.max_distance))
+        share *= std::clamp(distance * distance * (1.0 - edge * edge) / radius2, 0.0, 1.0);
+    if (definition.falloff == Falloff::none)
+        return share;
+    const double hit = sight.distance * distance / std::max(along, double{kTinyLength});
+    return share * hit_weight(definition, static_cast<float>(hit));
+}
+
 }  // namespace surfelao

@@ -28,6 +28,7 @@
 #pragma once
 
 #include "surfels/occlusion.h"
+#include "tree/ground.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -70,6 +71,13 @@ inline constexpr float kTinyLength = 1e-8f;
 /// the share of its width that lies within max_distance, so that nothing jumps at the limit. A disk
 /// wider than the limit counts as that wide: else the ones around a receiver would never fade.
 [[nodiscard]] double distance_weight(const Definition& definition, double distance, double area);
+
+/// The weight that a ground has where a disk of this area stands, `c` from the receiver: what of it
+/// lies in the ground's directions, by how far its centre is inside of their edge, half of it at
+/// the edge itself, and no more than their cone is wide. The disk adds only what its own weight has
+/// more: of both the nearer is the hit.
+[[nodiscard]] double ground_weight(const Definition& definition, const GroundSight& sight,
+                                   const glm::dvec3& c, double area);
 
 /// FarVisibility in direction w, in [0, 1].
 [[nodiscard]] inline double visibility_towards(const FarVisibility& far, const glm::dvec3& w)

@@ -53,9 +53,40 @@ struct Sums {
     Vec3 position, normal;
     Vec occlusion;
     Vec3 direction;
+    Vec3 towards;  ///< the ground, straight to it
+    Vec height;    ///< >= 0, over it or below it
 };
 
-template <bool kTwoSided, bool kBunnell, bool kLimited>
+/// ground_weight() for one disk.
+template <bool kLimited>
+HWY_INLINE Vec weight_of_ground(const Disk& disk, const Definition& definition, const Sums& sums,
+                                const Vec3& c, const Vec& distance)
+{
+    const Tag tag;
+    const Vec zero = hn::Zero(tag);
+    const Vec one = hn::Set(tag, 1.0f);
+    const Vec along = dot(c, sums.towards);
+    const auto in_range = [&](const Vec& x) { return hn::Min(one, hn::Max(zero, x)); };
+    const auto share_of = [&](const Vec& inside) {
+        const Vec width = hn::Set(tag, 2.0f * std::sqrt(disk.all));
+        return in_range(hn::Add(hn::Set(tag, 0.5f), hn::Div(inside, width)));
+    };
+    if (!kLimited)
+        return share_of(along);
+    const Vec edge = hn::Div(sums.height, hn::Set(tag, definition.max_distance));
+    const Vec wide = hn::Mul(hn::Mul(distance, distance), hn::Sub(one, hn::Mul(edge, edge)));
+    const Vec share = hn::Mul(share_of(hn::Sub(along, hn::Mul(distance, edge))),
+                              in_range(hn::Div(wide, hn::Set(tag, disk.all))));
+    if (definition.falloff == Falloff::none)
+        return share;
+    const Vec hit =
+        hn::Div(hn::Mul(sums.height, distance), hn::Max(along, hn::Set(tag, kTinyLength)));
+    const Vec t = hn::Div(hit, hn::Set(tag, definition.max_distance));
+    const Vec y = hn::Max(zero, hn::Sub(one, hn::Mul(t, t)));
+    return hn::Mul(share, hn::Mul(y, y));
+}
+
+template <bool kTwoSided, bool kBunnell, bool kLimited, bool kGround>
 HWY_INLINE void add_disk(const Disk& disk, const Definition& definition, Sums& sums)
 {
     const Tag tag;
@@ -101,10 +132,10 @@ HWY_INLINE void add_disk(const Disk& disk, const Definition& definition, Sums& s
         seen = hn::IfThenElse(hn::Ge(at_disk, zero), seen, other);
     }
     form_factor = hn::Mul(form_factor, hn::Min(one, hn::Max(zero, seen)));
+    const Vec distance = hn::Mul(d2, inverse);
+    Vec weight = one;
     if (kLimited) {
         const Vec limit = hn::Set(tag, definition.max_distance);
-        const Vec distance = hn::Mul(d2, inverse);
-        Vec weight;
         if (definition.falloff == Falloff::none) {
             const Vec width =
                 hn::Min(hn::Mul(hn::Set(tag, 2.0f), hn::Sqrt(hn::Set(tag, disk.all))), limit);
@@ -115,8 +146,13 @@ HWY_INLINE void add_disk(const Disk& disk, const Definition& definition, Sums& s
             const Vec y = hn::Max(zero, hn::Sub(one, hn::Mul(t, t)));
             weight = hn::Mul(y, y);
         }
-        form_factor = hn::Mul(form_factor, weight);
     }
+    if (kGround) {
+        const Vec ground = weight_of_ground<kLimited>(disk, definition, sums, c, distance);
+        weight = hn::Max(zero, hn::Sub(weight, ground));
+    }
+    if (kLimited || kGround)
+        form_factor = hn::Mul(form_factor, weight);
 
     sums.occlusion = hn::Add(sums.occlusion, form_factor);
     const Vec along = hn::Mul(form_factor, inverse);
@@ -302,7 +338,7 @@ void list_disks(const Octree& octree, const ReceiverGroup& group, const GatherSe
     }
 }
 
-template <bool kBunnell, bool kLimited>
+template <bool kBunnell, bool kLimited, bool kGround>
 HWY_INLINE void add_list(const Octree& octree, const EmitterVisibility& visibility,
                          const DiskList& list, const GatherSettings& settings, Sums& sums)
 {
@@ -318,11 +354,11 @@ HWY_INLINE void add_list(const Octree& octree, const EmitterVisibility& visibili
                      all,         0.25f * (all - flat), &visibility.node_front[i],
                      nullptr};
         if (i < two_sided_nodes) {
-            add_disk<false, kBunnell, kLimited>(disk, settings.definition, sums);
+            add_disk<false, kBunnell, kLimited, kGround>(disk, settings.definition, sums);
         } else {
             disk.spread = 0.5f * (all - flat);
             disk.back = &visibility.node_back[i];
-            add_disk<true, kBunnell, kLimited>(disk, settings.definition, sums);
+            add_disk<true, kBunnell, kLimited, kGround>(disk, settings.definition, sums);
         }
     }
     for (std::size_t k = 0; k < list.surfels.count; ++k) {
@@ -332,12 +368,43 @@ HWY_INLINE void add_list(const Octree& octree, const EmitterVisibility& visibili
         Disk disk = {surfel.position, surfel.normal, area, area, 0.0f, &visibility.surfel_front[s],
                      nullptr};
         if (s < two_sided_surfels) {
-            add_disk<false, kBunnell, kLimited>(disk, settings.definition, sums);
+            add_disk<false, kBunnell, kLimited, kGround>(disk, settings.definition, sums);
         } else {
             disk.back = &visibility.surfel_back[s];
-            add_disk<true, kBunnell, kLimited>(disk, settings.definition, sums);
+            add_disk<true, kBunnell, kLimited, kGround>(disk, settings.definition, sums);
         }
     }
+}
+
+void add(const Octree& octree, const EmitterVisibility& visibility, const DiskList& list,
+         const GatherSettings& settings, Sums& sums)
+{
+    const bool limited = std::isfinite(settings.definition.max_distance);
+    if (settings.definition.ground && limited)
+        add_list<false, true, true>(octree, visibility, list, settings, sums);
+    else if (settings.definition.ground)
+        add_list<false, false, true>(octree, visibility, list, settings, sums);
+    else if (settings.definition.kernel == Kernel::bunnell && limited)
+        add_list<true, true, false>(octree, visibility, list, settings, sums);
+    else if (settings.definition.kernel == Kernel::bunnell)
+        add_list<true, false, false>(octree, visibility, list, settings, sums);
+    else if (limited)
+        add_list<false, true, false>(octree, visibility, list, settings, sums);
+    else
+        add_list<false, false, false>(octree, visibility, list, settings, sums);
+}
+
+/// sight_of() for all lanes.
+HWY_INLINE void look_at(const Ground& ground, Sums& sums)
+{
+    const Tag tag;
+    const Vec height = hn::Sub(dot(sums.position, ground.up), hn::Set(tag, ground.height));
+    const Vec turn =
+        hn::IfThenElse(hn::Lt(height, hn::Zero(tag)), hn::Set(tag, 1.0f), hn::Set(tag, -1.0f));
+    sums.height = hn::Abs(height);
+    sums.towards = {hn::Mul(turn, hn::Set(tag, ground.up.x)),
+                    hn::Mul(turn, hn::Set(tag, ground.up.y)),
+                    hn::Mul(turn, hn::Set(tag, ground.up.z))};
 }
 
 void gather(const Octree& octree, const EmitterVisibility& visibility, const ReceiverGroups& groups,
@@ -345,8 +412,6 @@ void gather(const Octree& octree, const EmitterVisibility& visibility, const Rec
             std::span<DiskSum> out)
 {
     const Tag tag;
-    const bool bunnell = settings.definition.kernel == Kernel::bunnell;
-    const bool limited = std::isfinite(settings.definition.max_distance);
     DiskList list;
     for (const std::uint32_t leaf : leaves) {
         const ReceiverGroup& group = groups.groups[leaf];
@@ -358,15 +423,11 @@ void gather(const Octree& octree, const EmitterVisibility& visibility, const Rec
                             hn::LoadU(tag, columns[2].data() + first)};
             };
             const Vec zero = hn::Zero(tag);
-            Sums sums = {load(groups.position), load(groups.normal), zero, {zero, zero, zero}};
-            if (bunnell && limited)
-                add_list<true, true>(octree, visibility, list, settings, sums);
-            else if (bunnell)
-                add_list<true, false>(octree, visibility, list, settings, sums);
-            else if (limited)
-                add_list<false, true>(octree, visibility, list, settings, sums);
-            else
-                add_list<false, false>(octree, visibility, list, settings, sums);
+            Sums sums = {load(groups.position), load(groups.normal), zero,
+                         {zero, zero, zero},    {zero, zero, zero},  zero};
+            if (settings.definition.ground)
+                look_at(*settings.definition.ground, sums);
+            add(octree, visibility, list, settings, sums);
 
             HWY_ALIGN float lanes[4][kGroupSize];
             hn::Store(sums.occlusion, tag, lanes[0]);

@@ -46,6 +46,9 @@ struct MaskSettings {
     bool one_sided;  ///< of small closed bodies only what faces away is drawn
     bool fill;       ///< close single-bit cracks where much is covered
     float close;     ///< how much cracks of two bits count as closed where all else is
+    bool has_ground;
+    float ground_up[3];  ///< Definition::ground, in the mask frame
+    float ground_height;
 };
 
 /// Throws SettingsError for options out of their range. max_distance is left 0: it changes from
@@ -93,6 +96,8 @@ struct MaskReceivers {
     unsigned count;
     float position[3][16];
     float normal[3][16];
+    float sky[16];    ///< what the ground leaves of the hemisphere, cosine-weighted: 1 without one
+    float above[16];  ///< signed height over the ground
 };
 
 struct MaskAnswers {

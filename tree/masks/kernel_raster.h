@@ -6,6 +6,7 @@
 #pragma once
 
 #include "tree/masks/constants.h"
+#include "tree/masks/kernel.h"
 #include "tree/masks/raster.h"
 #include "tree/masks/simd.h"
 
@@ -223,6 +224,32 @@ inline void horizon(const MaskRaster& raster, const float* n, std::uint32_t* abo
         const Int16 from =
             bits_from(fma(all(slope), load(raster.row_v), all(start) - load(raster.row_shift)));
         store(above + kMaskFaceWords * face, turned ? ~from : from);
+    }
+}
+
+/// Takes what the ground covers, as seen from a signed height over it, out of `above`: what lies
+/// below a second horizon without a limit, and inside of a cone with one.
+inline void take_ground(const MaskRaster& raster, const MaskSettings& settings, float height,
+                        std::uint32_t* above)
+{
+    const float turn = height < 0.0f ? 1.0f : -1.0f;
+    const float edge = -turn * height / settings.max_distance;
+    if (!(settings.has_ground && edge < 1.0f))
+        return;
+    const float* up = settings.ground_up;
+    const float towards[3] = {turn * up[0], turn * up[1], turn * up[2]};
+    // so flat a cone is a half-space, and as such has no roots that vanish
+    const bool flat = edge < kMaskConeFlat;
+    alignas(64) std::uint32_t covered[kMaskWords];
+    if (flat)
+        horizon(raster, towards, covered);
+    for (int face = 0; face < kMaskFaces; ++face) {
+        const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
+        const int w = kMaskFaceWords * face;
+        const Int16 bits = flat ? load(covered + w)
+                                : cone_bits(raster, face % 2 == 0 ? towards[a] : -towards[a],
+                                            towards[u], towards[v], edge);
+        store(above + w, load(above + w) & ~bits);
     }
 }
 

@@ -20,7 +20,7 @@ struct Receivers16 {
 
 /// Of what a group shares.
 struct Visible {
-    float openness;  ///< of the sky above the group's axis
+    float openness;  ///< of the sky above the group's axis and the ground
     float share;     ///< covered sky over the sum of what covers it: nodes hide behind each other
 };
 
@@ -34,8 +34,9 @@ SURFELAO_MASK_INLINE Float16 changes_at(const MaskShared& shared, const Receiver
     return dot(change, receivers.normal);
 }
 
-Visible visible_of(const MaskRaster& raster, const MaskShared& shared, const float* axis)
+Visible visible_of(const MaskWorld& world, const MaskShared& shared, const float* axis)
 {
+    const MaskRaster& raster = *world.raster;
     const float sum = shared.irradiance[0] * axis[0] + shared.irradiance[1] * axis[1] +
                       shared.irradiance[2] * axis[2];
     if (!(sum > 0.0f))
@@ -43,9 +44,16 @@ Visible visible_of(const MaskRaster& raster, const MaskShared& shared, const flo
     alignas(64) std::uint32_t above[kMaskWords];
     alignas(64) std::uint32_t open[kMaskWords];
     horizon(raster, axis, above);
+    const float* up = world.settings.ground_up;
+    take_ground(raster, world.settings,
+                up[0] * shared.center[0] + up[1] * shared.center[1] + up[2] * shared.center[2] -
+                    world.settings.ground_height,
+                above);
     open_bits(above, shared.mask, open);
     First of_open, of_above;
     first_moments(raster, open, above, of_open, of_above);
+    if (!(of_above.along(axis) > 0.0f))
+        return {1.0f, 0.0f};
     const float openness = of_open.along(axis) / of_above.along(axis);
     const float share = (1.0f - openness) / sum;
     return {openness, share < 1.0f ? share : 1.0f};
@@ -144,14 +152,16 @@ void draw_lists(const MaskWorld& world, const MaskScratch& scratch, const Receiv
 /// The masks of up to sixteen receivers.
 struct Masks16 {
     alignas(64) std::uint32_t drawn[kLanes * kMaskPairWords];
-    alignas(64) std::uint32_t horizons[kLanes * kMaskWords];  ///< the bits above each
-    alignas(64) std::uint32_t target[kLanes];                 ///< where each mask begins in `drawn`
+    /// The bits of the sky above each: of its hemisphere without the ground.
+    alignas(64) std::uint32_t horizons[kLanes * kMaskWords];
+    alignas(64) std::uint32_t target[kLanes];  ///< where each mask begins in `drawn`
     float normals[kLanes][3];
 
-    /// All that is shared, and what lies below the horizon as if it were covered.
-    SURFELAO_MASK_INLINE Masks16(const MaskRaster& raster, const MaskShared& shared,
+    /// All that is shared, and what is no sky as if it were covered.
+    SURFELAO_MASK_INLINE Masks16(const MaskWorld& world, const MaskShared& shared,
                                  const MaskReceivers& receivers)
     {
+        const MaskRaster& raster = *world.raster;
         for (unsigned i = 0; i < kLanes; ++i) {
             target[i] = i * kMaskPairWords;
             for (int k = 0; k < 3; ++k)
@@ -160,6 +170,7 @@ struct Masks16 {
         for (unsigned i = 0; i < receivers.count; ++i) {
             std::uint32_t* above = horizons + i * kMaskWords;
             horizon(raster, normals[i], above);
+            take_ground(raster, world.settings, receivers.above[i], above);
             std::uint32_t* closed = drawn + target[i];
             for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
                 store(closed + w, load(shared.mask + w) | ~load(above + w));
@@ -169,8 +180,9 @@ struct Masks16 {
     }
 };
 
-/// Openness of one receiver with normal n, between 0 and 1 to rounding, cracks counted as closed
-/// where much is covered. `open` becomes the bits that count as open.
+/// How much of the sky of one receiver with normal n is open, between 0 and 1 to rounding, cracks
+/// counted as closed where much is covered. A sky smaller than a bit is open. `open` becomes the
+/// bits that count as open.
 SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32_t* mask,
                                        const std::uint32_t* above, const float* n,
                                        std::uint32_t* open)
@@ -180,6 +192,8 @@ SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32
     First of_open, of_above;
     first_moments(raster, open, above, of_open, of_above);
     const float weight = of_above.along(n);
+    if (!(weight > 0.0f))
+        return 1.0f;
     float openness = of_open.along(n) / weight;
     const float fill_weight = (1.0f - openness - kMaskFillFrom) / kMaskFillRange;
     if (!(world.settings.fill && fill_weight > 0.0f && openness > 0.0f))
@@ -219,14 +233,14 @@ void solve(const MaskWorld& world, const ReceiverGroup& group, const std::uint32
     start_frontier(scratch, in, in_count);
     walk<true>(world, group, nullptr, shared, scratch);
 
-    Masks16 masks(raster, shared, receivers);
+    Masks16 masks(world, shared, receivers);
     const Receivers16 all_receivers = {
         {load(receivers.position[0]), load(receivers.position[1]), load(receivers.position[2])},
         {load(receivers.normal[0]), load(receivers.normal[1]), load(receivers.normal[2])},
         load(masks.target)};
     draw_lists(world, scratch, all_receivers, masks.normals, receivers.count, masks.drawn);
 
-    const Visible visible = visible_of(raster, shared, group.axis);
+    const Visible visible = visible_of(world, shared, group.axis);
     alignas(64) float changes[kLanes];
     store(changes, changes_at(shared, all_receivers));
     for (unsigned i = 0; i < receivers.count; ++i) {
@@ -241,7 +255,8 @@ void solve(const MaskWorld& world, const ReceiverGroup& group, const std::uint32
         if (size < __builtin_inff())
             openness -= change / (1.0f + size / kMaskLargestMove);
         openness = openness < 0.0f ? 0.0f : openness > 1.0f ? 1.0f : openness;
-        answers.occlusion[i] = 1.0f - openness;
+        // the sky's size is exact, bits tell how much of it is open
+        answers.occlusion[i] = 1.0f - receivers.sky[i] * openness;
         const Second second = second_moments(raster, open);
         float m[6];
         for (int k = 0; k < 6; ++k)

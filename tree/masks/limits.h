@@ -4,7 +4,11 @@
 #pragma once
 
 #include "surfels/occlusion.h"
+#include "surfels/receiver.h"
 
+#include <cstddef>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace surfelao {
@@ -12,5 +16,24 @@ namespace surfelao {
 /// The limits, ascending or not, over which the mean of hard-limited occlusions is that of the
 /// definition, to 1/16 of each hit's weight. One limit, maybe infinite, where there is no falloff.
 [[nodiscard]] std::vector<float> distance_limits(const Definition& definition);
+
+/// What a ground leaves of the hemispheres of receivers, cosine-weighted, within each of the
+/// limits: exact, and with a falloff scaled so that the mean over the limits is.
+class MaskSkies {
+public:
+    /// O(receivers), all cores; nothing without a ground. The receivers must outlive it.
+    MaskSkies(const Definition& definition, std::span<const Receiver> receivers);
+
+    struct Sky {
+        float share = 1.0f;  ///< of the hemisphere; 1 without a ground
+        float above = 0.0f;  ///< signed height over the ground, in diagonals
+    };
+    [[nodiscard]] Sky at(float limit, std::size_t receiver) const;
+
+private:
+    std::optional<Ground> ground_;
+    std::span<const Receiver> receivers_;
+    std::vector<float> scales_;  ///< one per receiver; empty without a falloff
+};
 
 }  // namespace surfelao

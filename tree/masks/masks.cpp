@@ -98,6 +98,13 @@ MaskSettings mask_settings(const MaskOptions& options)
             "this processor has no kernel " + std::string(name_of(options.kernel)));
     MaskSettings settings{};
     settings.fill = !options.exact;
+    if (const auto& ground = options.definition.ground) {
+        const glm::vec3 up = kMaskFrame * ground->up;
+        settings.has_ground = true;
+        for (int k = 0; k < 3; ++k)
+            settings.ground_up[k] = up[k];
+        settings.ground_height = ground->height;
+    }
     // within a limit a body's far side may be missing
     settings.one_sided = !options.exact && std::isinf(options.definition.max_distance);
     if (options.exact)
@@ -148,6 +155,7 @@ public:
           receivers_(receivers),
           groups_(group_receivers(receivers, kMaskFrame)),
           limits_(distance_limits(options.definition)),
+          skies_(options.definition, receivers),
           progress_(progress, groups_.order.size() * limits_.size()),
           answers_(receivers.size())
     {
@@ -216,6 +224,12 @@ private:
             std::copy_n(&groups_.position[k][group.begin], columns.count, columns.position[k]);
             std::copy_n(&groups_.normal[k][group.begin], columns.count, columns.normal[k]);
         }
+        for (std::uint32_t i = 0; i < columns.count; ++i) {
+            const MaskSkies::Sky sky =
+                skies_.at(world_.settings.max_distance, groups_.order[group.begin + i]);
+            columns.sky[i] = sky.share;
+            columns.above[i] = sky.above;
+        }
         MaskAnswers found{};
         kernel_.solve(world_, group, in, in_count, from_above, columns, found,
                       workspaces_.local().scratch);
@@ -234,6 +248,7 @@ private:
     std::span<const Receiver> receivers_;
     ReceiverGroups groups_;
     std::vector<float> limits_;
+    MaskSkies skies_;
     ProgressMeter progress_;
     std::vector<Occlusion> answers_;
     tbb::enumerable_thread_specific<Workspace> workspaces_;

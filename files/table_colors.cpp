@@ -1,9 +1,10 @@
 #include "files/own_colors.h"
-#include "files/ply_file.h"
+#include "files/table_rows.h"
 
 #include <cmath>
+#include <type_traits>
 
-namespace surfelao::ply {
+namespace surfelao::table {
 namespace {
 
 using Names = std::array<std::string_view, 3>;
@@ -32,11 +33,56 @@ bool are_baked(const Element& vertices, const Channels& shown)
            shown[1] == shown[0] + 1 && shown[2] == shown[0] + 2;
 }
 
+ColorPlaces packed_places(const Element& vertices)
+{
+    ColorPlaces places;
+    places.packed = true;
+    const std::size_t none = vertices.properties.size();
+    const auto find = [&](std::string_view name) {
+        const std::size_t property = find_scalar(vertices, name);
+        return property < none && size_of(vertices.properties[property].type) == 4 ? property
+                                                                                   : none;
+    };
+    const std::size_t shown = std::min(find("rgb"), find("rgba"));
+    if (shown == none || (shown > 0 && vertices.properties[shown - 1].name == "bent_nz"))
+        return places;
+    places.shown = Channels{shown, shown, shown};
+    const std::size_t own = find("own_rgb");
+    const bool is_own =
+        own < none && vertices.properties[own].type == vertices.properties[shown].type;
+    places.own = is_own ? Channels{own, own, own} : places.shown;
+    return places;
+}
+
 template <class Data>
-PlySource::Own read_own(const PlySource& source, const Element& vertices, const ColorPlaces& places)
+RowSource::Own read_packed(const RowSource& source, const Element& vertices, std::size_t place)
 {
     const std::string no_name;
-    Data data(no_name, source.vertex_rows(), source.header);
+    Data data(no_name, source.vertex_rows(), source.form());
+    RowSource::Own own{{}, 255.0};
+    own.colors.reserve(vertices.count);
+    for (std::uint64_t row = 0; row < vertices.count; ++row) {
+        data.begin_row(vertices, row);
+        for (std::size_t p = 0; p < vertices.properties.size(); ++p) {
+            if (p != place) {
+                skip_property(data, vertices.properties[p]);
+                continue;
+            }
+            const std::uint32_t bits = data.bits(vertices.properties[p].type);
+            const auto channel = [&](int shift) {
+                return linear_of(static_cast<double>(bits >> shift & 0xff) / 255.0);
+            };
+            own.colors.emplace_back(channel(16), channel(8), channel(0), 1.0f);
+        }
+    }
+    return own;
+}
+
+template <class Data>
+RowSource::Own read_own(const RowSource& source, const Element& vertices, const ColorPlaces& places)
+{
+    const std::string no_name;
+    Data data(no_name, source.vertex_rows(), source.form());
     std::vector<int> roles(vertices.properties.size(), -1);
     for (std::size_t c = 0; c < 3; ++c)
         roles[(*places.own)[c]] = static_cast<int>(c);
@@ -63,7 +109,7 @@ PlySource::Own read_own(const PlySource& source, const Element& vertices, const 
         if (roles[p] >= 0)
             white[roles[p]] = white_of(vertices.properties[p].type, largest);
     }
-    PlySource::Own own{{}, largest};
+    RowSource::Own own{{}, largest};
     own.colors.reserve(numbers.size());
     for (const glm::dvec4& number : numbers) {
         const glm::dvec4 scaled = number / white;
@@ -83,6 +129,8 @@ ColorPlaces color_places(const Element& vertices)
         if (!places.shown)
             places.shown = channels_of(vertices, names);
     }
+    if (vertices.packs_colors && !places.shown)
+        return packed_places(vertices);
     if (places.shown && are_baked(vertices, *places.shown))
         places.shown.reset();
     if (!places.shown)
@@ -101,6 +149,15 @@ ColorPlaces color_places(const Element& vertices)
     return places;
 }
 
+bool names_color(std::string_view property)
+{
+    const auto is_in = [&](const Names& names) {
+        return std::ranges::find(names, property) != names.end();
+    };
+    return std::ranges::any_of(kShown, is_in) || is_in(kOwn) || property == "rgb" ||
+           property == "rgba" || property == "own_rgb";
+}
+
 double white_of(Type type, double largest)
 {
     switch (type) {
@@ -116,14 +173,17 @@ double white_of(Type type, double largest)
     }
 }
 
-PlySource::Own PlySource::own() const
+RowSource::Own RowSource::own() const
 {
-    const Element& vertices = *find_element(header, "vertex");
-    const ColorPlaces places = color_places(vertices);
+    const ColorPlaces places = color_places(vertices());
     if (!places.own)
         return {};
-    return header.format == Format::ascii ? read_own<AsciiData>(*this, vertices, places)
-                                          : read_own<BinaryData>(*this, vertices, places);
+    const auto read = [&]<class Data>(std::type_identity<Data>) {
+        return places.packed ? read_packed<Data>(*this, vertices(), places.own->front())
+                             : read_own<Data>(*this, vertices(), places);
+    };
+    return form().format == Format::ascii ? read(std::type_identity<AsciiData>())
+                                          : read(std::type_identity<BinaryData>());
 }
 
-}  // namespace surfelao::ply
+}  // namespace surfelao::table

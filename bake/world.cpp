@@ -1,0 +1,333 @@
+#include "bake/world.h"
+
+#include "bake/cut_out.h"
+#include "files/scene_io.h"
+#include "surfels/errors.h"
+#include "surfels/labels.h"
+#include "surfels/number_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <utility>
+
+namespace surfelao {
+namespace {
+
+/// What the triangles of a scene do; empty lists: all of them.
+struct Roles {
+    std::vector<bool> occlude, baked;
+    CutOut cut;  ///< of what occludes
+
+    [[nodiscard]] bool occludes(std::size_t triangle) const
+    {
+        return occlude.empty() || occlude[triangle];
+    }
+    [[nodiscard]] bool is_baked(std::size_t triangle) const
+    {
+        return baked.empty() || baked[triangle];
+    }
+};
+
+using Scenes = std::span<const Scene>;
+
+/// Throws for the first pattern that means nothing in any of the scenes.
+void check_found(const std::vector<std::string>& patterns, const std::vector<bool>& found,
+                 std::initializer_list<Scenes> scenes, const char* option)
+{
+    const auto missing = std::ranges::find(found, false);
+    if (missing == found.end())
+        return;
+    const std::string& pattern = patterns[static_cast<std::size_t>(missing - found.begin())];
+    std::string files, near;
+    std::vector<Label> labels;
+    for (const Scenes list : scenes) {
+        for (const Scene& scene : list) {
+            files += (files.empty() ? "" : ", ") + scene.name;
+            labels.insert(labels.end(), scene.labels.begin(), scene.labels.end());
+        }
+    }
+    const std::string fault = files + ": " + option + " " + pattern + " means no part of it";
+    if (labels.empty())
+        throw InputError(fault + ": nothing there has a name");
+    for (const std::string& name : names_near(labels, pattern))
+        near += (near.empty() ? "" : ", ") + name;
+    throw InputError(fault + (near.empty() ? "" : " (near it: " + near + ")") +
+                     "; surfelao info lists all names");
+}
+
+std::vector<Roles> roles_of(Scenes inputs, Scenes others, const PartChoice& choice)
+{
+    std::vector<bool> excluded(choice.exclude.size(), false);
+    std::vector<bool> received(choice.receivers.size(), false);
+    std::vector<Roles> roles;
+    const auto look_at = [&](const Scene& scene, bool is_input) {
+        Roles& own = roles.emplace_back();
+        if (!choice.exclude.empty()) {
+            own.occlude = triangles_called(scene, choice.exclude, excluded);
+            own.occlude.flip();
+        }
+        if (!is_input)
+            return;
+        own.baked = own.occlude;
+        if (!choice.receivers.empty())
+            own.baked = triangles_called(scene, choice.receivers, received);
+    };
+    for (const Scene& scene : inputs)
+        look_at(scene, true);
+    for (const Scene& scene : others)
+        look_at(scene, false);
+    check_found(choice.exclude, excluded, {inputs, others}, "--exclude");
+    check_found(choice.receivers, received, {inputs}, "--receivers");
+    return roles;
+}
+
+/// "material Glass", "materials Glass, Water and 3 more"
+std::string materials_text(const BaseColors& colors, const std::vector<bool>& which)
+{
+    constexpr std::size_t kNamed = 3;
+    std::string names;
+    std::size_t count = 0;
+    for (std::size_t m = 0; m < which.size(); ++m) {
+        if (!which[m] || ++count > kNamed)
+            continue;
+        const std::string& name = colors.materials[m].name;
+        names += (names.empty() ? "" : ", ") + (name.empty() ? "without a name" : name);
+    }
+    if (count > kNamed)
+        names += " and " + std::to_string(count - kNamed) + " more";
+    return (count == 1 ? "material " : "materials ") + names;
+}
+
+std::string cut_text(const CutOut& cut, const std::string& materials)
+{
+    const std::string pieces = count_text(cut.pieces.size(), "piece");
+    return "holes by the alpha of " + materials + " occlude nothing: " + pieces +
+           (cut.pieces.size() == 1 ? " occludes" : " occlude") + " in place of " +
+           count_text(cut.triangles.size(), "triangle") +
+           (cut.is_coarse ? ", the most there may be: coarser than the picture" : "");
+}
+
+/// Takes from what occludes where light goes through, and says so.
+void open_materials(const Scene& scene, ClearSurfaces clear, Roles& roles,
+                    std::vector<std::string>& notes)
+{
+    if (!scene.asset || !scene.asset->has_openings())
+        return;
+    BaseColors colors = scene.asset->base_colors();
+    for (BaseColor& material : colors.materials) {
+        if (material.opacity == Opacity::clear && clear == ClearSurfaces::cut)
+            material.opacity = Opacity::cut;
+    }
+    if (colors.triangles.size() != scene.triangles.size())
+        return;
+    std::vector<bool> clears(colors.materials.size(), false), cuts(colors.materials.size(), false);
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+        const std::uint32_t material = colors.triangles[t];
+        const Opacity opacity = colors.materials[material].opacity;
+        if (opacity == Opacity::solid || !roles.occludes(t))
+            continue;
+        (opacity == Opacity::cut ? cuts : clears)[material] = true;
+        if (opacity == Opacity::cut || clear == ClearSurfaces::solid)
+            continue;
+        if (roles.baked.empty())
+            roles.baked = std::vector<bool>(scene.triangles.size(), true);
+        if (roles.occlude.empty())
+            roles.occlude = std::vector<bool>(scene.triangles.size(), true);
+        roles.occlude[t] = false;
+    }
+    if (std::ranges::find(clears, true) != clears.end())
+        notes.push_back(materials_text(colors, clears) +
+                        (clear == ClearSurfaces::open
+                             ? ", which light goes through, occludes nothing"
+                             : ", which light goes through, occludes as if it were solid "
+                               "(--transparent open: not at all; cut: where its alpha is at "
+                               "least half)"));
+    if (std::ranges::find(cuts, true) == cuts.end())
+        return;
+    roles.cut = cut_out(scene, colors, roles.occlude);
+    if (!roles.cut.triangles.empty())
+        notes.push_back(cut_text(roles.cut, materials_text(colors, cuts)));
+    notes.insert(notes.end(), roles.cut.notes.begin(), roles.cut.notes.end());
+}
+
+/// Puts triangles together that are to occlude.
+class OccluderScene {
+public:
+    void add(const Scene& scene, const Roles& roles)
+    {
+        const auto first = static_cast<std::uint32_t>(scene_.positions.size());
+        require(scene_.positions.size() + scene.positions.size() <= kMostElements &&
+                    scene_.triangles.size() + scene.triangles.size() <= kMostElements,
+                "the files have more than " + std::to_string(kMostElements) +
+                    " vertices or triangles together");
+        scene_.positions.insert(scene_.positions.end(), scene.positions.begin(),
+                                scene.positions.end());
+        const std::vector<bool>& cut = roles.cut.replaced;
+        for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+            if (roles.occludes(t) && (cut.empty() || !cut[t]))
+                scene_.triangles.push_back(scene.triangles[t] + first);
+        }
+        for (const CutOut::Piece& piece : roles.cut.pieces)
+            add(scene, piece);
+    }
+
+    [[nodiscard]] std::shared_ptr<const Geometry> geometry(const Frame& frame) const
+    {
+        return std::make_shared<const Geometry>(make_geometry(scene_, {.frame = frame}));
+    }
+
+private:
+    void add(const Scene& scene, const CutOut::Piece& piece)
+    {
+        const glm::uvec3 t = scene.triangles[piece.triangle];
+        const auto first = static_cast<std::uint32_t>(scene_.positions.size());
+        for (const glm::dvec2 at : piece.corners)
+            scene_.positions.push_back((1.0 - at.x - at.y) * scene.positions[t.x] +
+                                       at.x * scene.positions[t.y] + at.y * scene.positions[t.z]);
+        scene_.triangles.emplace_back(first, first + 1, first + 2);
+    }
+
+    Scene scene_;
+};
+
+/// Of what the inputs bake or what occludes in them.
+Frame common_frame(std::span<const Scene> inputs, std::span<const std::vector<bool>> left_out)
+{
+    Box all;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        const Box box = box_of(inputs[i], left_out[i]);
+        if (box.low.x > box.high.x)
+            continue;
+        all.include(box.low);
+        all.include(box.high);
+    }
+    return frame_of(all);
+}
+
+/// Those that the scene, which may have been in another world before, does not have.
+void add_notes(const std::vector<std::string>& notes, Scene& scene)
+{
+    for (const std::string& note : notes) {
+        if (std::ranges::find(scene.notes, note) == scene.notes.end())
+            scene.notes.push_back(note);
+    }
+}
+
+bool has(const std::vector<bool>& list, bool value)
+{
+    return std::ranges::find(list, value) != list.end();
+}
+
+}  // namespace
+
+std::string name_of(ClearSurfaces clear)
+{
+    constexpr const char* kNames[] = {"solid", "open", "cut"};
+    return kNames[static_cast<int>(clear)];
+}
+
+std::string text_of(const PartChoice& choice)
+{
+    std::string text;
+    const auto add = [&](const char* key, const std::string& value) {
+        text += std::string(" ") + key + "=" + value;
+    };
+    for (const std::string& pattern : choice.exclude)
+        add("exclude", pattern);
+    for (const std::string& pattern : choice.receivers)
+        add("receivers", pattern);
+    for (const std::filesystem::path& file : choice.occluders)
+        add("occluders", file.filename().string());
+    if (choice.clear != ClearSurfaces::solid)
+        add("transparent", name_of(choice.clear));
+    return text;
+}
+
+BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
+                     const NormalSettings& normals, const PartChoice& choice)
+{
+    std::vector<Roles> roles = roles_of(inputs, others, choice);
+    std::vector<std::vector<bool>> left_out(inputs.size());
+    bool is_joined = inputs.size() > 1 || !others.empty();
+    std::vector<std::string> notes_of_others;
+    for (std::size_t i = 0; i < roles.size(); ++i) {
+        const bool is_input = i < inputs.size();
+        std::vector<std::string> notes;
+        const Scene& scene = is_input ? inputs[i] : others[i - inputs.size()];
+        open_materials(scene, choice.clear, roles[i], notes);
+        is_joined = is_joined || !roles[i].cut.triangles.empty();
+        if (is_input)
+            add_notes(notes, inputs[i]);
+        for (const std::string& note : notes)
+            if (!is_input)
+                notes_of_others.push_back(scene.name + ": " + note);
+    }
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        const Roles& own = roles[i];
+        if (own.occlude.empty() && own.baked.empty())
+            continue;
+        const std::size_t count = inputs[i].triangles.size();
+        left_out[i].resize(count);
+        bool is_any_baked = false;
+        for (std::size_t t = 0; t < count; ++t) {
+            left_out[i][t] = !own.occludes(t) && !own.is_baked(t);
+            is_any_baked = is_any_baked || own.is_baked(t);
+            is_joined = is_joined || (own.is_baked(t) && !own.occludes(t));
+        }
+        if (!is_any_baked)
+            throw InputError(inputs[i].name + ": nothing of it is left to be baked");
+    }
+    const Frame frame = common_frame(inputs, left_out);
+
+    BakeWorld world;
+    OccluderScene occluders;
+    world.meshes.reserve(inputs.size());
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        const Roles& own = roles[i];
+        if (is_joined)
+            occluders.add(inputs[i], own);
+        const bool has_left_out = has(left_out[i], true);
+        Mesh& mesh = world.meshes.emplace_back(
+            make_mesh(std::move(inputs[i]), normals,
+                      {.frame = frame,
+                       .left_out = has_left_out ? std::move(left_out[i]) : std::vector<bool>()}));
+        if (!has(own.baked, false))
+            continue;
+        if (!is_joined && !choice.receivers.empty())
+            mesh.occluders = std::make_shared<const Geometry>(mesh.geometry);
+        keep_triangles(mesh, [&](std::size_t triangle) { return own.is_baked(triangle); });
+    }
+    for (std::size_t i = 0; i < others.size(); ++i) {
+        if (others[i].triangles.empty())
+            throw InputError(others[i].name + ": has points only, no faces: it occludes nothing");
+        occluders.add(others[i], roles[world.meshes.size() + i]);
+    }
+    const std::shared_ptr<const Geometry> joined = is_joined ? occluders.geometry(frame) : nullptr;
+    for (Mesh& mesh : world.meshes) {
+        if (joined)
+            mesh.occluders = joined;
+        add_notes(notes_of_others, mesh.scene);
+    }
+    return world;
+}
+
+BakeWorld read_world(std::span<const std::filesystem::path> inputs, const NormalSettings& normals,
+                     const PartChoice& choice, const ReadOptions& reading)
+{
+    const auto read_all = [&](std::span<const std::filesystem::path> paths) {
+        std::vector<Scene> scenes;
+        for (const std::filesystem::path& path : paths)
+            scenes.push_back(read_scene(path, reading));
+        return scenes;
+    };
+    return make_world(read_all(inputs), read_all(choice.occluders), normals, choice);
+}
+
+Mesh read_mesh(const std::filesystem::path& input, const NormalSettings& normals,
+               const PartChoice& choice, const ReadOptions& reading)
+{
+    return std::move(read_world({&input, 1}, normals, choice, reading).meshes.front());
+}
+
+}  // namespace surfelao
