@@ -217,8 +217,24 @@ void set_ground(std::initializer_list<std::reference_wrapper<const Geometry>> ge
         report.ground = text_of(*ground, frame);
 }
 
+/// The job with its mesh subdivided; own: its engines, where it has none.
+Job subdivided(const Job& job, std::optional<Occluders>& own, BakeReport& report,
+               const StageProgress& progress)
+{
+    const BakeSettings& settings = report.settings;
+    Job refined = job;
+    if (refined.occluders == nullptr)
+        refined.occluders = &own.emplace(job.mesh->occluding());
+    SubdivisionReport& told = report.subdivision.emplace();
+    refined.mesh = std::make_shared<const Mesh>(subdivided(*job.mesh, *settings.subdivide,
+                                                           settings.target, settings.engine,
+                                                           *refined.occluders, progress, told));
+    report.seconds.subdivide = told.seconds;
+    return refined;
+}
+
 /// One file of the world.
-BakeReport bake_one(const Job& job, const BakeSettings& settings, double read_seconds,
+BakeReport bake_one(const Job& read, const BakeSettings& settings, double read_seconds,
                     const StageProgress& progress)
 {
     BakeReport report;
@@ -226,13 +242,15 @@ BakeReport bake_one(const Job& job, const BakeSettings& settings, double read_se
     report.threads = thread_count();
     report.seconds.read = read_seconds;
     Stopwatch whole;
+    if (!settings.texels)
+        check_output(read.mesh->scene, settings.output);
+    report.settings.engine.definition = definition_of(
+        report.settings.max_distance, report.settings.kernel, read.mesh->geometry.frame);
+    set_ground({read.mesh->geometry, read.mesh->occluding()}, report);
+    std::optional<Occluders> own;
+    const Job job = settings.subdivide ? subdivided(read, own, report, progress) : read;
     const Mesh& mesh = *job.mesh;
     const Geometry& geometry = mesh.geometry;
-    if (!settings.texels)
-        check_output(mesh.scene, settings.output);
-    report.settings.engine.definition =
-        definition_of(report.settings.max_distance, report.settings.kernel, geometry.frame);
-    set_ground({geometry, mesh.occluding()}, report);
     if (settings.share)
         report.settings.engine.share = settings.share->share;
     if (report.settings.texels)
@@ -349,6 +367,8 @@ std::string mark_of(const BakeSettings& settings)
     if (const auto& ground = settings.ground)
         text += " ground=" + text_of(*ground);
     text += " " + text_of(settings.target) + text_of(settings.parts);
+    if (settings.subdivide)
+        add(" subdivide=", *settings.subdivide);
     for (const fs::path& other : settings.beside)
         text += " beside=" + other.filename().string();
     if (const auto& texels = settings.texels) {

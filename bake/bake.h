@@ -5,6 +5,7 @@
 #include "bake/map_bake.h"
 #include "bake/part_file.h"
 #include "bake/point_target.h"
+#include "bake/subdivide_job.h"
 #include "bake/texel_layout.h"
 #include "bake/vertex_bake.h"
 #include "bake/vertex_target.h"
@@ -47,6 +48,8 @@ struct BakeSettings {
     std::optional<TexelSettings> texels = {};  ///< a map instead of values at vertices
     /// Whether the input is a cloud of points, as the user says; empty: as it is.
     std::optional<bool> at_points = {};
+    /// At vertices: the mesh is cut where what is seen bends by more (bake/subdivide.h); > 0.
+    std::optional<double> subdivide = {};
     VertexColors colors = VertexColors::automatic;
     Encoding encoding = Encoding::automatic;
     ReadOptions reading = {};  ///< of the input
@@ -61,6 +64,7 @@ struct BakeSettings {
 struct BakeSeconds : VertexBakeSeconds {
     double read = 0.0;    ///< the file, and the clean geometry
     double points = 0.0;  ///< clouds: neighbours, normals and their sides
+    double subdivide = 0.0;
     double charts = 0.0;  ///< texels: charts of our own
     double raster = 0.0;  ///< texels: which of them, and where each is asked
     double fill = 0.0;    ///< texels: those that nothing covers or nobody sees, and seams
@@ -110,6 +114,7 @@ struct BakeReport {
     std::optional<StatedError> error;     ///< as displayed
     std::optional<TexelReport> texels;
     std::optional<PointReport> points;
+    std::optional<SubdivisionReport> subdivision;
     std::vector<Trial> trials;       ///< of settings.error
     bool is_met = false;             ///< settings.error is kept
     std::uint64_t solved = 0;        ///< of a part: receivers of its share
@@ -142,11 +147,11 @@ struct BatchEntry {
 
 /// Keys input, output, vertices, triangles, dropped_triangles, vertices_without_normal,
 /// baked_triangles, occluding_triangles, surfels,
-/// engine, settings, seconds{read, surfels, tree, solve, fit, write, total}, receivers,
+/// engine, settings, seconds{read, subdivide, surfels, tree, solve, fit, write, total}, receivers,
 /// corners_from_file, replaced_corners, peak_rss_bytes, residual, mean_occlusion, misfit{rms,
-/// share}, error, asked, texels, points, notes. What an engine or a target does not have is null.
-/// Failed: input, output, error. Skipped: input, output, skipped. A list of such objects for
-/// several files.
+/// share}, error, asked, texels, points, subdivision{tolerance, old_vertices, old_triangles,
+/// rounds, asked}, notes. What an engine or a target does not have is null. Failed: input, output,
+/// error. Skipped: input, output, skipped. A list of such objects for several files.
 [[nodiscard]] std::string json_of(std::span<const BatchEntry> batch);
 
 /// Where bent normals stand beside a map: "ao.bent.png" for "ao.png".

@@ -197,6 +197,25 @@ void read_into(Comparison& comparison, const CompareSettings& settings,
     comparison.mesh = std::make_shared<const Mesh>(point_mesh(std::move(scene), comparison.cloud));
 }
 
+/// Makes the mesh the one at whose vertices all engines answer.
+void subdivide_mesh(Comparison& comparison, const CompareSettings& settings,
+                    const StageProgress& progress)
+{
+    const Mesh& read = *comparison.mesh;
+    require(!comparison.cloud, read.scene.name + ": has points only, which --subdivide cannot cut");
+    EngineSettings engine;
+    const Frame& frame = read.geometry.frame;
+    engine.definition = definition_of(settings.max_distance, settings.kernel, frame);
+    engine.definition.ground = ground_of(settings.ground, {read.geometry, read.occluding()},
+                                         largest_offset_of(settings.target, frame));
+    if (!knows_kernel(engine.engine, settings.kernel))
+        engine.engine = Engine::rays;
+    Occluders occluders(read.occluding());
+    SubdivisionReport told;
+    comparison.mesh = std::make_shared<const Mesh>(
+        subdivided(read, *settings.subdivide, settings.target, engine, occluders, progress, told));
+}
+
 /// The layout is told in the comparison.
 std::unique_ptr<const CompareTarget> target_of(const CompareSettings& settings,
                                                Comparison& comparison)
@@ -281,11 +300,14 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     comparison.input = settings.input;
     comparison.target = settings.target;
     comparison.texels = settings.texels;
+    comparison.subdivide = settings.subdivide;
     comparison.threads = thread_count();
     comparison.rounds = settings.rounds;
     static_cast<void>(stage("read"));
     Stopwatch watch;
     read_into(comparison, settings, progress);
+    if (settings.subdivide)
+        subdivide_mesh(comparison, settings, progress);
     std::unique_ptr<const CompareTarget> target = target_of(settings, comparison);
     comparison.read_s = watch.lap();
     comparison.vertices = comparison.mesh->scene.positions.size();

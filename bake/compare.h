@@ -39,13 +39,14 @@ struct CompareSettings {
     Kernel kernel = Kernel::cosine;
     std::optional<GroundPlane> ground = {};
     TargetSettings target;
-    PartChoice parts = {};                          ///< who occludes, who is asked
-    std::optional<TexelSettings> texels;            ///< a map; empty: values at the vertices
-    std::uint32_t reference_rays = 4096;            ///< an even number
-    std::uint64_t sample = 0;                       ///< points of the surface; 0 = kSurfacePoints
-    int rounds = 3;                                 ///< >= 1
-    bool use_cache = true;                          ///< of references
-    ReadOptions reading = {};                       ///< of the input
+    PartChoice parts = {};                 ///< who occludes, who is asked
+    std::optional<TexelSettings> texels;   ///< a map; empty: values at the vertices
+    std::optional<double> subdivide = {};  ///< as BakeSettings::subdivide: one mesh for all
+    std::uint32_t reference_rays = 4096;   ///< an even number
+    std::uint64_t sample = 0;              ///< points of the surface; 0 = kSurfacePoints
+    int rounds = 3;                        ///< >= 1
+    bool use_cache = true;                 ///< of references
+    ReadOptions reading = {};              ///< of the input
     Instructions instructions = Instructions::all;  ///< of the candidates and the opponent
 };
 
@@ -89,7 +90,8 @@ struct Comparison {
     std::shared_ptr<const PointTarget> cloud;  ///< null: a mesh
     TargetSettings target;
     std::optional<TexelSettings> texels;  ///< empty: values at the vertices
-    MapSize page;                         ///< of a map: the size of each page
+    std::optional<double> subdivide;
+    MapSize page;  ///< of a map: the size of each page
     std::uint64_t pages = 0;
     std::optional<std::uint32_t> uv_set;  ///< the file's coordinates; empty: new ones
     std::vector<float> reference;  ///< as CompareRow::errors: occlusion of the floor's values
@@ -101,7 +103,8 @@ struct Comparison {
     int threads = 0;
     int rounds = 0;
     std::string ground;   ///< where it lies, "y = -0.25"; empty: there is none
-    double read_s = 0.0;  ///< file, clean geometry and target, for a map its layout: everyone's
+    double read_s = 0.0;  ///< file, clean geometry, subdivision and target, for a map its layout:
+                          ///< everyone's
     std::uint32_t reference_rays = 0;
     double reference_noise = 0.0;
     bool reference_from_cache = false;
@@ -132,7 +135,7 @@ struct Comparison {
 /// sqrt(seen^2 - floor^2), 0 where that is below 0: what `beyond` is but for noise.
 [[nodiscard]] double beyond_by_squares(const Comparison& comparison, const CompareRow& row);
 
-/// Keys input, vertices, triangles, receivers, threads, rounds, target{..., texels},
+/// Keys input, vertices, triangles, receivers, threads, rounds, target{..., subdivide, texels},
 /// reference{rays, noise, points, ill_defined, ...}, floor{rmse, ..., rays, noise}, rows[{engine,
 /// setting, rounds, raster_s, build_s, solve_s, fit_s, fill_s, us_per_receiver, seen{rmse, bias,
 /// p95, max, ...}, solve{the same}, beyond, beyond_by_squares, embree_ratio, ...}].

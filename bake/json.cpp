@@ -159,6 +159,15 @@ Json json_of(const PartChoice& parts)
             {"transparent", name_of(parts.clear)}};
 }
 
+Json json_of(const BakeReport& report, const SubdivisionReport& subdivision)
+{
+    return {{"tolerance", *report.settings.subdivide},
+            {"old_vertices", subdivision.old_vertices},
+            {"old_triangles", subdivision.old_triangles},
+            {"rounds", subdivision.rounds},
+            {"asked", subdivision.asked}};
+}
+
 Json json_of(const BatchEntry& entry)
 {
     Json json;
@@ -191,10 +200,11 @@ Json json_of(const BatchEntry& entry)
     json["settings"]["colors"] = name_of(report.settings.colors);
     json["settings"]["encoding"] = name_of(report.settings.encoding);
     json["seconds"] = {
-        {"read", seconds.read},     {"points", seconds.points},   {"charts", seconds.charts},
-        {"raster", seconds.raster}, {"surfels", seconds.surfels}, {"tree", seconds.tree},
-        {"solve", seconds.solve},   {"fit", seconds.fit},         {"fill", seconds.fill},
-        {"check", seconds.check},   {"write", seconds.write},     {"total", seconds.total}};
+        {"read", seconds.read},     {"points", seconds.points}, {"subdivide", seconds.subdivide},
+        {"charts", seconds.charts}, {"raster", seconds.raster}, {"surfels", seconds.surfels},
+        {"tree", seconds.tree},     {"solve", seconds.solve},   {"fit", seconds.fit},
+        {"fill", seconds.fill},     {"check", seconds.check},   {"write", seconds.write},
+        {"total", seconds.total}};
     json["receivers"] = report.receivers;
     json["corners_from_file"] = report.corners_from_file;
     json["replaced_corners"] = report.replaced_corners;
@@ -205,6 +215,7 @@ Json json_of(const BatchEntry& entry)
     json["error"] = json_of(report.error);
     json["texels"] = report.texels ? json_of(report, *report.texels) : Json();
     json["points"] = report.points ? json_of(*report.points) : Json();
+    json["subdivision"] = report.subdivision ? json_of(report, *report.subdivision) : Json();
     if (const auto& part = report.settings.share)
         json["part"] = {{"share", part->share.index + 1},
                         {"shares", part->share.count},
@@ -282,6 +293,7 @@ Json json_object_of(const Comparison& comparison)
     json["read_s"] = comparison.read_s;
     json["target"] = Json::object();
     add(json["target"], comparison.target);
+    json["target"]["subdivide"] = comparison.subdivide ? Json(*comparison.subdivide) : Json();
     if (comparison.texels) {
         json["target"]["values"] = nullptr;
         json["target"]["texels"] = {

@@ -83,7 +83,7 @@ std::vector<std::string> notes_of(const Baked& baked)
     if (baked.misfit && baked.misfit->rms > kNotableMisfit && baked.misfit->share >= kNotableShare)
         add("what is seen errs by about " + fixed(baked.misfit->rms, 2) + ": " +
             percent(baked.misfit->share) +
-            " of the surface lies in triangles too large for values at vertices; a finer mesh "
+            " of the surface lies in triangles too large for values at vertices; --subdivide "
             "helps");
     for (std::string& hint : hints_by_name(baked.mesh))
         add(std::move(hint));

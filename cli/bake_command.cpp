@@ -39,6 +39,7 @@ struct BakeOptions {
     SurfaceOptions surface;
     ColorOptions colors;
     TexelOptions texels;
+    std::optional<double> subdivide;
     PartOptions parts;
     bool together = false;
     std::uint32_t check = kCheckPoints;
@@ -84,6 +85,8 @@ std::vector<Job> jobs_of(const BakeOptions& options)
                                            : fs::path(options.output)});
         files.writes(jobs.back().output, input);
         if (texel_settings_of(options.texels, jobs.back().output)) {
+            if (options.subdivide)
+                throw UsageError("--subdivide is for values at vertices: it goes with no map.");
             for (const auto& beside :
                  {map_file_of(jobs.back().output), map_materials_of(jobs.back().output)}) {
                 if (beside)
@@ -135,6 +138,7 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.texels = texel_settings_of(options.texels, job.output);
     if (options.texels.at && *options.texels.at != "texels")
         settings.at_points = options.texels.at == "points";
+    settings.subdivide = options.subdivide;
     settings.colors = colors_of(options.colors);
     settings.encoding = encoding_of(options.colors);
     settings.share = share_of(options);
@@ -298,6 +302,7 @@ void add_options(CLI::App* command, const std::shared_ptr<BakeOptions>& options)
     add_measure_options(*command, options->measure);
     add_up_option(*command, options->up, "What is measured");
     add_surface_options(*command, options->surface);
+    add_subdivide_option(*command, options->subdivide);
     add_color_options(*command, options->colors);
     add_texel_options(*command, options->texels);
     add_part_options(*command, options->parts);

@@ -39,6 +39,14 @@ std::string question_of(const BakeReport& report)
     return text;
 }
 
+/// "subdivided in 7 rounds, from 1499 and 2694"
+std::string subdivision_text(const SubdivisionReport& subdivision)
+{
+    return "subdivided in " + count_text(static_cast<std::uint64_t>(subdivision.rounds), "round") +
+           ", from " + std::to_string(subdivision.old_vertices) + " and " +
+           std::to_string(subdivision.old_triangles);
+}
+
 /// "error 0.0041 (0.0037 to 0.0046), bias -0.0006, 95 % within 0.0101, floor 0.0038; 400 points"
 std::string statement_of(const StatedError& error)
 {
@@ -86,11 +94,11 @@ std::string search_of(const BakeReport& report)
     const StatedError& last = *report.error;
     if (last.floor && *last.floor > *report.settings.error)
         return text + " not met: values at these vertices err by " + fixed(*last.floor, 4) +
-               " whoever answers (floor); a finer mesh or a map helps";
+               " whoever answers (floor); --subdivide or a map helps";
     if (last.floor && last.high > 0.0 &&
         *last.floor * last.high > *report.settings.error * last.rmse)
         return text + " not met for sure: the floor of these vertices, " + fixed(*last.floor, 4) +
-               ", is too near; more points (--check) or a finer mesh help";
+               ", is too near; more points (--check) or --subdivide help";
     return text + " not met";
 }
 
@@ -106,6 +114,8 @@ void print_report(const BakeReport& report)
         std::cout << report.vertices << " points, " << points_of(*report.points);
     else
         std::cout << report.vertices << " vertices, " << report.triangles << " triangles";
+    if (report.subdivision)
+        std::cout << " (" << subdivision_text(*report.subdivision) << ")";
     if (report.dropped_triangles > 0)
         std::cout << " (" << report.dropped_triangles << " without area dropped)";
     if (report.baked_triangles + report.dropped_triangles < report.triangles ||
@@ -134,6 +144,8 @@ void print_report(const BakeReport& report)
     std::cout << "\n  read " << time(seconds.read);
     if (report.points)
         std::cout << ", points " << time(seconds.points);
+    if (report.subdivision)
+        std::cout << ", subdivide " << time(seconds.subdivide);
     if (report.texels && report.texels->charts)
         std::cout << ", charts " << time(seconds.charts);
     if (report.texels)

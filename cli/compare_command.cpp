@@ -38,6 +38,7 @@ struct CompareOptions {
     MeasureOptions measure;
     std::string up = "y";
     SurfaceOptions surface;
+    std::optional<double> subdivide;
     TexelOptions texels;
     PartOptions parts;
     std::uint32_t reference_rays = 4096;
@@ -59,6 +60,7 @@ CompareSettings common_settings(const CompareOptions& options)
     settings.target = target_settings_of(options.surface);
     settings.parts = part_choice_of(options.parts);
     settings.texels = shown_texels_of(options.texels);
+    settings.subdivide = options.subdivide;
     settings.reference_rays = options.reference_rays;
     settings.sample = options.sample;
     settings.rounds = options.rounds;
@@ -218,6 +220,8 @@ void check(const CompareOptions& options)
         throw UsageError("--frontier needs at least 3 rounds.");
     if (options.reference_rays % 2 != 0)
         throw UsageError("--reference-rays must be even: two halves tell the noise.");
+    if (options.subdivide && options.texels.at == "texels")
+        throw UsageError("--subdivide is for values at vertices: it goes with no map.");
     if (options.json == "-" && options.csv == "-")
         throw UsageError("--json and --csv cannot both go to standard output.");
     const CompareSettings settings = compare_settings(options);
@@ -281,6 +285,7 @@ void add_compare_command(CLI::App& app, Work& work)
     add_measure_options(*command, options->measure);
     add_up_option(*command, options->up, "What is measured");
     add_surface_options(*command, options->surface);
+    add_subdivide_option(*command, options->subdivide);
     add_layout_options(*command, options->texels, kShownMaps);
     add_part_options(*command, options->parts);
     command

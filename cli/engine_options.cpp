@@ -1,5 +1,6 @@
 #include "cli/engine_options.h"
 
+#include "bake/subdivide.h"
 #include "cli/commands.h"
 #include "reference/rays.h"
 #include "surfels/number_text.h"
@@ -200,6 +201,20 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options)
                     "Of points: one in each cube of this size occludes, in the file's units, or "
                     "with % of the bounding box's diagonal (default: all, up to 20 million)")
         ->type_name("D|P%")
+        ->group("What is measured");
+}
+
+void add_subdivide_option(CLI::App& command, std::optional<double>& tolerance)
+{
+    command
+        .add_option("--subdivide", tolerance,
+                    "Cut triangles at the middles of their edges where what is seen bends by more "
+                    "than this, down to edges of 0.2% of the diagonal: coarse meshes get the "
+                    "vertices that shades need. The file's own vertices come first")
+        ->expected(0, 1)
+        ->default_str(exact(kSubdivideTolerance))
+        ->check(CLI::Range(1e-4, 1.0))
+        ->type_name("[TOL]")
         ->group("What is measured");
 }
 

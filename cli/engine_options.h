@@ -60,6 +60,9 @@ void add_up_option(CLI::App& command, std::string& up, const char* group);
 
 void add_surface_options(CLI::App& command, SurfaceOptions& options);
 
+/// `--subdivide [TOL]`; without a number it is kSubdivideTolerance.
+void add_subdivide_option(CLI::App& command, std::optional<double>& tolerance);
+
 void add_color_options(CLI::App& command, ColorOptions& options);
 
 /// Adds `--threads N`.

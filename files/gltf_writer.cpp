@@ -8,6 +8,7 @@
 #include "files/gltf_looks.h"
 #include "files/gltf_maps.h"
 #include "files/gltf_pose.h"
+#include "files/gltf_refined.h"
 #include "files/gltf_uri.h"
 #include "files/gltf_uses.h"
 #include "files/maker_mark.h"
@@ -197,6 +198,17 @@ WrittenFile gltf_contents(const fs::path& path, const Scene& scene,
         path, scene, options, [&](json& document, const GltfAsset& asset, AddedData& added) {
             return add_attributes(document, asset, scene, occlusion, options, added);
         });
+}
+
+std::string refined_gltf(const Scene& scene, const Refinement& refinement)
+{
+    const auto& source = dynamic_cast<const GltfAsset&>(*scene.asset);
+    return contents_with(source.path, scene, {},
+                         [&](json& document, const GltfAsset& asset, AddedData& added) {
+                             refine_meshes(document, asset, scene, refinement, added);
+                             return std::vector<std::string>();
+                         })
+        .contents;
 }
 
 WrittenFile gltf_contents_with_blended_map(const fs::path& path, const Scene& scene,

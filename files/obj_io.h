@@ -43,6 +43,9 @@ namespace surfelao {
                                        std::span<const Occlusion> occlusion,
                                        const WriteOptions& options = {});
 
+/// The text of the file that a scene was read from, without anything that a bake has added.
+[[nodiscard]] std::string original_obj(const Scene& scene);
+
 /// The scene as OBJ whose materials have the map of map_file_of(path) as map_Ka, and the text of
 /// the file that they stand in: map_materials_of(path), which is the only one that the OBJ names.
 ///

@@ -366,6 +366,16 @@ WrittenFile obj_contents(const std::filesystem::path& path, const Scene& scene,
     return written;
 }
 
+std::string original_obj(const Scene& scene)
+{
+    const auto& source = dynamic_cast<const ObjSource&>(*scene.asset);
+    WriteOptions keeping;
+    keeping.colors = VertexColors::keep;
+    return obj_contents(source.folder / scene.name, scene,
+                        std::vector<Occlusion>(scene.positions.size()), keeping)
+        .contents;
+}
+
 ObjWithMap obj_contents_with_map(const std::filesystem::path& path, const Scene& scene,
                                  const OcclusionMap& map, const WriteOptions& options)
 {

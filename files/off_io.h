@@ -31,4 +31,7 @@ namespace surfelao {
 [[nodiscard]] WrittenFile off_contents(const Scene& scene, std::span<const Occlusion> occlusion,
                                        const WriteOptions& options = {});
 
+/// The text of the file that a scene was read from, without anything that a bake has added.
+[[nodiscard]] std::string original_off(const Scene& scene);
+
 }  // namespace surfelao

@@ -183,4 +183,11 @@ WrittenFile off_contents(const Scene& scene, std::span<const Occlusion> occlusio
     return written;
 }
 
+std::string original_off(const Scene& scene)
+{
+    WriteOptions keeping;
+    keeping.colors = VertexColors::keep;
+    return off_contents(scene, std::vector<Occlusion>(scene.positions.size()), keeping).contents;
+}
+
 }  // namespace surfelao

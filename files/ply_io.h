@@ -55,6 +55,9 @@ namespace surfelao {
                                        std::span<const Occlusion> occlusion,
                                        const WriteOptions& options = {});
 
+/// The file that a scene was read from, without anything that a bake has added.
+[[nodiscard]] std::string original_ply(const Scene& scene);
+
 /// The scene as PLY with `comment TextureFile` of map_file_of(path), in place of other such
 /// comments, as MeshLab reads it; of colours the file's own.
 ///

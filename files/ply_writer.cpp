@@ -297,6 +297,14 @@ WrittenFile ply_contents(const std::filesystem::path& path, const Scene& scene,
     return written;
 }
 
+std::string original_ply(const Scene& scene)
+{
+    const auto& source = dynamic_cast<const PlySource&>(*scene.asset);
+    WriteOptions keeping;
+    keeping.colors = VertexColors::keep;
+    return spliced(source, scene, {}, {}, keeping, source.folder).contents;
+}
+
 WrittenFile ply_contents_with_map(const std::filesystem::path& path, const Scene& scene,
                                   const OcclusionMap& map, const WriteOptions& options)
 {

@@ -188,6 +188,39 @@ TEST_F(BakeCommand, AnErrorThatIsAskedForIsSearched)
     }
 }
 
+TEST_F(BakeCommand, SubdividesWhereThatIsAsked)
+{
+    using scenes::operator+;
+    const Scene scene =
+        scenes::sheet({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1) + scenes::sphere({0, 0, 0.5}, 0.5, 4);
+    write_obj(folder_ / "floor.obj", scene);
+    std::size_t least = 0;
+    for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
+             {}, {"--engine", "disks"}, {"--error", "0.2"}, {"--values", "point"}}) {
+        std::vector<std::string> arguments{
+            "bake",   folder_ / "floor.obj", "-o",         folder_ / "x.ply",
+            "--json", folder_ / "x.json",    "--subdivide"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Outcome outcome = run(arguments);
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        const Json json = Json::parse(contents_of(folder_ / "x.json"));
+        EXPECT_EQ(json["subdivision"]["tolerance"], 0.02);
+        EXPECT_EQ(json["subdivision"]["old_vertices"], scene.positions.size());
+        const std::size_t vertices = read_scene(folder_ / "x.ply").positions.size();
+        EXPECT_EQ(json["vertices"], vertices);
+        EXPECT_GT(vertices, scene.positions.size() + 100);
+        least = least == 0 ? vertices : least;
+        EXPECT_EQ(vertices, least);  // whoever bakes
+    }
+    for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{
+             {"--subdivide", "0"}, {"--subdivide", "x"}, {"--subdivide", "--at", "texels"}}) {
+        std::vector<std::string> arguments{"bake", folder_ / "floor.obj", "-o", folder_ / "y.ply"};
+        arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+        EXPECT_EQ(run(arguments).code, 2) << wrong[1];
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "y.ply"));
+}
+
 TEST_F(BakeCommand, TheGpuKnowsTheSameOptions)
 {
     for (const char* engine : {"masks", "disks"}) {
