@@ -198,9 +198,8 @@ std::string points_text(const Info& info)
     std::string text = info.input.string() + "\n  " + count_text(info.vertices, "point") +
                        ", no faces\n  box " + point_text(info.low) + " to " +
                        point_text(info.high) + ", diagonal " + exact(info.diagonal) + "\n  about " +
-                       exact(static_cast<float>(points.spacing)) + " apart, noise " +
-                       fixed(points.noise, 2) + " of a point's radius, area about " +
-                       exact(static_cast<float>(info.area)) + "\n  ";
+                       significant(points.spacing) + " apart, noise " + fixed(points.noise, 2) +
+                       " of a point's radius, area about " + significant(info.area) + "\n  ";
     text += info.normals_in_file
                 ? "normals in the file at " + std::to_string(points.counts.from_file) + " points"
                 : "no normals in the file: fitted, their sides by " + name_of(points.orientation);

@@ -141,6 +141,9 @@ void check_target(const Scene& scene, const TargetSettings& settings, const Part
                 ": has faces, --viewpoint, --occluder-spacing and --normals up are for points");
     require(!is_cloud || settings.normals.source != NormalSource::flat,
             scene.name + ": has points only, no faces: --normals flat is for faces");
+    require(!is_cloud || (settings.values == VertexValues::fit &&
+                          settings.normals.crease == NormalSettings{}.crease),
+            scene.name + ": has points only, no faces: --values and --crease are for faces");
     require(!is_cloud || parts == PartChoice{},
             scene.name + ": has points only, no faces, and no parts to be chosen");
 }
@@ -153,6 +156,7 @@ PointTarget make_point_target(const Scene& scene, const TargetSettings& settings
     PointSettings points;
     points.normals = settings.normals.source;
     points.viewpoint = settings.viewpoint;
+    points.up = settings.sky.value_or(points.up);
     if (const auto& spacing = settings.occluder_spacing) {
         Box box;
         for (const glm::dvec3& p : scene.positions)

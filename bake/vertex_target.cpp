@@ -66,6 +66,8 @@ std::string text_of(const TargetSettings& settings)
         append_shortest(text += ":", settings.viewpoint->y);
         append_shortest(text += ":", settings.viewpoint->z);
     }
+    if (settings.sky && settings.normals.source == NormalSource::up)
+        text += settings.sky->y != 0.0f ? " sky=y" : " sky=z";
     if (settings.occluder_spacing) {
         append_shortest(text += " occluder-spacing=", settings.occluder_spacing->value);
         text += settings.occluder_spacing->percent ? "%" : "";

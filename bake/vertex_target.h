@@ -41,6 +41,7 @@ struct TargetSettings {
     std::optional<Length> offset = {};         ///< > 0; empty: local (surfels/surface.h)
     std::optional<glm::dvec3> viewpoint = {};  ///< of clouds (surfels/point_cloud.h), as the next
     std::optional<Length> occluder_spacing = {};
+    std::optional<glm::vec3> sky = {};  ///< where NormalSource::up looks; empty: along z
     bool operator==(const TargetSettings&) const = default;
 };
 

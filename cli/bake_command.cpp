@@ -35,7 +35,7 @@ struct BakeOptions {
     ReadOptions reading;
     EngineOptions engine;
     MeasureOptions measure;
-    std::string up = "y";
+    std::optional<std::string> up;
     SurfaceOptions surface;
     ColorOptions colors;
     TexelOptions texels;
@@ -125,7 +125,7 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
     settings.ground = ground_plane_of(options.measure, options.up);
-    settings.target = target_settings_of(options.surface);
+    settings.target = target_settings_of(options.surface, options.up);
     settings.parts = part_choice_of(options.parts);
     if (options.together) {
         for (const std::string& other : options.inputs) {
@@ -267,7 +267,7 @@ void check_options(const BakeOptions& options)
     const EngineSettings engine = settings_of(options.engine);
     static_cast<void>(distance_limit_of(options.measure));
     static_cast<void>(ground_plane_of(options.measure, options.up));
-    static_cast<void>(target_settings_of(options.surface));
+    static_cast<void>(target_settings_of(options.surface, options.up));
     check_kernel(engine.engine, kernel_of(options.measure));
     if (options.error && options.check == 0)
         throw UsageError("--error needs the points of --check.");

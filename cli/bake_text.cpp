@@ -66,7 +66,7 @@ std::string points_of(const PointReport& points)
 {
     const PointCounts& counts = points.counts;
     std::string text = std::to_string(points.occluders) + " occlude, about " +
-                       exact(static_cast<float>(points.spacing)) + " apart, normals " +
+                       significant(points.spacing) + " apart, normals " +
                        (counts.from_file > 0 ? "of the file" : "fitted");
     switch (points.orientation) {
         case Orientation::file:

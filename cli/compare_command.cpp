@@ -36,7 +36,7 @@ struct CompareOptions {
     std::vector<std::string> devices = {"cpu"};
     std::optional<std::vector<std::string>> qualities;
     MeasureOptions measure;
-    std::string up = "y";
+    std::optional<std::string> up;
     SurfaceOptions surface;
     std::optional<double> subdivide;
     TexelOptions texels;
@@ -57,7 +57,7 @@ CompareSettings common_settings(const CompareOptions& options)
     settings.max_distance = distance_limit_of(options.measure);
     settings.kernel = kernel_of(options.measure);
     settings.ground = ground_plane_of(options.measure, options.up);
-    settings.target = target_settings_of(options.surface);
+    settings.target = target_settings_of(options.surface, options.up);
     settings.parts = part_choice_of(options.parts);
     settings.texels = shown_texels_of(options.texels);
     settings.subdivide = options.subdivide;

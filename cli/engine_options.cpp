@@ -27,6 +27,11 @@ std::optional<double> number_of(std::string_view text)
     return value;
 }
 
+glm::vec3 axis_of(const std::string& name)
+{
+    return name == "z" ? glm::vec3(0.0f, 0.0f, 1.0f) : glm::vec3(0.0f, 1.0f, 0.0f);
+}
+
 void refuse_unless(bool allowed, const char* option, const char* engines)
 {
     if (!allowed)
@@ -147,12 +152,12 @@ void add_measure_options(CLI::App& command, MeasureOptions& options)
         ->group("What is measured");
 }
 
-void add_up_option(CLI::App& command, std::string& up, const char* group)
+void add_up_option(CLI::App& command, std::optional<std::string>& up, const char* group)
 {
     command.add_option("--up", up, "The file's axis that points to the sky")
         ->check(CLI::IsMember({"y", "z"}))
         ->type_name("y|z")
-        ->capture_default_str()
+        ->default_str("y; z for --normals up")
         ->group(group);
 }
 
@@ -163,7 +168,7 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options)
                     "Corner normals: the file's where they are usable (auto) or wherever it has "
                     "any (file), smooth within --crease, or flat. Of points: the file's or else "
                     "fitted to the neighbours (auto), the file's (file), fitted (smooth), or up "
-                    "(z): 1 - occlusion is then the sky view factor")
+                    "(z, or --up): 1 - occlusion is then the sky view factor")
         ->check(CLI::IsMember({"auto", "file", "smooth", "flat", "up"}))
         ->type_name("auto|file|smooth|flat|up")
         ->default_str("auto")
@@ -309,7 +314,8 @@ EngineSettings settings_of(const EngineOptions& options)
     return settings;
 }
 
-TargetSettings target_settings_of(const SurfaceOptions& options)
+TargetSettings target_settings_of(const SurfaceOptions& options,
+                                  const std::optional<std::string>& up)
 {
     TargetSettings settings;
     for (const NormalSource source : {NormalSource::automatic, NormalSource::file,
@@ -326,6 +332,8 @@ TargetSettings target_settings_of(const SurfaceOptions& options)
         settings.offset = length_of(*options.offset, "--offset");
     if (options.viewpoint)
         settings.viewpoint = place_of(*options.viewpoint, "--viewpoint");
+    if (up)
+        settings.sky = axis_of(*up);
     if (options.occluder_spacing)
         settings.occluder_spacing = length_of(*options.occluder_spacing, "--occluder-spacing");
     return settings;
@@ -375,14 +383,15 @@ Kernel kernel_of(const MeasureOptions& options)
     return options.kernel == "bunnell" ? Kernel::bunnell : Kernel::cosine;
 }
 
-std::optional<GroundPlane> ground_plane_of(const MeasureOptions& options, const std::string& up)
+std::optional<GroundPlane> ground_plane_of(const MeasureOptions& options,
+                                           const std::optional<std::string>& up)
 {
     if (!options.ground)
         return std::nullopt;
     if (kernel_of(options) != Kernel::cosine)
         throw UsageError("--ground is for --kernel cosine only.");
     GroundPlane plane;
-    plane.up = up == "z" ? glm::vec3(0.0f, 0.0f, 1.0f) : glm::vec3(0.0f, 1.0f, 0.0f);
+    plane.up = axis_of(up.value_or("y"));
     if (*options.ground == kLowest)
         return plane;
     plane.height = number_of(*options.ground);

@@ -56,7 +56,7 @@ void add_engine_options(CLI::App& command, EngineOptions& options);
 void add_measure_options(CLI::App& command, MeasureOptions& options);
 
 /// `--up y|z`, in this group.
-void add_up_option(CLI::App& command, std::string& up, const char* group);
+void add_up_option(CLI::App& command, std::optional<std::string>& up, const char* group);
 
 void add_surface_options(CLI::App& command, SurfaceOptions& options);
 
@@ -71,13 +71,14 @@ void add_thread_option(CLI::App& command, std::optional<int>& threads);
 /// Throw UsageError for what contradicts itself; nothing is dropped silently.
 [[nodiscard]] EngineSettings settings_of(const EngineOptions& options);
 [[nodiscard]] DistanceLimit distance_limit_of(const MeasureOptions& options);
-[[nodiscard]] TargetSettings target_settings_of(const SurfaceOptions& options);
+[[nodiscard]] TargetSettings target_settings_of(const SurfaceOptions& options,
+                                                const std::optional<std::string>& up);
 [[nodiscard]] VertexColors colors_of(const ColorOptions& options);
 [[nodiscard]] Encoding encoding_of(const ColorOptions& options);
 [[nodiscard]] Kernel kernel_of(const MeasureOptions& options);
 /// up: of add_up_option().
 [[nodiscard]] std::optional<GroundPlane> ground_plane_of(const MeasureOptions& options,
-                                                         const std::string& up);
+                                                         const std::optional<std::string>& up);
 
 /// Throws UsageError where this engine does not know this kernel.
 void check_kernel(Engine engine, Kernel kernel);

@@ -184,7 +184,7 @@ int run(const RenderCommandOptions& options)
         picture.environment = read_image(*options.show.environment);
 
     Stopwatch watch;
-    const TargetSettings target = target_settings_of(options.surface);
+    const TargetSettings target = target_settings_of(options.surface, options.show.up);
     const UpAxis up = up_axis_of(options.show);
     const Model model = model_of(read_scene(options.input, options.reading), up, target,
                                  {.parts = part_choice_of(options.parts),
@@ -276,7 +276,7 @@ void add_render_command(CLI::App& app, Work& work)
         check_kernel(settings_of(options->engine).engine, kernel_of(options->measure));
         static_cast<void>(distance_limit_of(options->measure));
         static_cast<void>(ground_plane_of(options->measure, options->show.up));
-        static_cast<void>(target_settings_of(options->surface));
+        static_cast<void>(target_settings_of(options->surface, options->show.up));
         const bool has_map = shown_texels_of(options->texels).has_value();
         check_shown_map(view_options_of(options->show), has_map, options->atlas);
         check_files(*options);

@@ -53,10 +53,12 @@ int run(const ViewCommandOptions& options)
     if (!options.input.empty() && !std::filesystem::exists(options.input))
         throw InputError(options.input + ": no such file");
 
-    window.panel.settings = {
-        settings_of(options.engine),         distance_limit_of(options.measure),
-        target_settings_of(options.surface), shown_texels_of(options.texels),
-        part_choice_of(options.parts),       ground_plane_of(options.measure, options.show.up)};
+    window.panel.settings = {settings_of(options.engine),
+                             distance_limit_of(options.measure),
+                             target_settings_of(options.surface, options.show.up),
+                             shown_texels_of(options.texels),
+                             part_choice_of(options.parts),
+                             ground_plane_of(options.measure, options.show.up)};
     window.other_inputs.insert(window.other_inputs.end(), options.parts.occluders.begin(),
                                options.parts.occluders.end());
     window.panel.shows_atlas = options.atlas;
@@ -96,7 +98,7 @@ void add_view_command(CLI::App& app, Work& work)
         static_cast<void>(settings_of(options->engine));
         check_shown_map(view_options_of(options->show),
                         shown_texels_of(options->texels).has_value(), options->atlas);
-        static_cast<void>(target_settings_of(options->surface));
+        static_cast<void>(target_settings_of(options->surface, options->show.up));
         static_cast<void>(ground_plane_of(options->measure, options->show.up));
         const DistanceLimit distance = distance_limit_of(options->measure);
         if (std::isfinite(distance.value) && !distance.percent)

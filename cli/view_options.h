@@ -18,7 +18,7 @@ namespace surfelao {
 struct ShowOptions {
     std::optional<std::string> mode;
     std::string surface = "triangles";
-    std::string up = "y";
+    std::optional<std::string> up;
     std::optional<std::string> environment;  ///< a panorama's path
     float exposure = 0.0f;
     float radius_scale = 1.0f;

@@ -31,6 +31,7 @@ target_sources(surfelao_library
         ${PROJECT_SOURCE_DIR}/surfels/receiver.h
         ${PROJECT_SOURCE_DIR}/surfels/base_colors.h
         ${PROJECT_SOURCE_DIR}/surfels/scene.h
+        ${PROJECT_SOURCE_DIR}/surfels/share.h
         ${PROJECT_SOURCE_DIR}/surfels/surface.h)
 add_library(surfelao::surfelao ALIAS surfelao_library)
 

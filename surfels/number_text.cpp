@@ -24,6 +24,14 @@ std::string exact(double value)
     return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
 }
 
+std::string significant(double value, int digits)
+{
+    char buffer[64];
+    return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, value,
+                                             std::chars_format::general, digits)
+                                   .ptr);
+}
+
 std::string count_text(std::uint64_t count, const std::string& noun)
 {
     const std::size_t bar = noun.find('|');

@@ -40,6 +40,9 @@ inline void append_integer(std::string& text, std::int64_t value)
 /// The shortest text that reads back as the same number.
 [[nodiscard]] std::string exact(double value);
 
+/// With so many significant digits at most: "0.0123", "1.2e-07".
+[[nodiscard]] std::string significant(double value, int digits = 4);
+
 /// "3 triangles", "1 triangle"; an irregular noun gives both forms: "vertex|vertices".
 [[nodiscard]] std::string count_text(std::uint64_t count, const std::string& noun);
 

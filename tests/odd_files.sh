@@ -59,7 +59,8 @@ while read -r file; do
     said=$("$surfelao" bake "$file" -o "$out" --quality draft 2>"$work/err") || code=$?
     case $code in
     0)
-        counts=$(sed -n 's/^ *\([0-9]*\) vertices, \([0-9]*\) triangle.*/\1 | \2/p' <<<"$said")
+        counts=$(sed -nE 's/^ *([0-9]+) vertices, ([0-9]+) triangle.*/\1 | \2/p;
+            s/^ *([0-9]+) points?,.*/\1 | a cloud/p' <<<"$said")
         [ -n "$counts" ] || fault "$file: baked, but said nothing of it"
         # not info, which looks for gaps with rays
         "$surfelao" bake "$out"/* -o "$work/again" --quality draft >/dev/null || fault "$file: its result cannot be read again"
