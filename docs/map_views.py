@@ -75,3 +75,15 @@ def map_frontier_table(figures):
                      *(ratio_text(ratio_of(scene, "masks", target)) for target in ("010", "005"))])
     return table(["model", "texels", "hidden points", "floor", "draft", "good", "best", "64 rays",
                   "Embree over ours, at good's error", "at .010", "at .005"], rows)
+
+
+@view
+def subdivided(figures):
+    """Coarse meshes as they are and subdivided: vertices, floor and seen errors"""
+    rows = [[row["name"], *(thousands(row[key]["vertices"]) for key in ("plain", "cut")),
+             *(short(row[key]["floor"], 4) for key in ("plain", "cut")),
+             short(row["plain"]["good"], 4), short(row["cut"]["good"], 4), short(row["cut"]["best"], 4),
+             fixed(row["seconds"], 2), fixed(100 * row["again"], 1) + " %"]
+            for row in figures["subdivide"]["rows"]]
+    return table(["model", "vertices", "subdivided", "floor", "subdivided", "seen (good)", "subdivided",
+                  "best", "seconds", "a second run adds"], rows)

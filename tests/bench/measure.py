@@ -3,7 +3,7 @@
 
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
                                     readers stated demo viewers atlas maps map_frontier
-                                    clouds clouds_pcv;
+                                    clouds clouds_pcv subdivide;
                                     default: all, about an hour on two quiet cores
 
 Every part is one file that says what command made it, of which version and commit, on what
@@ -320,6 +320,34 @@ def part_viewers(build):
     return {**provenance(build, "tests/bench/viewers/prove.py"), "before": old["before"], **shown}
 
 
+SUBDIVIDED = ("cornell_box", "gazebo", "boat", "data/room.obj")
+
+
+def part_subdivide(build):
+    """Coarse meshes as they are and by --subdivide, and what a second run over the result adds."""
+    rows = []
+    for path, name, _ in models():
+        if not TRIAL and name not in SUBDIVIDED:
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            bakes, source = [], path
+            for turn in range(2):
+                result = pathlib.Path(folder) / f"{turn}{pathlib.Path(path).suffix}"
+                text = run(build / "bin/surfelao", "bake", source, "-o", result, "--subdivide",
+                           "--check", "0", "--json", "-")
+                bakes.append(json.loads(text))
+                source = result
+        row = {"name": name, "seconds": bakes[0]["seconds"]["subdivide"],
+               "again": bakes[1]["vertices"] / bakes[0]["vertices"] - 1}
+        for key, options in (("plain", []), ("cut", ["--subdivide"])):
+            told, command = compare(build, path, "--engines", "masks", "--qualities", "good,best",
+                                    "--rounds", "1", "--sample", SAMPLE, *options)
+            row[key] = {"vertices": told["vertices"], "floor": told["floor"]["rmse"],
+                        "good": told["rows"][0]["seen"]["rmse"], "best": told["rows"][1]["seen"]["rmse"]}
+        rows.append(row)
+    return {**provenance(build, command), "rows": rows}
+
+
 def part_atlas(build):
     out = ROOT / "out/atlas"
     try:
@@ -424,7 +452,8 @@ PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scalin
          "readers": part_readers, "stated": part_stated, "demo": part_demo,
          "viewers": part_viewers, "atlas": part_atlas, "maps": part_maps,
          "map_frontier": part_map_frontier, "clouds": part_clouds,
-         "clouds_pcv": part_clouds_pcv}
+         "clouds_pcv": part_clouds_pcv,
+         "subdivide": part_subdivide}
 
 
 def main(arguments):
