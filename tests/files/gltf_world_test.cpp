@@ -445,11 +445,10 @@ TEST(GltfNotes, ASentenceForEachKind)
                                    {{"alphaMode", "MASK"}},
                                    {{"alphaMode", "MASK"}}};
     maker.document["animations"] = {{{"channels", json::array()}}};
-    EXPECT_EQ(
-        read_made(maker).notes,
-        (std::vector<std::string>{"1 primitive of points or lines is left out",
-                                  "3 corners behind the last whole triangles are left out",
-                                  "1 animation is not played: the default pose is baked"}));
+    EXPECT_EQ(read_made(maker).notes,
+              (std::vector<std::string>{"1 primitive of points or lines is left out",
+                                        "3 corners behind the last whole triangles are left out",
+                                        "1 animation is not played: the default pose is baked"}));
 }
 
 // ---- written again

@@ -26,7 +26,7 @@ file(GLOB_RECURSE headers RELATIVE ${scratch}/prefix/include ${scratch}/prefix/i
 set(public engines/engine.h engines/threads.h files/scene_io.h files/vertex_colors.h
     surfelao.h surfels/base_colors.h
     surfels/errors.h surfels/geometry.h surfels/occlusion.h surfels/progress.h
-    surfels/receiver.h surfels/scene.h surfels/surface.h)
+    surfels/receiver.h surfels/scene.h surfels/share.h surfels/surface.h)
 list(TRANSFORM public PREPEND surfelao/)
 list(SORT headers)
 list(SORT public)
