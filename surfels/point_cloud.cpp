@@ -543,20 +543,31 @@ void orient(PointCloud& cloud, std::span<const Occlusion> front, std::span<const
     std::vector<float> votes(cloud.positions.size(), 0.0f), next(votes.size());
     for (std::size_t k = 0; k < count; ++k)
         votes[cloud.occluders[k]] = back[k].occlusion - front[k].occlusion;
-    constexpr int kRounds = 2;
-    for (int round = 0; round < kRounds; ++round) {
-        for_each_point(votes.size(), [&](std::size_t i) {
-            float sum = votes[i], weights = 1.0f;
-            for (const std::uint32_t other : cloud.neighbours[i]) {
-                if (other == kNobody)
-                    continue;
-                const float weight = glm::dot(cloud.normals[i], cloud.normals[other]);
-                sum += votes[other] * weight;
-                weights += std::abs(weight);
-            }
-            next[i] = sum / weights;
-        });
+    const auto voted = [&](std::size_t i) {
+        float sum = votes[i], weights = 1.0f;
+        for (const std::uint32_t other : cloud.neighbours[i]) {
+            if (other == kNobody)
+                continue;
+            const float cosine = glm::dot(cloud.normals[i], cloud.normals[other]);
+            const float weight = cosine * cosine * cosine * cosine;  // not across edges
+            sum += std::copysign(weight, cosine) * votes[other];
+            weights += weight;
+        }
+        return sum / weights;
+    };
+    for (int round = 0; round < kVoteRounds; ++round) {
+        for_each_point(votes.size(), [&](std::size_t i) { next[i] = voted(i); });
         votes.swap(next);
+    }
+    std::vector<std::uint32_t> weak;
+    for (std::uint32_t i = 0; i < votes.size(); ++i) {
+        if (std::abs(votes[i]) < kWeakVote)
+            weak.push_back(i);
+    }
+    for (int round = 0; round < kWeakVoteRounds; ++round) {
+        for_each_point(weak.size(), [&](std::size_t k) { next[k] = voted(weak[k]); });
+        for (std::size_t k = 0; k < weak.size(); ++k)
+            votes[weak[k]] = next[k];
     }
     for (std::size_t i = 0; i < votes.size(); ++i) {
         if (votes[i] < 0.0f)

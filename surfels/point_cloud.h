@@ -71,6 +71,10 @@ inline constexpr float kUneven = 2.0f;
 inline constexpr float kLift = 1.1f;
 /// Occlusion by which one side must be more open than the other.
 inline constexpr float kWeakVote = 0.1f;
+/// Votes of neighbours count in so many rounds for all, then in so many more for those that are
+/// still weak, which so take the side of the strong ones around them: of the points of a skull .3 %
+/// instead of .7 % are turned inward; over the family the error is the same to .3 %.
+inline constexpr int kVoteRounds = 2, kWeakVoteRounds = 62;
 /// An outlier's r is above so many times the median of its neighbours'.
 inline constexpr float kOutlier = 4.0f;
 
