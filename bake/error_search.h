@@ -49,6 +49,9 @@ class JudgedBaker {
 public:
     [[nodiscard]] const ErrorCheck& check() const { return *check_; }
 
+    /// Takes four times as many points from now on; false where they are enough.
+    [[nodiscard]] bool take_more_points();
+
 protected:
     /// geometry: what occludes where `occluders` is null. check: points; 0: nothing is judged.
     /// asked: the error that shall be told of other bakes than the first, which may be a coarse
@@ -62,9 +65,6 @@ protected:
 
     /// Adds what it takes to `surfels` and `tree`, in seconds.
     const Prepared& prepared_for(const EngineSettings& engine, double& surfels, double& tree);
-
-    /// Takes four times as many points from now on; false where they are enough.
-    [[nodiscard]] bool take_more_points();
 
     [[nodiscard]] const Geometry& occluding() const { return occluders_->geometry(); }
 
@@ -84,9 +84,9 @@ private:
 [[nodiscard]] bool is_hopeless(std::span<const Trial> trials, double error);
 
 /// The last bake is the answer: it is met, or of masks at good where nothing can meet the error.
-/// `Baker` has bake(EngineSettings), which gives something with an `error`, an `engine`, `trials`
-/// and `is_met`; refine() of what was baked last, at more points, false where they are enough; and
-/// check(). kept: what becomes of the rays' independent noise in what is displayed, 0 to 1.
+/// `Baker` is a JudgedBaker and has bake(EngineSettings), which gives something with an `error`, an
+/// `engine`, `trials` and `is_met`, and judge() of what was baked last, at the points of then.
+/// kept: what becomes of the rays' independent noise in what is displayed, 0 to 1.
 template <class Baker>
 auto search_error(Baker& baker, const EngineSettings& engine, double error, double kept)
 {
@@ -103,8 +103,8 @@ auto search_error(Baker& baker, const EngineSettings& engine, double error, doub
             continue;
         bake = baker.bake(setting);
         // exact enough, it seems: to be sure takes more points, not more exactness
-        while (bake.error->rmse <= error && bake.error->high > error && baker.refine(bake)) {
-        }
+        while (bake.error->rmse <= error && bake.error->high > error && baker.take_more_points())
+            baker.judge(bake);
         trials.push_back({setting, *bake.error});
         bake.is_met = bake.error->high <= error;
         if (bake.is_met)

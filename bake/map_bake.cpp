@@ -154,22 +154,18 @@ public:
             for (Map& map : *maps)
                 round_to_depth(map, settings_.depth, settings_.half_is_whole);
         seconds_.fill += watch.lap();
-        if (count_ > 0)
-            bake.error = error_of(bake);
-        seconds_.check += watch.lap();
         bake.seconds = seconds_;
+        judge(bake);
         return bake;
     }
 
-    /// Measures what has been baked last at four times as many points; false where they are enough.
-    bool refine(MapBake& bake)
+    /// Measures what has been baked last, if at all.
+    void judge(MapBake& bake)
     {
-        if (!take_more_points())
-            return false;
         Stopwatch watch;
-        bake.error = error_of(bake);
+        if (count_ > 0)
+            bake.error = error_of(bake);
         bake.seconds.check = seconds_.check += watch.lap();
-        return true;
     }
 
 private:

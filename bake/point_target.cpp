@@ -74,22 +74,18 @@ public:
         seconds_.solve += solution.seconds;
         bake.residual = solution.residual;
         bake.values = std::move(solution.occlusion);
-        Stopwatch watch;
-        if (count_ > 0)
-            bake.error = error_of(bake);
-        seconds_.check += watch.lap();
         bake.seconds = seconds_;
+        judge(bake);
         return bake;
     }
 
-    bool refine(VertexBake& bake)
+    /// Measures what has been baked last, if at all.
+    void judge(VertexBake& bake)
     {
-        if (!take_more_points())
-            return false;
         Stopwatch watch;
-        bake.error = error_of(bake);
+        if (count_ > 0)
+            bake.error = error_of(bake);
         bake.seconds.check = seconds_.check += watch.lap();
-        return true;
     }
 
 private:

@@ -54,21 +54,17 @@ public:
         Stopwatch watch;
         bake.values = target_.values(bake.answers);
         seconds_.fit += watch.lap();
-        if (count_ > 0)
-            bake.error = error_of(bake);
-        seconds_.check += watch.lap();
         bake.seconds = seconds_;
+        judge(bake);
     }
 
-    /// Measures what has been baked last at four times as many points; false where they are enough.
-    bool refine(VertexBake& bake)
+    /// Measures what has been baked last, if at all.
+    void judge(VertexBake& bake)
     {
-        if (!take_more_points())
-            return false;
         Stopwatch watch;
-        bake.error = error_of(bake);
+        if (count_ > 0)
+            bake.error = error_of(bake);
         bake.seconds.check = seconds_.check += watch.lap();
-        return true;
     }
 
 private:

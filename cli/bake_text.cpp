@@ -111,7 +111,7 @@ void print_report(const BakeReport& report)
     std::cout << report.settings.input.string() << " -> " << report.settings.output.string() << '\n'
               << "  ";
     if (report.points)
-        std::cout << report.vertices << " points, " << points_of(*report.points);
+        std::cout << count_text(report.vertices, "point") << ", " << points_of(*report.points);
     else
         std::cout << report.vertices << " vertices, " << report.triangles << " triangles";
     if (report.subdivision)
