@@ -47,8 +47,7 @@ public:
         for (const glm::uvec3& piece : refinement.pieces_of(triangle))
             vertices_.insert(vertices_.end(), {piece.x, piece.y, piece.z});
         std::ranges::sort(vertices_);
-        const auto rest = std::ranges::unique(vertices_);
-        vertices_.erase(rest.begin(), rest.end());
+        vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
         for (const std::uint32_t vertex : vertices_) {
             if (vertex >= refinement.old_vertices) {
                 const glm::uvec2 of = refinement.parents[vertex - refinement.old_vertices];
