@@ -49,7 +49,8 @@ void add_layout_options(CLI::App& command, TexelOptions& options, const std::str
         .add_option("--uv", options.uv,
                     "The file's texture coordinates by number; new ones, charts of our own; or "
                     "auto: the file's where each point of the surface has texels of its own, else "
-                    "new ones (a picture alone: the first of use)")
+                    "new ones (a picture alone: the first of use). Materials that lie over each "
+                    "other get a map each (glTF; NAME.MATERIAL.png)")
         ->check(CLI::IsMember({"auto", "0", "1", "2", "3", "new"}))
         ->type_name("auto|0|1|2|3|new")
         ->default_str("auto")
