@@ -1,7 +1,7 @@
 /// view_options.h: the options that say how a model is shown, for `render` and `view`.
 #pragma once
 
-#include "viewer/camera.h"
+#include "pixels/camera.h"
 #include "viewer/view_options.h"
 
 #include <cstdint>

@@ -245,6 +245,15 @@ void Framebuffer::clear_color(glm::vec4 value, std::size_t index) const
     check_gl(*gl_, "clearing a framebuffer");
 }
 
+void Framebuffer::clear_color(glm::uvec4 value, std::size_t index) const
+{
+    gl_->BindFramebuffer(GL_FRAMEBUFFER, id());
+    gl_->Disable(GL_SCISSOR_TEST);
+    gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    gl_->ClearBufferuiv(GL_COLOR, static_cast<GLint>(index), &value.x);
+    check_gl(*gl_, "clearing a framebuffer");
+}
+
 void Framebuffer::clear_depth(float value) const
 {
     gl_->BindFramebuffer(GL_FRAMEBUFFER, id());
@@ -282,11 +291,11 @@ void Framebuffer::copy_to(const Framebuffer& target, std::size_t index) const
     check_gl(*gl_, "copying a framebuffer");
 }
 
-void Framebuffer::read(const Rect& part, unsigned layout, void* out) const
+void Framebuffer::read(const Rect& part, unsigned layout, unsigned type, void* out) const
 {
     SURFELAO_CHECK(part.x >= 0 && part.y >= 0 && part.x + part.width <= width_ &&
                    part.y + part.height <= height_);
-    gl_->ReadPixels(part.x, part.y, part.width, part.height, layout, GL_FLOAT, out);
+    gl_->ReadPixels(part.x, part.y, part.width, part.height, layout, type, out);
     check_gl(*gl_, "reading pixels");
 }
 
@@ -316,7 +325,7 @@ std::vector<glm::vec4> Framebuffer::read_color(const Rect& part, std::size_t ind
     std::vector<glm::vec4> result(static_cast<std::size_t>(part.width) *
                                   static_cast<std::size_t>(part.height));
     bind_for_reading(index);
-    read(part, GL_RGBA, result.data());
+    read(part, GL_RGBA, GL_FLOAT, result.data());
     return result;
 }
 
@@ -325,7 +334,16 @@ std::vector<float> Framebuffer::read_red(const Rect& part, std::size_t index) co
     std::vector<float> result(static_cast<std::size_t>(part.width) *
                               static_cast<std::size_t>(part.height));
     bind_for_reading(index);
-    read(part, GL_RED, result.data());
+    read(part, GL_RED, GL_FLOAT, result.data());
+    return result;
+}
+
+std::vector<std::uint32_t> Framebuffer::read_numbers(const Rect& part, std::size_t index) const
+{
+    std::vector<std::uint32_t> result(static_cast<std::size_t>(part.width) *
+                                      static_cast<std::size_t>(part.height));
+    bind_for_reading(index);
+    read(part, GL_RED_INTEGER, GL_UNSIGNED_INT, result.data());
     return result;
 }
 

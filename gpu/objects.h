@@ -196,6 +196,7 @@ public:
 
     /// Fills the part with one colour per attachment (float formats) or the depth, without drawing.
     void clear_color(glm::vec4 value, std::size_t index = 0) const;
+    void clear_color(glm::uvec4 value, std::size_t index = 0) const;  ///< *ui formats
     void clear_depth(float value = 1.0f) const;
 
     /// Copies colour `index` to the same of `target`; stretched, with linear filtering, where sizes
@@ -212,6 +213,8 @@ public:
     std::vector<glm::vec4> read_color(const Rect& part, std::size_t index = 0) const;
     /// The same, for r32f: one float a texel.
     std::vector<float> read_red(const Rect& part, std::size_t index = 0) const;
+    /// The same, for r32ui.
+    std::vector<std::uint32_t> read_numbers(const Rect& part, std::size_t index = 0) const;
 
     unsigned id() const { return handle_.id(); }
     const GlTable& gl() const { return *gl_; }
@@ -219,7 +222,7 @@ public:
 private:
     Framebuffer() = default;
     void bind_for_reading(std::size_t index) const;
-    void read(const Rect& part, unsigned layout, void* out) const;
+    void read(const Rect& part, unsigned layout, unsigned type, void* out) const;
     const GlTable* gl_ = nullptr;
     GlHandle handle_;  // empty for a window: GL's framebuffer 0
     std::vector<Texture2D> colors_;

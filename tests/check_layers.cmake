@@ -13,8 +13,9 @@ set(allowed_gpu       surfels image tree)
 set(allowed_engines   surfels tree reference gpu)
 set(allowed_surfelao  surfels files engines)  # the library's own door
 set(allowed_bake      surfels files image atlas tree reference gpu engines)
-set(allowed_viewer    surfels files image atlas tree reference gpu engines bake)
-set(allowed_cli       surfels files image atlas tree reference gpu engines bake viewer)
+set(allowed_pixels    surfels files image reference gpu engines bake)
+set(allowed_viewer    surfels files image atlas tree reference gpu engines bake pixels)
+set(allowed_cli       surfels files image atlas tree reference gpu engines bake pixels viewer)
 
 # third-party headers and the only folders whose .cpp files may name them
 set(only_surfels   "OpenMesh/")
@@ -26,7 +27,7 @@ set(only_bake      "zlib")
 set(only_gpu       "GL/|EGL/")
 set(only_viewer    "GLFW/|imgui")
 
-set(folders surfels files image atlas tree reference gpu engines surfelao bake viewer cli)
+set(folders surfels files image atlas tree reference gpu engines surfelao bake pixels viewer cli)
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)
 foreach(folder IN LISTS folders)
     set(includes_${folder} "")

@@ -10,7 +10,7 @@
 #include "engines/engine.h"
 #include "surfels/geometry.h"
 #include "surfels/receiver.h"
-#include "viewer/camera.h"
+#include "pixels/camera.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>

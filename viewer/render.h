@@ -5,7 +5,7 @@
 #include "image/image.h"
 #include "surfels/occlusion.h"
 #include "surfels/progress.h"
-#include "viewer/camera.h"
+#include "pixels/camera.h"
 #include "viewer/model.h"
 #include "viewer/model_map.h"
 #include "viewer/view_options.h"

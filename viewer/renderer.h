@@ -8,7 +8,7 @@
 #include "image/image.h"
 #include "surfels/occlusion.h"
 #include "viewer/base_paint.h"
-#include "viewer/camera.h"
+#include "pixels/camera.h"
 #include "viewer/model.h"
 #include "viewer/model_map.h"
 #include "viewer/view_options.h"

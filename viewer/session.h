@@ -8,7 +8,7 @@
 #include "surfels/occlusion.h"
 #include "surfels/scene.h"
 #include "viewer/background_worker.h"
-#include "viewer/camera.h"
+#include "pixels/camera.h"
 #include "viewer/model.h"
 #include "viewer/solve_map.h"
 #include "viewer/solve_model.h"

@@ -1,4 +1,4 @@
-#include "viewer/camera.h"
+#include "pixels/camera.h"
 
 #include "surfels/errors.h"
 

@@ -1,0 +1,125 @@
+#include "pixels/seen.h"
+
+#include "surfels/errors.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace surfelao {
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+
+/// Not of unit length.
+glm::vec3 face_of(const Geometry& geometry, std::uint32_t triangle)
+{
+    const glm::uvec3 t = geometry.triangles[triangle];
+    const glm::vec3 a = geometry.positions[t.x];
+    return glm::cross(geometry.positions[t.y] - a, geometry.positions[t.z] - a);
+}
+
+template <class Body>
+void for_each(std::size_t count, const Body& body)
+{
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i)
+                              body(i);
+                      });
+}
+
+}  // namespace
+
+View view_of(const Camera& camera, int width, int height)
+{
+    const CameraAxes axes = camera_axes(camera);
+    const float tan_y = std::tan(0.5f * glm::radians(camera.fovy_deg));
+    const glm::vec2 half(tan_y * static_cast<float>(width) / static_cast<float>(height), tan_y);
+    return {camera.eye, axes.right, axes.upwards, -axes.backwards, {-half, half, false}};
+}
+
+// As in shaders/g_surface.frag, with doubles: a grazing triangle leaves few digits.
+SurfacePoint point_on_ray(const Geometry& geometry, const View& view, const PixelRay& ray,
+                          std::uint32_t triangle)
+{
+    const glm::uvec3 t = geometry.triangles[triangle];
+    const glm::dvec3 a(geometry.positions[t.x]);
+    const glm::dvec3 across = glm::dvec3(geometry.positions[t.y]) - a;
+    const glm::dvec3 along = glm::dvec3(geometry.positions[t.z]) - a;
+    const glm::dvec3 from = glm::dvec3(to_world(view, ray.origin)) - a;
+    const glm::dvec3 direction(to_world(view, ray.direction) - view.eye);
+    const double facing = -glm::dot(glm::cross(across, along), direction);
+    if (facing == 0.0)
+        return {triangle, glm::vec2(0.0f)};
+    const glm::dvec3 turned = glm::cross(from, direction);
+    glm::dvec2 at(glm::dot(turned, along) / facing, -glm::dot(turned, across) / facing);
+    at = glm::clamp(at, 0.0, 1.0);
+    at /= std::max(1.0, at.x + at.y);
+    return {triangle, glm::vec2(at)};
+}
+
+std::vector<Receiver> receivers_facing(const Mesh& mesh, const View& view,
+                                       std::span<const SurfacePoint> points, const Offset& offset)
+{
+    std::vector<Receiver> receivers = receivers_at(mesh.geometry, mesh.surface, points, offset);
+    for_each(points.size(), [&](std::size_t i) {
+        const std::uint32_t triangle = points[i].triangle;
+        const glm::vec3 face = face_of(mesh.geometry, triangle);
+        const glm::vec3 corner = mesh.geometry.positions[mesh.geometry.triangles[triangle].x];
+        const glm::vec3 to_eye = view.lens.orthographic ? -view.forward : view.eye - corner;
+        Receiver& receiver = receivers[i];
+        const bool is_above = glm::dot(receiver.normal, face) >= 0.0f;
+        if (is_above == (glm::dot(to_eye, face) >= 0.0f))
+            return;
+        const glm::vec3 up = (is_above ? 1.0f : -1.0f) * glm::normalize(face);
+        receiver.position -= 2.0f * receiver.offset * up;
+        receiver.normal = -receiver.normal;
+    });
+    return receivers;
+}
+
+SeenPixels seen_pixels(const Mesh& mesh, const View& view, int width, int height,
+                       std::span<const std::uint32_t> triangles, const Offset& offset)
+{
+    SeenPixels seen;
+    seen.width = width;
+    seen.height = height;
+    SURFELAO_CHECK(triangles.size() ==
+                   static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        if (triangles[i] != 0)
+            seen.pixels.push_back(static_cast<std::uint32_t>(i));
+    }
+    seen.points.resize(seen.pixels.size());
+    const auto columns = static_cast<std::uint32_t>(width);
+    for_each(seen.pixels.size(), [&](std::size_t i) {
+        const std::uint32_t pixel = seen.pixels[i];
+        const glm::vec2 middle = glm::vec2(pixel % columns, pixel / columns) + 0.5f;
+        seen.points[i] = point_on_ray(
+            mesh.geometry, view, pixel_ray(view.lens, width, height, middle), triangles[pixel] - 1);
+    });
+    seen.receivers = receivers_facing(mesh, view, seen.points, offset);
+    return seen;
+}
+
+std::vector<std::uint32_t> parts_of(const Mesh& mesh)
+{
+    std::vector<std::uint32_t> parts(mesh.geometry.triangles.size(), 0);
+    std::uint32_t part = 0;
+    for (std::size_t t = 0; t < parts.size(); ++t) {
+        const std::size_t triangle = mesh.geometry.scene_triangle(t);
+        while (triangle >= std::size_t{mesh.scene.parts[part].first_triangle} +
+                               mesh.scene.parts[part].triangle_count)
+            ++part;
+        parts[t] = part;
+    }
+    return parts;
+}
+
+}  // namespace surfelao
