@@ -53,7 +53,7 @@ int run(const ViewCommandOptions& options)
     if (!options.input.empty() && !std::filesystem::exists(options.input))
         throw InputError(options.input + ": no such file");
 
-    window.panel.settings = {settings_of(options.engine),
+    window.panel.left.settings = {settings_of(options.engine),
                              distance_limit_of(options.measure),
                              target_settings_of(options.surface, options.show.up),
                              shown_texels_of(options.texels),

@@ -1,10 +1,11 @@
 #version 330 core
 #include "shading.glsl"
+#include "pixel_values.glsl"
 
 // surface.frag: a triangle's pixel.
 //
 // Vertices   surface.vert
-// Reads      shading.glsl
+// Reads      shading.glsl, pixel_values.glsl
 // Writes     out_color  linear, opaque
 
 in vec4 v_normal_level;
@@ -12,4 +13,10 @@ in vec4 v_own;
 in vec4 v_reference;
 out vec4 out_color;
 
-void main() { out_color = vec4(shade(v_normal_level, v_own, v_reference), 1.0); }
+void main()
+{
+    vec4 own = v_own;
+    vec4 reference = v_reference;
+    read_pixels(own, reference, v_normal_level.xyz);
+    out_color = vec4(shade(v_normal_level, own, reference), 1.0);
+}

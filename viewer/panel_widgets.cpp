@@ -29,9 +29,9 @@ constexpr const char* kHelp[][2] = {
     {"1 .. 9, 0", "colours, in the panel's order"},
     {"A", "the map flat or on the model, where there is one"},
     {"T", "next surface: triangles, splats, affine, points"},
-    {"R", "ray reference on or off"},
-    {"W", "wipe to the reference on or off; drag the line"},
-    {"S", "reference side by side on or off"},
+    {"R", "rays on or off"},
+    {"W", "wipe to the right cell on or off; drag the line"},
+    {"S", "the right cell side by side on or off"},
     {"G", "shadow on the ground on or off"},
     {"Esc", "cancel what runs in the background"},
     {"Tab", "hide or show the panel"},
@@ -54,29 +54,6 @@ bool was_set()
 }
 
 }  // namespace
-
-bool edit_settings(EngineSettings& engine)
-{
-    bool apply = false;
-    if (engine.engine == Engine::rays) {
-        int rays = static_cast<int>(engine.rays);
-        ImGui::SliderInt("rays", &rays, 1, 4096, "%d",
-                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-        engine.rays = static_cast<std::uint32_t>(rays);
-        return was_set();
-    }
-    ImGui::SliderFloat("quality", &engine.quality, least_quality(engine.engine),
-                       most_quality(engine.engine), "%.2f", ImGuiSliderFlags_AlwaysClamp);
-    apply |= was_set();
-    if (engine.engine == Engine::disks) {
-        ImGui::SliderInt("passes", &engine.passes, 1, 8, "%d", ImGuiSliderFlags_AlwaysClamp);
-        apply |= was_set();
-        ImGui::SliderFloat("strength", &engine.strength, 0.0f, 2.0f, "%.2f",
-                           ImGuiSliderFlags_AlwaysClamp);
-        apply |= was_set();
-    }
-    return apply;
-}
 
 bool edit_distance(DistanceLimit& limit, Falloff& falloff)
 {
@@ -141,34 +118,25 @@ bool edit_target(TargetSettings& target)
     return apply;
 }
 
-bool edit_texels(std::optional<TexelSettings>& texels, TexelSettings& chosen)
+bool edit_texels(TexelSettings& texels)
 {
-    if (texels)
-        chosen = *texels;
     bool apply = false;
-    int where = texels ? 1 : 0;
-    if (ImGui::Combo("at", &where, "vertices\0texels\0")) {
-        texels = where == 1 ? std::optional(chosen) : std::nullopt;
-        apply = true;
-    }
-    if (!texels)
-        return apply;
     constexpr std::uint32_t kSizes[] = {256, 512, 1024, 2048, 4096};
-    if (ImGui::BeginCombo("size", std::to_string(texels->size).c_str())) {
+    if (ImGui::BeginCombo("size", std::to_string(texels.size).c_str())) {
         for (const std::uint32_t size : kSizes) {
-            if (ImGui::Selectable(std::to_string(size).c_str(), size == texels->size)) {
-                texels->size = size;
-                texels->texels_per_unit.reset();
+            if (ImGui::Selectable(std::to_string(size).c_str(), size == texels.size)) {
+                texels.size = size;
+                texels.texels_per_unit.reset();
                 apply = true;
             }
         }
         ImGui::EndCombo();
     }
-    int uvs = texels->uvs != UvChoice::made ? 0 : texels->blended ? 2 : 1;
+    int uvs = texels.uvs != UvChoice::made ? 0 : texels.blended ? 2 : 1;
     if (ImGui::Combo("charts", &uvs, "the file's, or new\0new\0new, blended\0")) {
-        texels->uvs = uvs == 0 ? UvChoice::automatic : UvChoice::made;
-        texels->blended = uvs == 2;
-        texels->udim = false;
+        texels.uvs = uvs == 0 ? UvChoice::automatic : UvChoice::made;
+        texels.blended = uvs == 2;
+        texels.udim = false;
         apply = true;
     }
     return apply;
@@ -233,13 +201,13 @@ bool view_widgets(PanelState& state)
         changed = true;
     }
     int surface = static_cast<int>(view.surface);
-    if (state.settings.texels)
+    if (state.left.settings.texels)
         changed |= ImGui::Checkbox("flat (A)", &state.shows_atlas);
     else if (ImGui::Combo("surface", &surface, kSurfaceNames, IM_ARRAYSIZE(kSurfaceNames))) {
         view.surface = static_cast<Shape>(surface);
         changed = true;
     }
-    if (view.surface != Shape::triangles && !state.settings.texels)
+    if (view.surface != Shape::triangles && !state.left.settings.texels)
         changed |= ImGui::SliderFloat("splat radius", &view.radius_scale, 0.1f, 4.0f, "%.2f",
                                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     if (view.colors == Colors::environment)
@@ -257,6 +225,22 @@ void progress_line(const char* what, double done)
     char text[64];
     std::snprintf(text, sizeof text, "%s %.0f %%", what, 100.0 * done);
     ImGui::ProgressBar(static_cast<float>(done), ImVec2(-1.0f, 0.0f), text);
+}
+
+void cell_progress(const CellView& view)
+{
+    const Session& session = view.session();
+    if (session.solving() && !session.opening())
+        progress_line(!session.state().is_solved ? "draft" : "solving", session.solve_progress());
+    if (const std::optional<double> done = view.pixel_progress())
+        progress_line("pixels", *done);
+}
+
+void error_lines(const PixelError& error)
+{
+    ImGui::Text("at pixels: RMSE %.4f   bias %+.4f\n95 %% %.4f   (%llu pixels, %u rays each)",
+                error.found.rmse, error.found.bias, error.found.p95,
+                static_cast<unsigned long long>(error.found.count), error.rays);
 }
 
 void stage_lines(const SessionState& s)

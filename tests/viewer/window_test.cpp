@@ -282,8 +282,8 @@ TEST_F(Window, TheReferenceStandsRightOfTheWipeAndInThePictureBeside)
         options.panel.is_hidden = true;
         options.panel.view.ground = false;
         options.panel.reference_rays = 16;
-        options.panel.settings.engine.engine = Engine::disks;
-        options.panel.settings.engine.strength = 100.0f;
+        options.panel.left.settings.engine.engine = Engine::disks;
+        options.panel.left.settings.engine.strength = 100.0f;
         options.on_frame = [&](const Image& shown, const Session& session) {
             if (session.state().is_solved && !std::exchange(pressed, true))
                 press(key);
@@ -307,7 +307,7 @@ WindowOptions saving_options(const std::filesystem::path& input,
     options.width = 320;
     options.height = 240;
     options.panel.is_hidden = true;
-    options.panel.reference_place = ReferencePlace::side_by_side;
+    options.panel.beside = Beside::side_by_side;
     options.panel.reference_rays = 2;
     std::snprintf(options.panel.picture_path, sizeof options.panel.picture_path, "%s",
                   picture.c_str());
@@ -394,7 +394,7 @@ Image picture_of_ball(const EngineSettings& engine)
     options.width = 320;
     options.height = 240;
     options.panel.is_hidden = true;
-    options.panel.settings.engine = engine;
+    options.panel.left.settings.engine = engine;
     options.on_frame = [&](const Image& shown, const Session& session) {
         EXPECT_EQ(session.state().message, "");
         frames += session.state().is_solved && !session.state().is_draft;
@@ -474,7 +474,7 @@ TEST_F(Window, AMapIsShownOnTheModelAndFlat)
     double on_model = 0.0, flat = 0.0;
     WindowOptions options;
     options.input = file;
-    options.panel.settings.texels.emplace().size = 64;
+    options.panel.left.settings.texels.emplace().size = 64;
     options.on_frame = [&](const Image& shown, const Session& session) {
         frames += session.state().is_solved && !session.state().is_draft;
         (frames <= 3 ? on_model : flat) = share(shown, is_border);
@@ -495,7 +495,7 @@ TEST_F(Window, MayGetAsSmallAsItWill)
     options.input = box_file();
     options.width = 320;
     options.height = 240;
-    options.panel.reference_place = ReferencePlace::side_by_side;
+    options.panel.beside = Beside::side_by_side;
     options.panel.reference_rays = 2;
     options.on_frame = [&](const Image& shown, const Session& session) {
         const int sizes[][2] = {{1, 1}, {2, 1}, {1, 300}, {700, 20}, {400, 300}};

@@ -1,0 +1,43 @@
+#include "viewer/cell.h"
+
+namespace surfelao {
+
+Where where_of(const Cell& cell)
+{
+    if (cell.at_pixels)
+        return Where::pixels;
+    return cell.settings.texels ? Where::texels : Where::vertices;
+}
+
+void set_where(Cell& cell, Where where, const TexelSettings& texels)
+{
+    cell.at_pixels = where == Where::pixels;
+    cell.settings.texels = where == Where::texels ? std::optional(texels) : std::nullopt;
+    if (!cell.at_pixels)
+        cell.screen.reset();
+}
+
+std::string name_of(Where where, bool is_cloud)
+{
+    switch (where) {
+        case Where::vertices:
+            return is_cloud ? "points" : "vertices";
+        case Where::texels:
+            return "texels";
+        case Where::pixels:
+            return "pixels";
+    }
+    return {};
+}
+
+std::string how_of(const Cell& cell)
+{
+    return cell.screen ? name_of(cell.screen->method) : name_of(cell.settings.engine);
+}
+
+std::string name_of(const EngineChoice& choice)
+{
+    return name_of(choice.engine) + (choice.device == Device::gpu ? " on GPU" : "");
+}
+
+}  // namespace surfelao

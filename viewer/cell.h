@@ -1,0 +1,39 @@
+/// cell.h: what a picture shows, as a cell of a table: where values lie, and how they are found.
+#pragma once
+
+#include "gpu/screen_space.h"
+#include "viewer/session.h"
+
+#include <optional>
+#include <string>
+
+namespace surfelao {
+
+enum class Where {
+    vertices,  ///< of a cloud: its points
+    texels,
+    pixels,
+};
+
+struct Cell {
+    /// Values at vertices or in a map. At pixels they are shown while the camera moves, and always
+    /// on the ground.
+    SessionSettings settings;
+    bool at_pixels = false;
+    std::optional<ScreenSettings> screen;  ///< at pixels: who answers in the engine's place
+    bool operator==(const Cell&) const = default;
+};
+
+[[nodiscard]] Where where_of(const Cell& cell);
+/// texels: of a map. How stays what it is where that can be.
+void set_where(Cell& cell, Where where, const TexelSettings& texels);
+
+/// "vertices", "texels", "points", "pixels"
+[[nodiscard]] std::string name_of(Where where, bool is_cloud);
+/// "masks", "masks on GPU", "gtao"
+[[nodiscard]] std::string how_of(const Cell& cell);
+
+/// "masks", "masks on GPU"
+[[nodiscard]] std::string name_of(const EngineChoice& choice);
+
+}  // namespace surfelao
