@@ -17,6 +17,18 @@ void set_where(Cell& cell, Where where, const TexelSettings& texels)
         cell.screen.reset();
 }
 
+void choose_engine(Cell& cell, Engine engine, Device device, std::map<Engine, float>& qualities)
+{
+    EngineSettings& settings = cell.settings.engine;
+    cell.screen.reset();
+    settings.device = device;
+    if (engine == settings.engine)
+        return;
+    qualities[settings.engine] = settings.quality;
+    settings.engine = engine;
+    settings.quality = qualities.try_emplace(engine, kGood).first->second;
+}
+
 std::string name_of(Where where, bool is_cloud)
 {
     switch (where) {

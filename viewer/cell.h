@@ -4,6 +4,7 @@
 #include "gpu/screen_space.h"
 #include "viewer/session.h"
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -27,6 +28,10 @@ struct Cell {
 [[nodiscard]] Where where_of(const Cell& cell);
 /// texels: of a map. How stays what it is where that can be.
 void set_where(Cell& cell, Where where, const TexelSettings& texels);
+
+/// Sets who solves. Each engine keeps its own quality, and is `good` at first. qualities: of the
+/// engines that are not chosen.
+void choose_engine(Cell& cell, Engine engine, Device device, std::map<Engine, float>& qualities);
 
 /// "vertices", "texels", "points", "pixels"
 [[nodiscard]] std::string name_of(Where where, bool is_cloud);

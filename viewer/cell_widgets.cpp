@@ -9,19 +9,6 @@
 namespace surfelao {
 namespace {
 
-/// Each engine keeps its own quality, and is `good` at first.
-void choose_engine(Cell& cell, Engine engine, Device device, std::map<Engine, float>& qualities)
-{
-    EngineSettings& settings = cell.settings.engine;
-    cell.screen.reset();
-    settings.device = device;
-    if (engine == settings.engine)
-        return;
-    qualities[settings.engine] = settings.quality;
-    settings.engine = engine;
-    settings.quality = qualities.try_emplace(engine, kGood).first->second;
-}
-
 /// True when the value is final: dragging a slider asks for nothing until it is let go.
 bool was_let_go()
 {

@@ -67,6 +67,10 @@ public:
     void draw_values(const Framebuffer& target, const Camera& camera,
                      const PixelValues& pixels = {});
 
+    /// The background alone; no model is needed.
+    void draw_background(const Framebuffer& target, const Camera& camera,
+                         const ViewOptions& options);
+
 private:
     struct Impl;
     std::unique_ptr<Impl> impl_;

@@ -13,14 +13,6 @@
 
 namespace surfelao {
 
-glm::vec2 sample_shift(int index)
-{
-    // 1 / g and 1 / g^2 with g^3 = g + 1
-    const glm::dvec2 step(0.7548776662466927, 0.5698402909980532);
-    const glm::dvec2 place = glm::fract(glm::dvec2(0.5) + step * static_cast<double>(index));
-    return glm::vec2(place - 0.5);
-}
-
 struct SampleSum::Impl {
     Impl(const GlContext& gl, int width, int height)
         : context(gl),

@@ -11,13 +11,6 @@
 
 namespace surfelao {
 
-/// Where inside a pixel the sample of that index lies, -0.5 to 0.5: any first n of them are spread
-/// evenly, and the first is the middle.
-///
-/// Based on:
-///   Roberts. The Unreasonable Effectiveness of Quasirandom Sequences. 2018 (R2)
-[[nodiscard]] glm::vec2 sample_shift(int index);
-
 /// The sum of several drawings of one size, and their mean.
 class SampleSum {
 public:
