@@ -3,7 +3,10 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace surfelao {
@@ -38,17 +41,119 @@ bool edit_engine(EngineSettings& engine)
     return apply;
 }
 
+/// True when another one was chosen; then index is that one's.
+bool choose(const char* label, std::span<const std::string> words, std::size_t& index)
+{
+    bool apply = false;
+    if (!ImGui::BeginCombo(label, words[index].c_str()))
+        return false;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (ImGui::Selectable(words[i].c_str(), i == index)) {
+            index = i;
+            apply = true;
+        }
+    }
+    ImGui::EndCombo();
+    return apply;
+}
+
+/// One of some numbers.
+bool choose_number(const char* label, std::span<const int> numbers, int& number)
+{
+    std::vector<std::string> words;
+    for (const int known : numbers)
+        words.push_back(std::to_string(known));
+    const auto at = std::ranges::find(numbers, number);
+    if (at == numbers.end())  // by a command line
+        words.push_back(std::to_string(number));
+    auto index = static_cast<std::size_t>(at - numbers.begin());
+    if (!choose(label, words, index) || index >= numbers.size())
+        return false;
+    number = numbers[index];
+    return true;
+}
+
+bool choose_directions(ScreenSettings& screen)
+{
+    const int step = screen.method == ScreenMethod::hbao ? 1 : 2;
+    std::vector<int> numbers;
+    for (int n = step; n <= screen.samples; n += step) {
+        if (screen.samples % n == 0)
+            numbers.push_back(n);
+    }
+    return choose_number("directions", numbers, screen.directions);
+}
+
+bool slide(const char* label, float& value, float low, float high, const char* format)
+{
+    ImGui::SliderFloat(label, &value, low, high, format, ImGuiSliderFlags_AlwaysClamp);
+    return was_let_go();
+}
+
+template <class Choice>
+bool choose_word(const char* label, std::span<const std::string> words, Choice& choice)
+{
+    auto index = static_cast<std::size_t>(choice);
+    const bool apply = choose(label, words, index);
+    choice = static_cast<Choice>(index);
+    return apply;
+}
+
+/// The widget of one of screen_parameters(), by its name; what has none is for command lines.
+bool edit_parameter(std::string_view name, ScreenSettings& screen)
+{
+    static const std::vector<std::string> kDual = {"none", "product", "minimum"};
+    static const std::vector<std::string> kNoise = {"none", "gradient", "origin"};
+    if (name == "directions")
+        return choose_directions(screen);
+    if (name == "bias")
+        return slide("bias", screen.bias, 0.0f, 90.0f, "%.0f deg");
+    if (name == "thickness")
+        return slide("thickness", screen.thickness, 0.05f, 4.0f, "%.2f R");
+    if (name == "power")
+        return slide("power", screen.power, 1.0f, 8.0f, "%.1f");
+    if (name == "reach")
+        return slide("reach", screen.reach, 0.1f, 10.0f, "%.1f R");
+    if (name == "depth-limit")
+        return slide("depth limit", screen.depth_limit, 0.1f, 10.0f, "%.1f R");
+    if (name == "normals")
+        return ImGui::Checkbox("normals", &screen.normals);
+    if (name == "fade")
+        return ImGui::Checkbox("fade", &screen.fade);
+    if (name == "pairs")
+        return ImGui::Checkbox("pairs", &screen.pairs);
+    if (name == "ratio-test")
+        return ImGui::Checkbox("ratio test", &screen.ratio_test);
+    if (name == "blur")
+        return ImGui::Checkbox("blur", &screen.blur);
+    if (name == "dual")
+        return choose_word("dual", kDual, screen.dual);
+    if (name == "noise")
+        return choose_word("noise", kNoise, screen.noise);
+    if (name == "rule")
+        return choose_number("rule", std::vector<int>{0, 1, 2, 3, 4, 5, 6}, screen.rule);
+    if (name == "probes")
+        return choose_number("probes", std::vector<int>{4, 9, 20, 328}, screen.probes);
+    return false;
+}
+
 bool edit_screen(ScreenSettings& screen)
 {
     bool apply = false;
-    if (ImGui::BeginCombo("samples", std::to_string(screen.samples).c_str())) {
-        for (const int samples : {8, 16, 24, 96, 1024}) {
-            if (ImGui::Selectable(std::to_string(samples).c_str(), samples == screen.samples)) {
-                screen = screen_settings(screen.method, samples);
-                apply = true;
-            }
-        }
-        ImGui::EndCombo();
+    int samples = screen.samples;
+    if (choose_number("samples", std::vector<int>{8, 16, 24, 64, 256, 1024}, samples)) {
+        screen.samples = samples;
+        screen.directions = screen_settings(screen.method, samples).directions;
+        apply = true;
+    }
+    for (const ScreenParameter& parameter : screen_parameters()) {
+        if (std::ranges::find(parameter.methods, screen.method) == parameter.methods.end())
+            continue;
+        const float top = ImGui::GetCursorScreenPos().y;
+        apply |= edit_parameter(parameter.name, screen);
+        const bool is_drawn = ImGui::GetCursorScreenPos().y > top;
+        if (is_drawn && ImGui::IsItemHovered())
+            ImGui::SetTooltip("%s", std::string(parameter.meaning).c_str());
     }
     return apply;
 }

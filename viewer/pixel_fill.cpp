@@ -57,10 +57,11 @@ private:
 /// How alike the surface is that two pixels see, above 0 to 1. scale: what is seen of it in a step.
 float likeness(const Receiver& a, const Receiver& b, float scale)
 {
-    const float off = std::abs(glm::dot(a.normal, b.position - a.position)) / scale;
+    constexpr float kLeast = 1.0f / 16.0f;  // steps off the plane: less is the surface's own shape
+    const float off = std::abs(glm::dot(a.normal, b.position - a.position)) / (kLeast * scale);
     const float facing = std::max(glm::dot(a.normal, b.normal), 0.05f);
     const float square = facing * facing;
-    return square * square / (1.0f + 16.0f * off * off);
+    return square * square / (1.0f + off * off);
 }
 
 }  // namespace
