@@ -38,14 +38,16 @@ CellView::Changes CellView::update()
         renderer_.set_map_reference(*state.map_reference);
     else if (changes.reference)
         renderer_.set_reference(state.reference);
-    const bool has_picture = pixels_.update();
-    const bool has_rays = rays_.update();
-    if (has_picture && !pixels_.answers().picture.empty())
+    if (pixels_.update() && !pixels_.answers().picture.empty()) {
         picture_.emplace(upload(pixels_.answers()));
-    if (has_rays && !rays_.answers().picture.empty())
+        changes.pixels = true;
+    }
+    const bool has_rays = rays_.update();
+    if (has_rays && !rays_.answers().picture.empty()) {
         rays_picture_.emplace(upload(rays_.answers()));
-    changes.pixels = has_picture || has_rays;
-    if (changes.occlusion || changes.pixels)
+        changes.pixels = true;
+    }
+    if (changes.occlusion || changes.pixels || has_rays)
         is_measured_ = false;
     return changes;
 }

@@ -357,12 +357,16 @@ void Panel::widgets(PanelState& state, const CellView& left, const CellView* rig
             input.solve_again |= ImGui::SmallButton("solve");
         }
         stage_lines(shown_state);
-        histogram(session);
+        if (state.left.at_pixels)
+            pixel_lines(left);
+        else
+            histogram(session);
     }
     if (shown_state.model && ImGui::CollapsingHeader("Parts"))
         edit_parts(shown_state.model->mesh->scene, state.left.settings.parts);
     if (ImGui::CollapsingHeader("Show", ImGuiTreeNodeFlags_DefaultOpen)) {
         input.view_changed |= view_widgets(state);
+        ImGui::SameLine();
         input.frame_all |= ImGui::Button("frame all");
     }
     if (ImGui::CollapsingHeader("Compare", ImGuiTreeNodeFlags_DefaultOpen))

@@ -2,6 +2,7 @@
 
 #include "image/color_map.h"
 #include "viewer/part_list.h"
+#include "viewer/pixel_fill.h"
 
 #include <imgui.h>
 
@@ -203,11 +204,12 @@ bool view_widgets(PanelState& state)
     int surface = static_cast<int>(view.surface);
     if (state.left.settings.texels)
         changed |= ImGui::Checkbox("flat (A)", &state.shows_atlas);
-    else if (ImGui::Combo("surface", &surface, kSurfaceNames, IM_ARRAYSIZE(kSurfaceNames))) {
+    else if (!state.left.at_pixels &&
+             ImGui::Combo("surface", &surface, kSurfaceNames, IM_ARRAYSIZE(kSurfaceNames))) {
         view.surface = static_cast<Shape>(surface);
         changed = true;
     }
-    if (view.surface != Shape::triangles && !state.left.settings.texels)
+    if (view.surface != Shape::triangles && !state.left.settings.texels && !state.left.at_pixels)
         changed |= ImGui::SliderFloat("splat radius", &view.radius_scale, 0.1f, 4.0f, "%.2f",
                                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     if (view.colors == Colors::environment)
@@ -238,15 +240,29 @@ void cell_progress(const CellView& view)
 
 void error_lines(const PixelError& error)
 {
-    ImGui::Text("at pixels: RMSE %.4f   bias %+.4f\n95 %% %.4f   (%llu pixels, %u rays each)",
-                error.found.rmse, error.found.bias, error.found.p95,
-                static_cast<unsigned long long>(error.found.count), error.rays);
+    ImGui::TextWrapped(
+        "at pixels: RMSE %.4f   bias %+.4f\n95 %% %.4f   (%llu pixels, %u rays each)",
+        error.found.rmse, error.found.bias, error.found.p95,
+        static_cast<unsigned long long>(error.found.count), error.rays);
+}
+
+void pixel_lines(const CellView& view)
+{
+    const PixelAnswers& found = view.pixels();
+    if (found.picture.empty())
+        return;
+    if (found.is_draft)
+        ImGui::Text("%d x %d pixels: one of %d is solved", found.width, found.height,
+                    kDraftStep * kDraftStep);
+    else
+        ImGui::Text("%d x %d pixels %.3f s", found.width, found.height, found.seconds);
 }
 
 void stage_lines(const SessionState& s)
 {
     if (s.build_s)
-        ImGui::Text("read %.3f s   build %.3f s   solve %.3f s", s.read_s, *s.build_s, s.solve_s);
+        ImGui::TextWrapped("read %.3f s   build %.3f s   solve %.3f s", s.read_s, *s.build_s,
+                           s.solve_s);
     else
         ImGui::Text("read %.3f s   solve %.3f s", s.read_s, s.solve_s);
     if (!s.reference.empty() && s.reference_s)

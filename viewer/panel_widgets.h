@@ -37,6 +37,9 @@ void cell_progress(const CellView& view);
 /// What a picture shows against rays at its pixels.
 void error_lines(const PixelError& error);
 
+/// What a picture's pixels took.
+void pixel_lines(const CellView& view);
+
 /// Times and errors.
 void stage_lines(const SessionState& s);
 

@@ -299,6 +299,7 @@ private:
             look();
             draw_model(shown);
         }
+        save_wanted(input);
         panel_.draw();
 
         bool keep_open = !input.close;
@@ -403,6 +404,11 @@ private:
         }
         if (input.view_changed)
             restart();
+    }
+
+    /// After drawing, so that there is a picture.
+    void save_wanted(const PanelInput& input)
+    {
         if (input.save_picture)
             ask_or_save(Saved::picture, panel_state_.picture_path);
         if (input.save_baked)
