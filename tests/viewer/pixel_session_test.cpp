@@ -208,6 +208,42 @@ std::optional<PixelError> error_of_cell(CellView& view, const Cell& cell, const 
     return {};
 }
 
+// At once where the picture answers; once the camera rests where the scene does.
+TEST(CellView, PixelsAreForgottenWhenTheCameraMovesAndSolvedWhenItRests)
+{
+    const TemporaryFolder folder;
+    write_obj(folder / "ball.obj", scenes::bumpy_sphere(12));
+    const auto model = ball_model();
+    Cell cell;
+    cell.at_pixels = true;
+    CellView view(test_context());
+    view.session().open(folder / "ball.obj", UpAxis::y, cell.settings);
+    const auto is_solved = [&](const Camera& camera) {
+        for (int i = 0; i < 30000 && !view.has_pixels(); ++i) {
+            static_cast<void>(view.update());
+            if (view.session().state().model)
+                static_cast<void>(view.look(cell, camera, kSize, {}));
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return view.has_pixels();
+    };
+    ASSERT_TRUE(is_solved(camera_of(*model, 30.0f)));
+    EXPECT_TRUE(view.look(cell, camera_of(*model, 40.0f), kSize, {}));
+    EXPECT_FALSE(view.has_pixels());
+    EXPECT_TRUE(is_solved(camera_of(*model, 40.0f)));
+
+    cell.screen = screen_settings(ScreenMethod::gtao, 8);
+    for (const float azimuth : {40.0f, 50.0f}) {
+        EXPECT_TRUE(view.look(cell, camera_of(*model, azimuth), kSize, {}));
+        EXPECT_TRUE(view.has_pixels());
+        EXPECT_FALSE(view.look(cell, camera_of(*model, azimuth), kSize, {}));
+    }
+    cell.at_pixels = false;
+    cell.screen.reset();
+    EXPECT_TRUE(view.look(cell, camera_of(*model, 50.0f), kSize, {}));
+    EXPECT_FALSE(view.has_pixels());
+}
+
 // Disks of no strength answer 0: what is wrong then is all that rays find. Wherever it is asked.
 TEST(CellView, TheErrorIsThatOfWhatIsShownAtTheSamePixels)
 {

@@ -297,6 +297,44 @@ TEST_F(Window, TheReferenceStandsRightOfTheWipeAndInThePictureBeside)
     }
 }
 
+Cell cell_of_disks(bool at_pixels, float strength)
+{
+    Cell cell;
+    cell.at_pixels = at_pixels;
+    cell.settings.engine.engine = Engine::disks;
+    cell.settings.engine.strength = strength;
+    return cell;
+}
+
+// As above, with another cell in the rays' place: one is at vertices, the other at pixels. Until
+// pixels are solved the vertices' values stand there: they are as light.
+TEST_F(Window, AnyCellStandsRightOfTheWipeAndInThePictureBeside)
+{
+    for (const bool is_wipe : {false, true}) {
+        int frames = 0;
+        Extent light{};
+        WindowOptions options;
+        options.input = bowl_file();
+        options.up = UpAxis::z;
+        options.camera = "elevation=60";
+        options.width = 600;
+        options.height = 200;
+        options.panel.is_hidden = true;
+        options.panel.view.ground = false;
+        options.panel.beside = is_wipe ? Beside::wipe : Beside::side_by_side;
+        options.panel.left = cell_of_disks(is_wipe, 100.0f);
+        options.panel.right = cell_of_disks(!is_wipe, 0.0f);
+        options.on_frame = [&](const Image& shown, const Session& session) {
+            light = light_columns(shown);
+            frames += session.state().is_solved && light.high > light.low + 50;
+            return frames < 8;
+        };
+        (void)show_window(options);
+        EXPECT_GE(light.low, 300) << is_wipe;
+        EXPECT_GT(light.high, light.low + 50) << is_wipe;
+    }
+}
+
 /// Saves under these names, a pane on each side.
 WindowOptions saving_options(const std::filesystem::path& input,
                              const std::filesystem::path& picture,
