@@ -58,4 +58,18 @@ ScreenSettings screen_settings(ScreenMethod method, int samples)
     return settings;
 }
 
+std::span<const ScreenParameter> screen_parameters()
+{
+    return {};
+}
+
+void set_parameter(ScreenSettings& settings, std::string_view name, std::string_view)
+{
+    throw SettingsError(name_of(settings.method) + " has no setting \"" + std::string(name) + "\"");
+}
+
+void check_settings(const ScreenSettings&)
+{
+}
+
 }  // namespace surfelao
