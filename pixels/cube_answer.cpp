@@ -44,10 +44,9 @@ void solve_holes(CubeAnswer& answer, const PixelView& view, const CubeWorld& wor
             if (answer.hole[i] != 0)
                 receivers.push_back(view.seen().receivers[i]);
         }
-        SolveSettings solving = *engine;
-        solving.definition = settings.definition;
+        const EngineSettings here = engine_of(world, *engine, settings.definition);
         const Solution solution =
-            solve(world.occluders.prepared_for(*engine), receivers, solving, progress);
+            solve(world.occluders.prepared_for(here), receivers, here, progress);
         std::size_t next = 0;
         for (std::size_t i = 0; i < answer.hole.size(); ++i) {
             if (answer.hole[i] != 0)

@@ -80,10 +80,8 @@ std::vector<Occlusion> answers_of(const CubeWorld& world, const CubeSight& sight
                                   const EngineSettings& engine, const Definition& definition,
                                   const Progress& progress)
 {
-    SolveSettings solving = engine;
-    solving.definition = definition;
-    return solve(world.occluders.prepared_for(engine), sight.receivers, solving, progress)
-        .occlusion;
+    const EngineSettings here = engine_of(world, engine, definition);
+    return solve(world.occluders.prepared_for(here), sight.receivers, here, progress).occlusion;
 }
 
 }  // namespace
@@ -147,6 +145,15 @@ CubeMap cube_map_of(const CubeSight& sight, std::span<const Occlusion> answers)
         map.normals[texel] = octahedral_of(sight.receivers[i].normal);
     }
     return map;
+}
+
+EngineSettings engine_of(const CubeWorld& world, EngineSettings engine,
+                         const Definition& definition)
+{
+    if (engine.device == Device::gpu)
+        engine.context = &world.context;
+    engine.definition = definition;
+    return engine;
 }
 
 ScreenSettings cube_horizon()

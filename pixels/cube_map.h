@@ -91,6 +91,10 @@ struct CubeWorld {
     ScreenSpace& screen;   ///< of the context
 };
 
+/// An engine that runs on the device runs in the world's context.
+[[nodiscard]] EngineSettings engine_of(const CubeWorld& world, EngineSettings engine,
+                                       const Definition& definition);
+
 struct CubeSettings {
     PixelEngine engine = EngineSettings{};
     Definition definition = {};
