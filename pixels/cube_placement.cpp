@@ -10,12 +10,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace surfelao {
 namespace {
 
 constexpr int kGrid = 12;  // cells along each axis
-constexpr int kRoundCandidates = 24;
+constexpr int kRoundCandidates = 48;
 constexpr float kRoundRadius = 0.7f;  // diagonals: a fifth of one beyond the box's ball
 constexpr std::uint64_t kTargets = 4096;
 constexpr int kProbes = 64;              // rays that tell whether a cell is free
@@ -116,6 +117,27 @@ std::size_t side_of(std::size_t target, float worth)
     return 2 * target + (worth < 0.0f ? 1 : 0);
 }
 
+/// The first of those that add most; their number where none adds anything.
+std::size_t best_candidate(const std::vector<std::vector<float>>& worth,
+                           const std::vector<double>& seen)
+{
+    double best_gain = 0.0;
+    std::size_t best = worth.size();
+    for (std::size_t c = 0; c < worth.size(); ++c) {
+        double gain = 0.0;
+        for (std::size_t i = 0; i < worth[c].size(); ++i) {
+            const float w = worth[c][i];
+            if (w != 0.0f)
+                gain += std::abs(double{w}) * seen[side_of(i, w)];
+        }
+        if (gain > best_gain) {
+            best_gain = gain;
+            best = c;
+        }
+    }
+    return best;
+}
+
 }  // namespace
 
 CubePlacement place_cube_maps(const Mesh& mesh, int most, const Progress& progress)
@@ -124,48 +146,35 @@ CubePlacement place_cube_maps(const Mesh& mesh, int most, const Progress& progre
     const RayScene scene(mesh.geometry, RayScene::Build::quick);
     const std::vector<PlacementTarget> targets = targets_of(mesh.geometry);
     const std::vector<glm::vec3> candidates = candidates_of(mesh.geometry, scene);
+    const std::size_t cells = candidates.size() - kRoundCandidates;
     ProgressMeter meter(progress, candidates.size());
     std::vector<std::vector<float>> worth;
-    std::vector<bool> is_open(2 * targets.size(), false);  // to be covered
-    for (const glm::vec3 candidate : candidates) {
-        worth.push_back(worth_of(candidate, targets, scene));
+    std::vector<double> seen(2 * targets.size(), 0.0);  // of each side, while no map covers it
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+        worth.push_back(worth_of(candidates[c], targets, scene));
+        const double eyes = 1.0 / static_cast<double>(c < cells ? cells : kRoundCandidates);
         for (std::size_t i = 0; i < targets.size(); ++i) {
             if (worth.back()[i] != 0.0f)
-                is_open[side_of(i, worth.back()[i])] = true;
+                seen[side_of(i, worth.back()[i])] += eyes;
         }
         meter.add(1);
     }
-    const auto sides = static_cast<double>(std::ranges::count(is_open, true));
+    const double all = std::accumulate(seen.begin(), seen.end(), 0.0);
     CubePlacement placement;
     placement.candidates = static_cast<std::uint32_t>(candidates.size());
-    double left = sides;
-    while (static_cast<int>(placement.centres.size()) < most && left > (1.0 - kEnough) * sides) {
-        double best_gain = 0.0;
-        std::size_t best = 0;
-        for (std::size_t c = 0; c < candidates.size(); ++c) {
-            double gain = 0.0;
-            for (std::size_t i = 0; i < targets.size(); ++i) {
-                const float w = worth[c][i];
-                if (w != 0.0f && is_open[side_of(i, w)])
-                    gain += std::abs(double{w});
-            }
-            if (gain > best_gain) {
-                best_gain = gain;
-                best = c;
-            }
-        }
-        if (best_gain == 0.0)
+    double left = all;
+    while (static_cast<int>(placement.centres.size()) < most && left > (1.0 - kEnough) * all) {
+        const std::size_t best = best_candidate(worth, seen);
+        if (best == candidates.size())
             break;
         placement.centres.push_back(candidates[best]);
         for (std::size_t i = 0; i < targets.size(); ++i) {
-            const float w = worth[best][i];
-            if (w == 0.0f || !is_open[side_of(i, w)])
-                continue;
-            is_open[side_of(i, w)] = false;
-            left -= 1.0;
+            if (worth[best][i] != 0.0f)
+                seen[side_of(i, worth[best][i])] = 0.0;
         }
+        left = std::accumulate(seen.begin(), seen.end(), 0.0);
     }
-    placement.covered = sides > 0.0 ? 1.0 - left / sides : 0.0;
+    placement.covered = all > 0.0 ? 1.0 - left / all : 0.0;
     return placement;
 }
 
