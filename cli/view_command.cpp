@@ -52,10 +52,10 @@ std::optional<ScreenSettings> screen_of(const ViewCommandOptions& options)
 Cell cell_of(const ViewCommandOptions& options)
 {
     Cell cell;
-    if (is_at_pixels(options.texels)) {
-        cell.at_pixels = true;
+    cell.from_maps = is_at_cube_maps(options.texels);
+    cell.at_pixels = is_at_pixels(options.texels) || cell.from_maps;
+    if (is_at_pixels(options.texels))
         cell.screen = screen_of(options);
-    }
     if (!cell.screen)
         cell.settings.engine = settings_of(options.engine);
     cell.settings.max_distance = distance_limit_of(options.measure);
@@ -68,8 +68,6 @@ Cell cell_of(const ViewCommandOptions& options)
 
 void check_view(const ViewCommandOptions& options)
 {
-    if (is_at_cube_maps(options.texels))
-        throw UsageError("--at cubemaps is for render: a window shows pixels.");
     const std::string engine = options.engine.engine.value_or("masks");
     check_pixel_options(std::span(&engine, 1), options.pixels, options.texels, options.measure);
     if (options.pixels.guard)
@@ -77,7 +75,7 @@ void check_view(const ViewCommandOptions& options)
     const Cell cell = cell_of(options);
     const ViewOptions view = view_options_of(options.show);
     if (cell.at_pixels)
-        check_shown_pixels(view, options.atlas);
+        check_shown_pixels(view, options.atlas, cell.from_maps);
     else
         check_shown_map(view, cell.settings.texels.has_value(), options.atlas);
     const DistanceLimit& distance = cell.settings.max_distance;

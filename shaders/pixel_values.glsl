@@ -2,7 +2,7 @@
 //
 // Host side  viewer/pixel_values.h
 //   u_has_pixels       0: there are none; 1: u_own_pixels is bent normal.xyz, occlusion; 2: it is the
-//                      occlusion alone
+//                      occlusion alone; 3: occlusion and, as green, how far that counts
 //   u_has_pixel_rays   0: what was found stands in for the reference
 //   u_own_pixels u_pixel_rays  as large as the target: what was found, and by rays
 //   u_pixel_surface    GBuffer::surface(): normal, distance forward; the same size
@@ -37,14 +37,22 @@ ivec2 nearest_pixel()
     return best;
 }
 
+// Of the last read_pixels(): less than 1 where the model's own values stand in.
+float pixel_coverage = 1.0;
+
 // normal: of the surface, which stands for a bent normal that is not known.
 void read_pixels(inout vec4 own, inout vec4 reference, vec3 normal)
 {
     if (u_has_pixels == 0)
         return;
     ivec2 pixel = nearest_pixel();
+    vec4 stand_in = own;
     own = texelFetch(u_own_pixels, pixel, 0);
     if (u_has_pixels == 2)
         own = vec4(normal, own.r);
+    if (u_has_pixels == 3) {
+        pixel_coverage = own.g;
+        own = mix(stand_in, vec4(normal, own.r), pixel_coverage);
+    }
     reference = u_has_pixel_rays == 1 ? texelFetch(u_pixel_rays, pixel, 0) : own;
 }

@@ -5,15 +5,16 @@ namespace surfelao {
 Where where_of(const Cell& cell)
 {
     if (cell.at_pixels)
-        return Where::pixels;
+        return cell.from_maps ? Where::cube_maps : Where::pixels;
     return cell.settings.texels ? Where::texels : Where::vertices;
 }
 
 void set_where(Cell& cell, Where where, const TexelSettings& texels)
 {
-    cell.at_pixels = where == Where::pixels;
+    cell.from_maps = where == Where::cube_maps;
+    cell.at_pixels = where == Where::pixels || cell.from_maps;
     cell.settings.texels = where == Where::texels ? std::optional(texels) : std::nullopt;
-    if (!cell.at_pixels)
+    if (where != Where::pixels)
         cell.screen.reset();
 }
 
@@ -38,6 +39,8 @@ std::string name_of(Where where, bool is_cloud)
             return "texels";
         case Where::pixels:
             return "pixels";
+        case Where::cube_maps:
+            return "cube maps";
     }
     return {};
 }

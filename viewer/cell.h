@@ -14,6 +14,7 @@ enum class Where {
     vertices,  ///< of a cloud: its points
     texels,
     pixels,
+    cube_maps,  ///< texels of cube maps, which pixels read
 };
 
 struct Cell {
@@ -21,6 +22,7 @@ struct Cell {
     /// on the ground.
     SessionSettings settings;
     bool at_pixels = false;
+    bool from_maps = false;                ///< at pixels: read from cube maps
     std::optional<ScreenSettings> screen;  ///< at pixels: who answers in the engine's place
     bool operator==(const Cell&) const = default;
 };
@@ -33,7 +35,7 @@ void set_where(Cell& cell, Where where, const TexelSettings& texels);
 /// engines that are not chosen.
 void choose_engine(Cell& cell, Engine engine, Device device, std::map<Engine, float>& qualities);
 
-/// "vertices", "texels", "points", "pixels"
+/// "vertices", "texels", "points", "pixels", "cube maps"
 [[nodiscard]] std::string name_of(Where where, bool is_cloud);
 /// "masks", "masks on GPU", "gtao"
 [[nodiscard]] std::string how_of(const Cell& cell);

@@ -2,6 +2,7 @@
 
 #include "pixels/seen.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace surfelao {
@@ -25,6 +26,10 @@ CellView::Changes CellView::update()
     const SessionState& state = session_.state();
     if (changes.model) {
         forget_shot();
+        cubes_.forget();
+        maps_asked_.reset();
+        projector_.reset();
+        map_weights_.clear();
         mesh_.reset();
         layout_.reset();
         paint_.reset();
@@ -45,6 +50,13 @@ CellView::Changes CellView::update()
     const bool has_rays = rays_.update();
     if (has_rays && !rays_.answers().picture.empty()) {
         rays_picture_.emplace(upload(rays_.answers()));
+        changes.pixels = true;
+    }
+    for (CubeMap& map : cubes_.update()) {
+        if (!projector_)
+            projector_.emplace(context_);
+        projector_->add(std::move(map), 0.0f);
+        map_weights_.push_back(0.0f);
         changes.pixels = true;
     }
     if (changes.occlusion || changes.pixels || has_rays)
@@ -92,14 +104,21 @@ bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, co
     }
     if (model->geometry().triangles.empty())
         return has_changed;
-    if (!cell.at_pixels || cell.screen)
+    const Where where = where_of(cell);
+    if (where != Where::pixels || cell.screen)
         has_changed |= forget_picture();
-    if (!cell.at_pixels || !cell.screen)
+    if (where != Where::pixels || !cell.screen)
         has_changed |= forget_screen();
-    if (cell.screen)
+    if (where != Where::cube_maps)
+        has_changed |= forget_projection();
+    if (where == Where::cube_maps) {
+        ask_maps(cell.settings.engine);
+        has_changed |= project(rests);
+    } else if (where == Where::pixels && cell.screen) {
         has_changed |= draw_screen(*cell.screen);
-    else if (cell.at_pixels && rests)
+    } else if (where == Where::pixels && rests) {
         ask_pixels(cell.settings.engine);
+    }
     if (rests)
         ask_rays(rays);
     if (has_changed)
@@ -116,6 +135,7 @@ void CellView::forget_shot()
 {
     forget_picture();
     forget_screen();
+    forget_projection();
     rays_.forget();
     rays_asked_.reset();
     rays_picture_.reset();
@@ -143,6 +163,12 @@ bool CellView::forget_screen()
     const bool was_there = screen_asked_.has_value();
     screen_asked_.reset();
     return was_there;
+}
+
+bool CellView::forget_projection()
+{
+    coverage_.reset();
+    return std::exchange(is_projected_, false);
 }
 
 const GBuffer& CellView::drawn()
@@ -188,22 +214,96 @@ PixelQuestion CellView::question_for(const EngineSettings& engine)
             .engine = engine};
 }
 
-/// Once the session has prepared the engine. The GPU's is not shared.
+/// By the session. The GPU's engine is not shared.
+bool CellView::is_prepared(const EngineSettings& engine) const
+{
+    const SessionState& state = session_.state();
+    if (engine.device == Device::gpu)
+        return state.is_solved;
+    return state.prepared && state.prepared->choice() == EngineChoice(engine);
+}
+
 void CellView::ask_pixels(EngineSettings engine)
 {
     engine.definition = session_.definition();
-    const SessionState& state = session_.state();
-    const bool is_prepared =
-        engine.device == Device::gpu
-            ? state.is_solved
-            : state.prepared && state.prepared->choice() == EngineChoice(engine);
-    if (asked_ == engine || !is_prepared)
+    if (asked_ == engine || !is_prepared(engine))
         return;
     PixelQuestion question = question_for(engine);
-    question.prepared = engine.device == Device::gpu ? nullptr : state.prepared;
+    question.prepared = engine.device == Device::gpu ? nullptr : session_.state().prepared;
     pixels_.solve(std::move(question));
     was_cancelled_ = false;
     asked_ = engine;
+}
+
+void CellView::ask_maps(EngineSettings engine)
+{
+    engine.definition = session_.definition();
+    if (maps_asked_ == engine || !is_prepared(engine))
+        return;
+    maps_asked_ = engine;
+    if (projector_)
+        projector_->clear();
+    map_weights_.clear();
+    cubes_.ask(
+        {shot_.model, engine, engine.device == Device::gpu ? nullptr : session_.state().prepared});
+}
+
+std::string CellView::add_map()
+{
+    if (!shot_.model || shot_.model->geometry().triangles.empty())
+        return "there is nothing to put a cube map into";
+    static_cast<void>(drawn());  // makes the mesh
+    const Mesh& mesh = *shot_.model->mesh;
+    auto sight = std::make_shared<const CubeSight>(
+        look_around(context_, mesh, *mesh_, shot_.camera.eye, kCubeSize,
+                    offset_of(shot_.model->settings, mesh.geometry.frame)));
+    if (sight->texels.empty())
+        return "a cube map would see nothing from here";
+    if (sight->is_inside)
+        return "here is the inside of a body: no place for a cube map";
+    cubes_.add(std::move(sight));
+    return {};
+}
+
+/// What the maps tell of the shot, where that has changed.
+bool CellView::project(bool rests)
+{
+    if (map_weights_.empty())
+        return forget_projection();
+    constexpr float kFade = 1.0f / 20.0f;  // a picture
+    for (std::size_t i = 0; i < map_weights_.size(); ++i) {
+        if (map_weights_[i] >= 1.0f)
+            continue;
+        map_weights_[i] = std::min(1.0f, map_weights_[i] + kFade);
+        projector_->set_weight(i, map_weights_[i]);
+        is_projected_ = false;
+    }
+    if (is_projected_) {
+        if (rests && !coverage_)
+            measure_coverage();
+        return false;
+    }
+    const GBuffer& seen = drawn();
+    if (!map_picture_ || map_picture_->width() != seen.width() ||
+        map_picture_->height() != seen.height())
+        map_picture_.emplace(projector_->make_target(seen.width(), seen.height()));
+    projector_->project(seen, *map_picture_);
+    is_projected_ = true;
+    coverage_.reset();
+    return true;
+}
+
+void CellView::measure_coverage()
+{
+    if (triangles_.empty())
+        triangles_ = drawn().read_triangles();
+    const std::vector<glm::vec4> found = map_picture_->read_color(map_picture_->rect());
+    std::size_t seen = 0, covered = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        seen += triangles_[i] != 0;
+        covered += triangles_[i] != 0 && found[i].g > 0.0f;
+    }
+    coverage_ = seen > 0 ? static_cast<double>(covered) / static_cast<double>(seen) : 1.0;
 }
 
 void CellView::ask_rays(const PixelRays& rays)
@@ -228,13 +328,16 @@ void CellView::ask_rays(const PixelRays& rays)
 
 PixelValues CellView::pixel_values() const
 {
-    const bool is_screen = screen_asked_.has_value();
     PixelValues values;
-    if (is_screen)
+    if (screen_asked_) {
         values.own = &screen_picture_->color();
-    else if (picture_)
+        values.form = PixelForm::occlusion;
+    } else if (is_projected_) {
+        values.own = &map_picture_->color();
+        values.form = PixelForm::covered;
+    } else if (picture_) {
         values.own = &*picture_;
-    values.is_occlusion = is_screen;
+    }
     if (values.own) {
         values.rays = rays_picture_ ? &*rays_picture_ : nullptr;
         values.surface = &g_buffer_->surface();
@@ -269,11 +372,14 @@ void CellView::measure()
 
 bool CellView::is_busy() const
 {
-    return session_.solving() || session_.tracing() || pixels_.solving() || rays_.solving();
+    return session_.solving() || session_.tracing() || pixels_.solving() || rays_.solving() ||
+           cubes_.solving();
 }
 
 std::optional<double> CellView::pixel_progress() const
 {
+    if (cubes_.solving())
+        return cubes_.progress();
     return progress_of(pixels_);
 }
 
@@ -284,7 +390,11 @@ std::optional<double> CellView::ray_progress() const
 
 const std::string& CellView::pixel_message() const
 {
-    return pixels_.answers().message.empty() ? rays_.answers().message : pixels_.answers().message;
+    for (const std::string* message : {&pixels_.answers().message, &rays_.answers().message}) {
+        if (!message->empty())
+            return *message;
+    }
+    return cubes_.message();
 }
 
 void CellView::cancel()
@@ -293,6 +403,7 @@ void CellView::cancel()
     was_cancelled_ = pixels_.solving();
     pixels_.cancel();
     rays_.cancel();
+    cubes_.cancel();
 }
 
 void CellView::solve_again()

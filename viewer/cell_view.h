@@ -4,9 +4,11 @@
 
 #include "bake/statistics.h"
 #include "gpu/g_buffer.h"
+#include "pixels/cube_projector.h"
 #include "pixels/pixel_engine.h"
 #include "viewer/base_paint.h"
 #include "viewer/cell.h"
+#include "viewer/cube_session.h"
 #include "viewer/pixel_session.h"
 #include "viewer/renderer.h"
 #include "viewer/session.h"
@@ -57,6 +59,13 @@ public:
     [[nodiscard]] bool look(const Cell& cell, const Camera& camera, PictureSize size,
                             const PixelRays& rays);
 
+    /// Puts a cube map where the camera of the last look() is. It must not be in a body: what is
+    /// wrong with the place, or an empty text.
+    [[nodiscard]] std::string add_map();
+    std::size_t map_count() const { return cubes_.count(); }
+    /// Of the pixels that see something, the share that maps answer; while the camera rests.
+    const std::optional<double>& coverage() const { return coverage_; }
+
     /// Read when it is first wanted. Its notes.
     std::span<const std::string> take_paint();
     const BasePaint* paint() const { return paint_ ? &*paint_ : nullptr; }
@@ -100,6 +109,11 @@ private:
     void forget_shot();
     bool forget_picture();
     bool forget_screen();
+    bool forget_projection();
+    [[nodiscard]] bool project(bool rests);
+    void ask_maps(EngineSettings engine);
+    [[nodiscard]] bool is_prepared(const EngineSettings& engine) const;
+    void measure_coverage();
     [[nodiscard]] bool draw_screen(const ScreenSettings& settings);
     void ask_pixels(EngineSettings engine);
     void ask_rays(const PixelRays& rays);
@@ -124,10 +138,17 @@ private:
     std::optional<EngineSettings> asked_;
     std::optional<std::pair<PixelRays, Definition>> rays_asked_;
     std::optional<Texture2D> picture_, rays_picture_;
+    std::optional<EngineSettings> maps_asked_;
+    std::optional<CubeProjector> projector_;
+    std::vector<float> map_weights_;  ///< a map fades in
+    std::optional<Framebuffer> map_picture_;
+    bool is_projected_ = false;  ///< it shows the shot
+    std::optional<double> coverage_;
     bool is_measured_ = false;  ///< error_ is of what is shown
     std::optional<PixelError> error_;
     bool was_cancelled_ = false;  ///< the pixels, before their end
     PixelSession pixels_, rays_;
+    CubeSession cubes_;
 };
 
 }  // namespace surfelao

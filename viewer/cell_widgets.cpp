@@ -167,7 +167,7 @@ bool choose_where(Cell& cell, const Model* model, const TexelSettings& texels)
     bool apply = false;
     if (!ImGui::BeginCombo("where", name_of(now, is_cloud).c_str()))
         return false;
-    for (const Where where : {Where::vertices, Where::texels, Where::pixels}) {
+    for (const Where where : {Where::vertices, Where::texels, Where::pixels, Where::cube_maps}) {
         if (is_cloud && where != Where::vertices)
             continue;
         if (ImGui::Selectable(name_of(where, is_cloud).c_str(), where == now)) {
@@ -198,7 +198,7 @@ bool choose_how(Cell& cell, std::map<Engine, float>& qualities)
         }
     }
     for (const ScreenMethod method : screen_methods()) {
-        if (!cell.at_pixels)
+        if (where_of(cell) != Where::pixels)
             break;
         const bool is_chosen = cell.screen && cell.screen->method == method;
         if (ImGui::Selectable(name_of(method).c_str(), is_chosen)) {

@@ -64,6 +64,9 @@ void press(char key, PanelState& state, PanelInput& input)
         case 'H':
             state.shows_help = !state.shows_help;
             break;
+        case 'C':
+            input.add_map = true;
+            break;
         case 'F':
             input.frame_all = true;
             break;
@@ -177,6 +180,7 @@ Cell right_cell(const PanelState& state)
         return cell;
     }
     cell.at_pixels = state.right->at_pixels;
+    cell.from_maps = state.right->from_maps;
     cell.screen = state.right->screen;
     cell.settings.engine = state.right->settings.engine;
     cell.settings.texels = state.right->settings.texels;
@@ -357,7 +361,9 @@ void Panel::widgets(PanelState& state, const CellView& left, const CellView* rig
             input.solve_again |= ImGui::SmallButton("solve");
         }
         stage_lines(shown_state);
-        if (state.left.at_pixels)
+        if (state.left.from_maps)
+            map_lines(left);
+        else if (state.left.at_pixels)
             pixel_lines(left);
         else
             histogram(session);

@@ -68,6 +68,7 @@ struct PanelFigures {
 struct PanelInput {
     bool view_changed = false;  ///< PanelState::view and what is beside
     bool frame_all = false;
+    bool add_map = false;  ///< a cube map where the eye is
     bool save_picture = false;
     bool save_baked = false;
     bool cancel = false;

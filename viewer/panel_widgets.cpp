@@ -17,9 +17,9 @@ namespace {
 
 constexpr int kBins = 48;
 
-constexpr const char* kColorNames[] = {"visibility", "rays",    "difference",  "bent normals",
-                                       "normals",    "levels",  "environment", "charts",
-                                       "density",    "textured"};
+constexpr const char* kColorNames[] = {"visibility", "rays",     "difference",  "bent normals",
+                                       "normals",    "levels",   "environment", "charts",
+                                       "density",    "textured", "coverage"};
 constexpr const char* kSurfaceNames[] = {"triangles", "splats", "affine", "points"};
 
 constexpr const char* kHelp[][2] = {
@@ -33,6 +33,7 @@ constexpr const char* kHelp[][2] = {
     {"R", "rays on or off"},
     {"W", "wipe to the right cell on or off; drag the line"},
     {"S", "the right cell side by side on or off"},
+    {"C", "with cube maps: one where the eye is"},
     {"G", "shadow on the ground on or off"},
     {"Esc", "cancel what runs in the background"},
     {"Tab", "hide or show the panel"},
@@ -196,6 +197,13 @@ bool view_widgets(PanelState& state)
 {
     ViewOptions& view = state.view;
     bool changed = false;
+    if (state.left.from_maps) {
+        bool shows_holes = view.colors == Colors::coverage;
+        if (ImGui::Checkbox("coverage: holes are red", &shows_holes)) {
+            view.colors = shows_holes ? Colors::coverage : Colors::visibility;
+            changed = true;
+        }
+    }
     int colors = static_cast<int>(view.colors);
     if (ImGui::Combo("colours", &colors, kColorNames, IM_ARRAYSIZE(kColorNames))) {
         view.colors = static_cast<Colors>(colors);
@@ -244,6 +252,17 @@ void error_lines(const PixelError& error)
         "at pixels: RMSE %.4f   bias %+.4f\n95 %% %.4f   (%llu pixels, %u rays each)",
         error.found.rmse, error.found.bias, error.found.p95,
         static_cast<unsigned long long>(error.found.count), error.rays);
+}
+
+void map_lines(const CellView& view)
+{
+    if (view.map_count() == 0)
+        ImGui::TextWrapped("no cube map yet: C puts one where the eye is");
+    else if (view.coverage())
+        ImGui::Text("%zu cube maps, %.1f %% of the pixels", view.map_count(),
+                    100.0 * *view.coverage());
+    else
+        ImGui::Text("%zu cube maps", view.map_count());
 }
 
 void pixel_lines(const CellView& view)

@@ -37,6 +37,9 @@ void cell_progress(const CellView& view);
 /// What a picture shows against rays at its pixels.
 void error_lines(const PixelError& error);
 
+/// How many cube maps there are, and how much they show.
+void map_lines(const CellView& view);
+
 /// What a picture's pixels took.
 void pixel_lines(const CellView& view);
 

@@ -3,11 +3,9 @@
 #include "pixels/seen.h"
 #include "surfels/stopwatch.h"
 #include "viewer/pixel_fill.h"
-#include "viewer/solve_model.h"
 
 #include <algorithm>
 #include <exception>
-#include <optional>
 #include <span>
 #include <utility>
 
@@ -61,29 +59,6 @@ std::vector<glm::vec4> picture_of(const SeenPixels& seen, std::span<const Occlus
 
 }  // namespace
 
-/// An engine of the session's own and what it was prepared for.
-struct PixelSession::Engines {
-    std::shared_ptr<const Model> model;
-    std::optional<Prepared> prepared;
-
-    const Prepared& prepared_for(const std::shared_ptr<const Model>& wanted, EngineChoice choice)
-    {
-        choice.context = nullptr;
-        if (model != wanted || !prepared || prepared->choice() != choice) {
-            prepared.reset();  // before the next one is built: both may be large
-            model = wanted;
-            prepared.emplace(prepare(*wanted, choice));
-        }
-        return *prepared;
-    }
-};
-
-PixelSession::PixelSession()
-    : engines_(std::make_unique<Engines>()), worker_([this] { engines_->prepared.reset(); })
-{
-}
-PixelSession::~PixelSession() = default;
-
 void PixelSession::forget()
 {
     ++number_;
@@ -112,9 +87,8 @@ void PixelSession::find(std::uint64_t number, const PixelQuestion& question,
                         const Progress& progress)
 {
     const Model& model = *question.model;
-    const Prepared& prepared = question.prepared
-                                   ? *question.prepared
-                                   : engines_->prepared_for(question.model, question.engine);
+    const Prepared& prepared =
+        question.prepared ? *question.prepared : own_.prepared_for(question.model, question.engine);
     const SeenPixels seen =
         seen_pixels(*model.mesh, question.view, question.width, question.height, question.triangles,
                     offset_of(model.settings, model.geometry().frame));

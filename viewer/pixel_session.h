@@ -11,6 +11,7 @@
 #include "surfels/occlusion.h"
 #include "viewer/background_worker.h"
 #include "viewer/model.h"
+#include "viewer/own_engine.h"
 
 #include <glm/vec4.hpp>
 
@@ -60,8 +61,7 @@ struct PixelAnswers {
 /// For one thread; update() takes over what the background thread has finished.
 class PixelSession {
 public:
-    PixelSession();
-    ~PixelSession();
+    PixelSession() : worker_([this] { own_.end(); }) {}
 
     /// Gives up what runs and forgets what was found: it is of another picture.
     void solve(PixelQuestion question);
@@ -78,13 +78,12 @@ public:
     double progress() const { return worker_.progress(); }
 
 private:
-    struct Engines;
     void find(std::uint64_t number, const PixelQuestion& question, const Progress& progress);
     void post(std::uint64_t number, const PixelAnswers& found);
 
     PixelAnswers answers_;
-    std::uint64_t number_ = 0;          ///< of the question; answers to others are dropped
-    std::unique_ptr<Engines> engines_;  ///< used by the background thread alone
+    std::uint64_t number_ = 0;  ///< of the question; answers to others are dropped
+    OwnEngine own_;             ///< used by the background thread alone
 
     // written by the background thread
     std::mutex mailbox_;

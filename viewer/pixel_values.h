@@ -5,10 +5,17 @@
 
 namespace surfelao {
 
+/// What a texture of pixels' values tells.
+enum class PixelForm {
+    bent_and_occlusion,  ///< RGBA32F
+    occlusion,           ///< R32F
+    covered,             ///< RG32F: occlusion, and 0 to 1 how far it counts beside the model's own
+};
+
 /// Textures as large as the picture; they must live until it is drawn.
 struct PixelValues {
-    const Texture2D* own = nullptr;      ///< null: there are none
-    bool is_occlusion = false;           ///< own is R32F, occlusion; else bent normal, occlusion
+    const Texture2D* own = nullptr;                  ///< null: there are none
+    PixelForm form = PixelForm::bent_and_occlusion;  ///< of own
     const Texture2D* rays = nullptr;     ///< bent normal, occlusion; null: own stands in
     const Texture2D* surface = nullptr;  ///< GBuffer::surface()
 };

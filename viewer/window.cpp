@@ -390,6 +390,8 @@ private:
             left_.solve_again();
         if (input.frame_all && has_view())
             frame_all();
+        if (input.add_map)
+            add_map();
         if (input.orbit_deg != glm::vec2(0.0f)) {
             orbit(camera_, input.orbit_deg.x, input.orbit_deg.y);
             restart();
@@ -404,6 +406,19 @@ private:
         }
         if (input.view_changed)
             restart();
+    }
+
+    /// For each cell that shows some.
+    void add_map()
+    {
+        try {
+            if (has_view() && panel_state_.left.from_maps)
+                note_ = left_.add_map();
+            if (right_ && right_cell(panel_state_).from_maps)
+                note_ = right_->add_map();
+        } catch (const std::exception& error) {
+            note_ = error.what();
+        }
     }
 
     /// After drawing, so that there is a picture.
