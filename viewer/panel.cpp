@@ -218,7 +218,8 @@ PanelInput Panel::build(PanelState& state, const CellView& left_view, const Cell
     if (state.question)
         question_window(*state.question, input.reply);
     if (const std::shared_ptr<const Model>& model = session.state().model) {
-        if (const auto shown = legend_of(*model, session.state().layout.get(), state.view))
+        if (const auto shown = legend_of(*model, session.state().layout.get(),
+                                         options_for(state.left, state.view)))
             legend(shown->title, shown->low, shown->high);
     }
     const float left = input.covered * display.x;
