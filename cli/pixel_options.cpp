@@ -148,9 +148,11 @@ void check_pixel_options(std::span<const std::string> engines, const PixelOption
                          const TexelOptions& texels, const MeasureOptions& measure)
 {
     const auto screen = std::ranges::find_if(engines, is_screen_method);
-    if (!is_at_pixels(texels)) {
+    if (is_at_cube_maps(texels) && options.guard)
+        throw UsageError("--guard is for --at pixels: a cube map's faces see no more.");
+    if (!is_at_pixels(texels) && !is_at_cube_maps(texels)) {
         if (screen != engines.end())
-            throw UsageError("--engine " + *screen + " is for --at pixels.");
+            throw UsageError("--engine " + *screen + " is for --at pixels or cubemaps.");
         if (!options.taps.empty() || !options.set.empty() || options.guard)
             throw UsageError("--taps, --set and --guard are for --at pixels.");
         return;

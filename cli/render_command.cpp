@@ -42,6 +42,7 @@ void check_engine(const RenderCommandOptions& options)
 {
     const std::string name = options.engine.engine.value_or("masks");
     check_pixel_options({&name, 1}, options.pixels, options.texels, options.measure);
+    check_cube_options(options.cubes, is_at_cube_maps(options.texels));
     const PixelEngine engine = pixel_engine_of(options.engine, options.pixels);
     static_cast<void>(guard_of(options.pixels, {options.width, options.height}));
     if (const auto* of_scene = std::get_if<EngineSettings>(&engine))
@@ -266,6 +267,7 @@ void add_render_command(CLI::App& app, Work& work)
     add_atlas_option(*command, options->atlas);
     add_engine_options(*command, options->engine, pixel_engine_names());
     add_pixel_options(*command, options->pixels);
+    add_cube_options(*command, options->cubes);
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
     add_thread_option(*command, options->threads);
@@ -276,13 +278,15 @@ void add_render_command(CLI::App& app, Work& work)
         static_cast<void>(target_settings_of(options->surface, options->show.up));
         const ViewOptions view = view_options_of(options->show);
         const bool has_map = shown_texels_of(options->texels).has_value();
-        if (is_at_pixels(options->texels))
-            check_shown_pixels(view, options->atlas);
+        const bool has_cube_maps = is_at_cube_maps(options->texels);
+        const bool asks_pixels = has_cube_maps || is_at_pixels(options->texels);
+        if (asks_pixels)
+            check_shown_pixels(view, options->atlas, has_cube_maps);
         else
             check_shown_map(view, has_map, options->atlas);
         check_files(*options);
-        work = [options] {
-            return is_at_pixels(options->texels) ? render_pixels(*options) : run(*options);
+        work = [options, asks_pixels] {
+            return asks_pixels ? render_pixels(*options) : run(*options);
         };
     });
 }

@@ -1,6 +1,7 @@
 /// render_options.h: what `render` was asked for, and its ways to make a picture.
 #pragma once
 
+#include "cli/cube_options.h"
 #include "cli/engine_options.h"
 #include "cli/part_options.h"
 #include "cli/pixel_options.h"
@@ -28,6 +29,7 @@ struct RenderCommandOptions {
     SurfaceOptions surface;
     TexelOptions texels;
     PixelOptions pixels;
+    CubeOptions cubes;
     PartOptions parts;
     bool atlas = false;
     std::optional<int> threads;
@@ -36,7 +38,7 @@ struct RenderCommandOptions {
 /// "egl", "osmesa", "auto"
 [[nodiscard]] GlBackend backend_of(const std::string& name);
 
-/// --at pixels. Returns the exit code.
+/// --at pixels and cubemaps. Returns the exit code.
 int render_pixels(const RenderCommandOptions& options);
 
 }  // namespace surfelao

@@ -1,6 +1,7 @@
 #include "bake/point_target.h"
 #include "bake/vertex_target.h"
 #include "cli/commands.h"
+#include "cli/cube_render.h"
 #include "cli/output.h"
 #include "cli/progress_bar.h"
 #include "cli/render_options.h"
@@ -102,9 +103,9 @@ void finish(const GlContext& context, const RenderCommandOptions& options, const
         draw_heat_legend(image, "occlusion difference to rays", 0.0f, job.shown.difference_scale);
 }
 
-/// What was drawn, and how long it took.
+/// What was drawn, and how long it took. maps: a line about cube maps, or nothing.
 void tell(const RenderCommandOptions& options, const PixelJob& job, const PixelPicture& picture,
-          double read_s, double write_s)
+          const std::string& maps, double read_s, double write_s)
 {
     const auto time = [](double s) { return fixed(s, 3) + " s"; };
     std::cout << options.input << " -> " << options.output << ", " << options.width << " x "
@@ -119,9 +120,12 @@ void tell(const RenderCommandOptions& options, const PixelJob& job, const PixelP
               << " more at " << picture.edge_pixels << " edges";
     if (picture.bands > 1)
         std::cout << ", in " << picture.bands << " bands";
-    std::cout << "\n  read " << time(read_s) << ", prepare " << time(picture.prepare_s) << ", see "
-              << time(picture.see_s) << ", solve " << time(picture.solve_s) << ", edges "
-              << time(picture.edges_s);
+    std::cout << maps << "\n  read " << time(read_s) << ", prepare " << time(picture.prepare_s)
+              << ", see " << time(picture.see_s);
+    if (job.settings.cube_maps != nullptr)
+        std::cout << ", project " << time(picture.project_s);
+    std::cout << (job.settings.cube_maps != nullptr ? ", holes " : ", solve ")
+              << time(picture.solve_s) << ", edges " << time(picture.edges_s);
     if (job.settings.reference_rays)
         std::cout << ", reference " << time(picture.reference_s);
     std::cout << ", draw " << time(picture.paint_s) << ", write " << time(write_s) << '\n';
@@ -142,23 +146,33 @@ int render_pixels(const RenderCommandOptions& options)
         limit.emplace(*options.threads);
     ProgressBar bar;
     Stopwatch watch;
-    const PixelJob job = read_job(options);
+    PixelJob job = read_job(options);
     double read_s = watch.lap();
 
     const GlContext context = GlContext::create(backend_of(options.backend));
     const DrawnMesh drawn(context, job.mesh.geometry, job.mesh.surface);
     Occluders occluders(job.mesh.occluding());
-    const double upload_s = watch.lap();
+    std::optional<PlacedMaps> maps;
+    const auto update = [&](std::string_view stage, double done) {
+        return bar.update(stage, done);
+    };
+    if (is_at_cube_maps(options.texels)) {
+        maps.emplace(place_maps(context, job.mesh, drawn, occluders, job.view, job.settings,
+                                options.cubes, update));
+        job.settings.cube_maps = &maps->projector;
+        job.settings.white_holes = options.cubes.holes == "white";
+    }
+    const double upload_s = maps ? 0.0 : watch.lap();
     PixelPicture picture =
         pixel_picture(context, job.mesh, drawn, occluders, job.view, job.settings,
                       pixel_paint(job.shown, up_axis_of(options.show), job.sky(),
                                   job.paint ? &*job.paint : nullptr),
-                      [&](std::string_view stage, double done) { return bar.update(stage, done); });
+                      update);
     picture.see_s += upload_s;
     watch.lap();
     finish(context, options, job, picture.image);
     write_image(options.output, picture.image);
-    tell(options, job, picture, read_s, watch.lap());
+    tell(options, job, picture, maps ? text_of(*maps, picture) : "", read_s, watch.lap());
     return kDone;
 }
 

@@ -13,7 +13,7 @@
 namespace surfelao {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Colors>, 10> kModes = {{
+constexpr std::array<std::pair<std::string_view, Colors>, 11> kModes = {{
     {"visibility", Colors::visibility},
     {"rays", Colors::rays},
     {"difference", Colors::difference},
@@ -24,6 +24,7 @@ constexpr std::array<std::pair<std::string_view, Colors>, 10> kModes = {{
     {"charts", Colors::charts},
     {"density", Colors::density},
     {"textured", Colors::textured},
+    {"coverage", Colors::coverage},
 }};
 
 constexpr std::array<std::pair<std::string_view, Shape>, 4> kSurfaces = {{
@@ -57,13 +58,15 @@ std::vector<std::string> names_of(const Table& table)
 void add_show_options(CLI::App& command, ShowOptions& options)
 {
     command
-        .add_option("--mode", options.mode,
-                    "What the colours tell: visibility = 1 - occlusion; rays = the same by ray "
-                    "casting; difference = to rays, as a heat map; bent-normals; normals at "
-                    "corners, or of the disks; levels = depth in the octree; environment = light "
-                    "of a panorama; charts, density = of a map (--at texels): a colour for each "
-                    "chart, texels "
-                    "per unit of length; textured = the file's base colours times visibility")
+        .add_option(
+            "--mode", options.mode,
+            "What the colours tell: visibility = 1 - occlusion; rays = the same by ray "
+            "casting; difference = to rays, as a heat map; bent-normals; normals at "
+            "corners, or of the disks; levels = depth in the octree; environment = light "
+            "of a panorama; charts, density = of a map (--at texels): a colour for each "
+            "chart, texels "
+            "per unit of length; textured = the file's base colours times visibility; coverage = "
+            "of cube maps (--at cubemaps): red where none answers")
         ->check(CLI::IsMember(names_of(kModes)))
         ->type_name("MODE")
         ->default_str("visibility")
@@ -142,14 +145,20 @@ void check_shown_map(const ViewOptions& view, bool has_map, bool atlas)
         throw UsageError("--atlas is for --at texels.");
     if (!has_map && needs_map(view.colors))
         throw UsageError("--mode charts and density are for --at texels.");
+    if (needs_cube_maps(view.colors))
+        throw UsageError("--mode coverage is for --at cubemaps.");
     if (has_map && view.surface != Shape::triangles)
         throw UsageError("--at texels is for --surface triangles.");
     if (has_map && view.colors == Colors::levels)
         throw UsageError("--mode levels is for --at vertices.");
 }
 
-void check_shown_pixels(const ViewOptions& view, bool atlas)
+void check_shown_pixels(const ViewOptions& view, bool atlas, bool has_cube_maps)
 {
+    if (needs_cube_maps(view.colors) && !has_cube_maps)
+        throw UsageError("--mode coverage is for --at cubemaps.");
+    if (view.colors == Colors::bent_normals && has_cube_maps)
+        throw UsageError("--mode bent-normals is not for --at cubemaps: maps hold none.");
     if (atlas)
         throw UsageError("--atlas is for --at texels.");
     if (needs_map(view.colors))
@@ -157,7 +166,7 @@ void check_shown_pixels(const ViewOptions& view, bool atlas)
     if (view.colors == Colors::levels)
         throw UsageError("--mode levels is for --at vertices.");
     if (view.surface != Shape::triangles)
-        throw UsageError("--at pixels is for --surface triangles.");
+        throw UsageError("--at pixels and cubemaps are for --surface triangles.");
 }
 
 UpAxis up_axis_of(const ShowOptions& options)

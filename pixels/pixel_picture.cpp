@@ -43,6 +43,7 @@ std::vector<Band> bands_of(const View& view, const PixelPictureSettings& setting
 /// The answers of one list of receivers.
 struct Answers {
     std::vector<Occlusion> values, references;
+    std::vector<std::uint8_t> holes;  ///< 1 where no cube map answered; empty without maps
 };
 
 /// What the receivers of each pixel add up to.
@@ -182,30 +183,73 @@ private:
             values[i].occlusion = occlusion[pixels(i)];
     }
 
+    /// Who answers the middles: cube maps before the engine, which then answers the rest.
+    Answers answers_at(const GBuffer& drawing, PictureSize size, const SeenPixels& seen)
+    {
+        Stopwatch watch;
+        const auto pixels = [&](std::size_t i) { return seen.pixels[i]; };
+        Answers answers;
+        if (settings_.cube_maps == nullptr) {
+            answers.values = solved(seen.receivers, stage("solve"));
+            if (on_screen())
+                put_screen(drawing, size, pixels, answers.values);
+            picture_.solve_s += watch.lap();
+            return answers;
+        }
+        answers.values.resize(seen.pixels.size());
+        const Framebuffer target =
+            settings_.cube_maps->make_target(drawing.width(), drawing.height());
+        settings_.cube_maps->project(drawing, target);
+        const std::vector<glm::vec4> told =
+            inner(target.read_color(target.rect()), size, settings_.guard);
+        picture_.project_s += watch.lap();
+
+        if (on_screen() && !settings_.white_holes)
+            put_screen(drawing, size, pixels, answers.values);
+        std::vector<Receiver> asked;
+        for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
+            const glm::vec4 texel = told[seen.pixels[i]];
+            answers.holes.push_back(texel.y > 0.0f ? 0 : 1);
+            if (texel.y > 0.0f)
+                answers.values[i].occlusion = texel.x;
+            else if (!settings_.white_holes)
+                asked.push_back(seen.receivers[i]);
+            picture_.holes += answers.holes.back();
+        }
+        if (!on_screen() && !asked.empty()) {
+            const std::vector<Occlusion> filled = solved(asked, stage("solve"));
+            std::size_t next = 0;
+            for (std::size_t i = 0; i < answers.holes.size(); ++i) {
+                if (answers.holes[i] != 0)
+                    answers.values[i] = filled[next++];
+            }
+        }
+        picture_.solve_s += watch.lap();
+        return answers;
+    }
+
     void make_band(const Band& band)
     {
         const PictureSize size{band.rect.width, band.rect.height};
         GBuffer drawing(context_, size.width + 2 * settings_.guard,
                         size.height + 2 * settings_.guard);
-        const auto see = [&](const View& view) {
+        const auto see = [&](const View& view, bool with_surface) {
             const View wide = widened(view, size, settings_.guard);
-            if (on_screen())
+            if (with_surface)
                 drawing.draw(drawn_, wide);
             else
                 drawing.draw_triangles(drawn_, wide);
             return inner(drawing.read_triangles(), size, settings_.guard);
         };
         Stopwatch watch;
-        const SeenPixels seen = seen_pixels(mesh_, band.view, size.width, size.height,
-                                            see(band.view), settings_.offset);
+        const SeenPixels seen =
+            seen_pixels(mesh_, band.view, size.width, size.height,
+                        see(band.view, on_screen() || settings_.cube_maps), settings_.offset);
         picture_.middles += seen.pixels.size();
         picture_.see_s += watch.lap();
 
-        Answers middles{solved(seen.receivers, stage("solve")), {}};
-        if (on_screen())
-            put_screen(
-                drawing, size, [&](std::size_t i) { return seen.pixels[i]; }, middles.values);
-        picture_.solve_s += watch.lap();
+        Answers middles = answers_at(drawing, size, seen);
+        watch.lap();
 
         PixelSamples samples(mesh_, parts_, seen, paint_.base);
         Answers extras;
@@ -213,7 +257,7 @@ private:
         for (int i = 1; i < settings_.samples; ++i) {
             View view = band.view;
             view.lens = shifted(view.lens, size.width, size.height, sample_shift(i));
-            const std::size_t added = samples.add(view, see(view));
+            const std::size_t added = samples.add(view, see(view, on_screen()));
             const std::size_t before = extras.values.size();
             extras.values.resize(before + added);
             if (on_screen())
@@ -251,7 +295,8 @@ private:
             tbb::blocked_range<std::size_t>(0, receivers.size(), kPaintGrain),
             [&](const tbb::blocked_range<std::size_t>& range) {
                 for (std::size_t i = range.begin(); i < range.end(); ++i)
-                    colors[i] = paint_.color({receivers[i], answers.values[i], references[i]});
+                    colors[i] = paint_.color({receivers[i], answers.values[i], references[i],
+                                              !answers.holes.empty() && answers.holes[i] != 0});
             });
         return colors;
     }

@@ -13,6 +13,7 @@
 #include "bake/error_search.h"
 #include "bake/occluders.h"
 #include "image/image.h"
+#include "pixels/cube_projector.h"
 #include "pixels/pixel_engine.h"
 #include "pixels/pixel_samples.h"
 
@@ -36,6 +37,10 @@ struct PixelPictureSettings {
     Offset offset = {};
     int guard = 0;  ///< pixels beyond each edge, for screen-space methods
     std::uint32_t band_pixels = kBandPixels;
+    /// Asked first, at the pixels' middles; the engine answers what they do not, or with
+    /// white_holes nobody: all is open there. On this picture's context.
+    CubeProjector* cube_maps = nullptr;
+    bool white_holes = false;
 };
 
 /// One receiver's answers, as a colour is made of them.
@@ -43,6 +48,7 @@ struct AnsweredPixel {
     const Receiver& receiver;
     const Occlusion& value;
     const Occlusion& reference;  ///< the value where none was asked for
+    bool is_hole = false;        ///< no cube map answered
 };
 
 /// How answers become colours. Both are called from many threads.
@@ -56,10 +62,12 @@ struct PixelPicture {
     std::uint64_t middles = 0;  ///< receivers at pixels' middles
     std::uint64_t extras = 0;   ///< at other samples
     std::uint64_t edge_pixels = 0;  ///< that have such
+    std::uint64_t holes = 0;        ///< middles that no cube map answered
     int bands = 1;
     double prepare_s = 0.0;    ///< the engine's tree
     double see_s = 0.0;        ///< drawing the middles, and their receivers
-    double solve_s = 0.0;      ///< at the middles
+    double project_s = 0.0;    ///< cube maps at the middles
+    double solve_s = 0.0;      ///< at the middles, or at the holes among them
     double edges_s = 0.0;      ///< all that the other samples cost
     double reference_s = 0.0;  ///< preparing and tracing
     double paint_s = 0.0;

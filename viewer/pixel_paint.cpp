@@ -79,6 +79,11 @@ PixelPaint pixel_paint(const ViewOptions& options, UpAxis up, const Image* panor
             SURFELAO_CHECK(paint != nullptr);
             return {visibility,
                     [paint](const SurfacePoint& point) { return paint_at(*paint, point); }};
+        case Colors::coverage:
+            return {[](const AnsweredPixel& pixel) {
+                return pixel.is_hole ? glm::vec3(1.0f, 0.0f, 0.0f)
+                                     : glm::vec3(1.0f - pixel.value.occlusion);
+            }};
         default:
             return {visibility};
     }

@@ -16,7 +16,8 @@ namespace surfelao {
 [[nodiscard]] constexpr bool shows_numbers(Colors colors)
 {
     return colors == Colors::visibility || colors == Colors::rays ||
-           colors == Colors::bent_normals || colors == Colors::normals;
+           colors == Colors::bent_normals || colors == Colors::normals ||
+           colors == Colors::coverage;
 }
 
 /// Numbers for shows_numbers(), else display-referred linear light: the lit picture times the

@@ -23,6 +23,7 @@ enum class Colors {
     charts = 7,        ///< of a map: a colour for each, times visibility
     density = 8,       ///< of a map: texels per unit of length, as a heat map
     textured = 9,      ///< the surface's own colour times visibility
+    coverage = 10,     ///< of cube maps: visibility, red where none of them answers
 };
 
 struct ViewOptions {
@@ -46,6 +47,12 @@ struct ViewOptions {
 [[nodiscard]] constexpr bool needs_map(Colors colors)
 {
     return colors == Colors::charts || colors == Colors::density;
+}
+
+/// Whether they tell of cube maps.
+[[nodiscard]] constexpr bool needs_cube_maps(Colors colors)
+{
+    return colors == Colors::coverage;
 }
 
 /// Whether the ground's shadow is drawn: under colours that tell light.
