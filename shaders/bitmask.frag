@@ -1,0 +1,93 @@
+#version 330 core
+#include "slices.glsl"
+
+// bitmask.frag: ambient occlusion of slices whose directions are 32 bits: each sample hides those
+// between its own angle and that of the point a thickness behind it, and light passes behind.
+//
+//        V      front . .       bits from the front's angle to the back's are set; what is seen
+//        |          .   . back  through between two samples stays open
+//     ___|________.___.___
+//
+// Based on   Therrien, Levesque, Gilet. Screen Space Indirect Lighting with Visibility Bitmask. 2023
+// Departs    the bits are not of equal angles but of equal weight, that of the cosine over the
+//            normal (gtao.frag's integral): counting them is the answer, and with an endless
+//            thickness it is gtao's, rounded to bits; a sample's fade lowers its front
+//
+// Vertices   fullscreen.vert
+// Reads      slices.glsl
+//            u_slices     how many
+//            u_power      of the steps
+//            u_thickness  of what is seen, away from the eye, in units of view space
+// Writes     out_occlusion
+// CPU twin   tests/screen_twin.cpp
+uniform int u_slices;
+uniform float u_power;
+uniform float u_thickness;
+
+out float out_occlusion;
+
+// k in [0, 32]
+uint lowest_bits(int k) { return k >= 32 ? 0xffffffffu : (1u << uint(max(k, 0))) - 1u; }
+
+int count_bits(uint bits)
+{
+    bits -= bits >> 1u & 0x55555555u;
+    bits = (bits & 0x33333333u) + (bits >> 2u & 0x33333333u);
+    bits = bits + (bits >> 4u) & 0x0f0f0f0fu;
+    return int(bits * 0x01010101u >> 24u);
+}
+
+// where a point a thickness behind `seen` lies in the slice
+vec2 back_of(vec3 seen, vec2 front, vec3 position, Slice slice)
+{
+    if (u_is_orthographic == 1)
+        return front + u_thickness * vec2(slice.across.z, slice.up.z);
+    vec2 from_eye = front + vec2(dot(position, slice.across), dot(position, slice.up));
+    return front + u_thickness * inversesqrt(dot(seen, seen)) * from_eye;
+}
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 here = texelFetch(u_surface, pixel, 0);
+    vec2 pixels_per_unit = pixels_at(here.w);
+    out_occlusion = 0.0;
+    if (is_background(here) || u_radius * pixels_per_unit.y < 1.0)
+        return;
+    vec3 position = position_at(pixel, here), eye = to_eye(position);
+    vec2 noise = noise_at(pixel);
+    float first = noise.x * 3.14159265 / float(u_slices);
+    vec2 direction = vec2(cos(first), sin(first));
+    float hidden = 0.0, all = 0.0;
+    for (int s = 0; s < u_slices; ++s) {
+        Slice slice = slice_of(here.xyz, eye, direction, pixels_per_unit);
+        float left = arc(slice.sin_gamma, -slice.sin_gamma, slice.cos_gamma);
+        float whole = left + arc(-slice.sin_gamma, slice.sin_gamma, slice.cos_gamma);
+        float bits_per_arc = 32.0 / max(whole, 1e-6);
+        uint bits = 0u;
+        for (int k = 0; k < 2 * u_steps; ++k) {
+            float side = (k & 1) == 0 ? 1.0 : -1.0;
+            float t = u_radius * pow((float(k >> 1) + noise.y) / float(u_steps), u_power);
+            vec3 seen;
+            if (!sample_at(side * t, slice, seen))
+                continue;
+            vec2 front = vec2(dot(seen - position, slice.across), dot(seen - position, slice.up));
+            float square = dot(front, front);
+            float weight = weight_at(square);
+            if (weight == 0.0)
+                continue;
+            vec2 back = back_of(seen, front, position, slice);
+            float g = side * slice.sin_gamma;
+            float high = mix(-g, front.y * inversesqrt(max(square, 1e-30)), weight);
+            float low = back.y * inversesqrt(max(dot(back, back), 1e-30));
+            vec2 ends = left + side * vec2(arc(clamp(high, -g, 1.0), g, slice.cos_gamma),
+                                           arc(clamp(low, -g, 1.0), g, slice.cos_gamma));
+            ivec2 at = ivec2(floor(clamp(ends * bits_per_arc, 0.0, 32.0) + 0.5));
+            bits |= lowest_bits(max(at.x, at.y)) & ~lowest_bits(min(at.x, at.y));
+        }
+        hidden += slice.share * whole * float(count_bits(bits)) / 32.0;
+        all += slice.share * whole;
+        direction = turned(direction);
+    }
+    out_occlusion = all > 0.0 ? clamp(hidden / all, 0.0, 1.0) : 0.0;
+}

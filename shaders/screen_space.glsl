@@ -1,0 +1,19 @@
+#include "g_buffer.glsl"
+
+// screen_space.glsl: what the screen-space methods share.
+//
+// Host side  gpu/screen_space.h
+//   u_radius  R, in units of view space
+uniform float u_radius;
+
+// pixels that a unit of length spans at the distance z, each way
+vec2 pixels_at(float z)
+{
+    vec2 scale = vec2(u_size) / (u_lens_high - u_lens_low);
+    return u_is_orthographic == 1 ? scale : scale / z;
+}
+
+bool is_outside(ivec2 pixel)
+{
+    return any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, u_size));
+}

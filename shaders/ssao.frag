@@ -1,0 +1,70 @@
+#version 330 core
+#include "screen_space.glsl"
+#include "screen_noise.glsl"
+
+// ssao.frag: ambient occlusion as the share of samples about the pixel's point that lie behind what
+// the picture shows in their place; a wall has half of them in front, which counts as open.
+//
+//        o   o   o    in front of the picture's depth: visible
+//      ____o_p_o____
+//        x   x   x    behind: hidden            occlusion = 1 - min(1, 2 x mean)
+//
+// Based on   Mittring. Finding Next Gen: CryEngine 2. SIGGRAPH courses, 2007, and
+//            Kajalin. Screen Space Ambient Occlusion. ShaderX7, 2009
+// Departs    the ball is filled evenly (its radius by the cube root); samples come in pairs of
+//            opposite ones unless they are asked not to: of each one is in front of a plane, so that
+//            a wall is open with few of them, too; what is open beyond a half is cut off; samples
+//            outside of the picture are left out. Disk: its size on the picture is that of R at
+//            the distance u_disc_distance, for near and far pixels alike, as in depth
+//
+// Vertices   fullscreen.vert
+// Reads      screen_space.glsl, screen_noise.glsl
+//            u_samples        RGBA32F: offsets in the unit ball, 0
+//            u_sample_count
+//            u_disc_distance  0: a ball of view space
+//            u_reach          radii: what is nearer to the eye by more says nothing, and counts half
+//            u_is_by_ratio    1: in its place, the share of (z_p - z) / z counts half
+// Writes     out_occlusion
+// CPU twin   tests/screen_twin.cpp
+uniform samplerBuffer u_samples;
+uniform int u_sample_count;
+uniform float u_disc_distance;
+uniform float u_reach;
+uniform int u_is_by_ratio;
+
+out float out_occlusion;
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 here = texelFetch(u_surface, pixel, 0);
+    bool is_disc = u_disc_distance > 0.0;
+    float radius = u_radius;
+    if (is_disc && u_is_orthographic == 0)
+        radius *= here.w / u_disc_distance;
+    vec2 pixels = radius * pixels_at(here.w);
+    out_occlusion = 0.0;
+    if (is_background(here) || pixels.y < 1.0)
+        return;
+    vec3 position = position_at(pixel, here);
+    vec2 noise = noise_at(pixel);
+    float height = 2.0 * noise.x - 1.0, turn = 6.28318531 * noise.y;
+    vec3 mirror = vec3(sqrt(1.0 - height * height) * vec2(cos(turn), sin(turn)), height);
+    float open = 0.0, count = 0.0;
+    for (int i = 0; i < u_sample_count; ++i) {
+        vec3 offset = texelFetch(u_samples, i).xyz;
+        offset -= 2.0 * dot(offset, mirror) * mirror;
+        vec3 sampled = position + radius * offset;
+        ivec2 place = ivec2(floor(is_disc ? gl_FragCoord.xy + offset.xy * pixels
+                                          : place_of(sampled)));
+        if (sampled.z <= 0.0 && u_is_orthographic == 0 || is_outside(place))
+            continue;
+        float z = texelFetch(u_surface, place, 0).w;
+        float is_valid = u_is_by_ratio == 1
+                             ? 1.0 - clamp((position.z - z) / z, 0.0, 1.0)
+                             : (position.z - z <= u_reach * radius ? 1.0 : 0.0);
+        open += mix(0.5, z > sampled.z ? 1.0 : 0.0, is_valid);
+        count += 1.0;
+    }
+    out_occlusion = count > 0.0 ? 1.0 - min(1.0, 2.0 * open / count) : 0.0;
+}
