@@ -77,11 +77,12 @@ glm::dvec3 place_of(std::string_view text, const std::string& option)
 
 }  // namespace
 
-void add_engine_options(CLI::App& command, EngineOptions& options)
+void add_engine_options(CLI::App& command, EngineOptions& options,
+                        const std::vector<std::string>& names)
 {
     command.add_option("--engine", options.engine, "Who computes")
-        ->check(CLI::IsMember({"masks", "disks", "rays"}))
-        ->type_name("masks|disks|rays")
+        ->check(CLI::IsMember(names))
+        ->type_name(CLI::detail::join(names, "|"))
         ->default_str("masks")
         ->group("Engine");
     command

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -52,7 +53,9 @@ struct ColorOptions {
     std::string encoding = "auto";
 };
 
-void add_engine_options(CLI::App& command, EngineOptions& options);
+/// names: of the engines that may be asked.
+void add_engine_options(CLI::App& command, EngineOptions& options,
+                        const std::vector<std::string>& names = {"masks", "disks", "rays"});
 void add_measure_options(CLI::App& command, MeasureOptions& options);
 
 /// `--up y|z`, in this group.

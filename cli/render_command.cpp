@@ -1,12 +1,8 @@
 #include "bake/texel_layout.h"
 #include "cli/commands.h"
-#include "cli/engine_options.h"
 #include "cli/output.h"
-#include "cli/part_options.h"
 #include "cli/progress_bar.h"
-#include "cli/read_options.h"
-#include "cli/texel_options.h"
-#include "cli/view_options.h"
+#include "cli/render_options.h"
 #include "engines/threads.h"
 #include "image/image_file.h"
 #include "surfels/number_text.h"
@@ -29,31 +25,6 @@ namespace {
 constexpr int kMostPixels = 32768;  // each way; the device may draw less
 constexpr int kMostSamples = 4096;
 
-struct RenderCommandOptions {
-    std::string input;
-    std::string output;
-    ReadOptions reading;
-    int width = 1280, height = 720;
-    int samples = 16;
-    std::string camera;
-    std::string backend = "auto";
-    ShowOptions show;
-    EngineOptions engine;
-    MeasureOptions measure;
-    SurfaceOptions surface;
-    TexelOptions texels;
-    PartOptions parts;
-    bool atlas = false;
-    std::optional<int> threads;
-};
-
-GlBackend backend_of(const std::string& name)
-{
-    if (name == "egl")
-        return GlBackend::egl;
-    return name == "osmesa" ? GlBackend::osmesa : GlBackend::automatic;
-}
-
 /// Throws UsageError where the picture would replace what is read.
 void check_files(const RenderCommandOptions& options)
 {
@@ -64,6 +35,20 @@ void check_files(const RenderCommandOptions& options)
     if (options.show.environment)
         plan.reads(*options.show.environment);
     plan.writes(options.output, "the picture");
+}
+
+/// Throws UsageError for an engine that does not answer there, or not that.
+void check_engine(const RenderCommandOptions& options)
+{
+    const std::string name = options.engine.engine.value_or("masks");
+    check_pixel_options({&name, 1}, options.pixels, options.texels, options.measure);
+    const PixelEngine engine = pixel_engine_of(options.engine, options.pixels);
+    static_cast<void>(guard_of(options.pixels, {options.width, options.height}));
+    if (const auto* of_scene = std::get_if<EngineSettings>(&engine))
+        check_kernel(of_scene->engine, kernel_of(options.measure));
+    else if (view_options_of(options.show).colors == Colors::bent_normals)
+        throw UsageError("--mode bent-normals is for --engine masks, disks or rays: " + name +
+                         " knows none.");
 }
 
 /// What a picture shows on the model.
@@ -230,6 +215,13 @@ int run(const RenderCommandOptions& options)
 
 }  // namespace
 
+GlBackend backend_of(const std::string& name)
+{
+    if (name == "egl")
+        return GlBackend::egl;
+    return name == "osmesa" ? GlBackend::osmesa : GlBackend::automatic;
+}
+
 void add_render_command(CLI::App& app, Work& work)
 {
     const auto options = std::make_shared<RenderCommandOptions>();
@@ -248,7 +240,11 @@ void add_render_command(CLI::App& app, Work& work)
         ->check(CLI::Range(1, kMostPixels))
         ->type_name("N")
         ->capture_default_str();
-    command->add_option("--samples", options->samples, "Samples per pixel: smoother edges")
+    command
+        ->add_option(
+            "--samples", options->samples,
+            "Samples per pixel: smoother edges; at pixels, what further samples see too is "
+            "asked (1: middles alone)")
         ->check(CLI::Range(1, kMostSamples))
         ->type_name("N")
         ->capture_default_str();
@@ -268,19 +264,26 @@ void add_render_command(CLI::App& app, Work& work)
     add_layout_options(*command, options->texels, kShownMaps);
     add_part_options(*command, options->parts);
     add_atlas_option(*command, options->atlas);
-    add_engine_options(*command, options->engine);
+    add_engine_options(*command, options->engine, pixel_engine_names());
+    add_pixel_options(*command, options->pixels);
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
     add_thread_option(*command, options->threads);
     command->callback([options, &work] {
-        check_kernel(settings_of(options->engine).engine, kernel_of(options->measure));
+        check_engine(*options);
         static_cast<void>(distance_limit_of(options->measure));
         static_cast<void>(ground_plane_of(options->measure, options->show.up));
         static_cast<void>(target_settings_of(options->surface, options->show.up));
+        const ViewOptions view = view_options_of(options->show);
         const bool has_map = shown_texels_of(options->texels).has_value();
-        check_shown_map(view_options_of(options->show), has_map, options->atlas);
+        if (is_at_pixels(options->texels))
+            check_shown_pixels(view, options->atlas);
+        else
+            check_shown_map(view, has_map, options->atlas);
         check_files(*options);
-        work = [options] { return run(*options); };
+        work = [options] {
+            return is_at_pixels(options->texels) ? render_pixels(*options) : run(*options);
+        };
     });
 }
 

@@ -27,11 +27,12 @@ void add_layout_options(CLI::App& command, TexelOptions& options, const std::str
 {
     command
         .add_option("--at", options.at,
-                    "Where occlusion is asked: vertices, texels of a map on the triangles, or the "
+                    "Where occlusion is asked: vertices, texels of a map on the triangles, the "
                     "points of a file without faces (default: points there, else vertices; of "
-                    "bake, texels for pictures)")
-        ->check(CLI::IsMember({"vertices", "texels", "points"}))
-        ->type_name("vertices|texels|points")
+                    "bake, texels for pictures), and where it is not baked: pixels of the picture, "
+                    "or cube maps inside of the scene")
+        ->check(CLI::IsMember({"vertices", "texels", "points", "pixels", "cubemaps"}))
+        ->type_name("vertices|texels|points|pixels|cubemaps")
         ->group(group);
     command.add_option("--size", options.size, "Texels of each side of the map")
         ->check(CLI::Range(1u, kMostTexels))
@@ -180,6 +181,8 @@ TexelSettings layout_settings_of(const TexelOptions& options)
 std::optional<TexelSettings> texel_settings_of(const TexelOptions& options,
                                                const std::filesystem::path& output)
 {
+    if (options.at == "pixels" || options.at == "cubemaps")
+        throw UsageError("--at " + *options.at + " is for render, compare and view.");
     const bool picture = is_picture(output);
     if (picture && (options.at == "vertices" || options.at == "points"))
         throw UsageError("--at " + *options.at + " needs a mesh file to write to, no picture.");

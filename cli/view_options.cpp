@@ -148,6 +148,18 @@ void check_shown_map(const ViewOptions& view, bool has_map, bool atlas)
         throw UsageError("--mode levels is for --at vertices.");
 }
 
+void check_shown_pixels(const ViewOptions& view, bool atlas)
+{
+    if (atlas)
+        throw UsageError("--atlas is for --at texels.");
+    if (needs_map(view.colors))
+        throw UsageError("--mode charts and density are for --at texels.");
+    if (view.colors == Colors::levels)
+        throw UsageError("--mode levels is for --at vertices.");
+    if (view.surface != Shape::triangles)
+        throw UsageError("--at pixels is for --surface triangles.");
+}
+
 UpAxis up_axis_of(const ShowOptions& options)
 {
     return options.up == "z" ? UpAxis::z : UpAxis::y;

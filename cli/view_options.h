@@ -33,6 +33,8 @@ void add_show_options(CLI::App& command, ShowOptions& options);
 [[nodiscard]] ViewOptions view_options_of(const ShowOptions& options);
 /// Throws UsageError for what cannot be shown with or without a map.
 void check_shown_map(const ViewOptions& view, bool has_map, bool atlas);
+/// Likewise at the pixels of the picture.
+void check_shown_pixels(const ViewOptions& view, bool atlas);
 [[nodiscard]] UpAxis up_axis_of(const ShowOptions& options);
 
 }  // namespace surfelao

@@ -86,6 +86,14 @@ glm::mat4 projection_matrix(const Camera& camera, float aspect, float near, floa
 // the picture when  x - cx <= tx (d - z),  and inside the left one when  cx - x <= tx (d - z):
 //     cx + tx d >= max(x + tx z) = a        -cx + tx d >= max(-x + tx z) = b
 // The nearest camera that satisfies both has  tx d = (a + b) / 2  and  cx = (a - b) / 2.
+glm::vec2 sample_shift(int index)
+{
+    // 1 / g and 1 / g^2 with g^3 = g + 1
+    const glm::dvec2 step(0.7548776662466927, 0.5698402909980532);
+    const glm::dvec2 place = glm::fract(glm::dvec2(0.5) + step * static_cast<double>(index));
+    return glm::vec2(place - 0.5);
+}
+
 Camera frame_points(std::span<const glm::vec3> points, UpAxis up, float aspect,
                     const ViewDirection& direction, float fovy_deg)
 {

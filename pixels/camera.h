@@ -39,6 +39,13 @@ struct CameraAxes {
 [[nodiscard]] glm::mat4 projection_matrix(const Camera& camera, float aspect, float near, float far,
                                           glm::vec2 shift = glm::vec2(0.0f));
 
+/// Where inside a pixel the sample of that index lies, -0.5 to 0.5: any first n of them are spread
+/// evenly, and the first is the middle.
+///
+/// Based on:
+///   Roberts. The Unreasonable Effectiveness of Quasirandom Sequences. 2018 (R2)
+[[nodiscard]] glm::vec2 sample_shift(int index);
+
 /// From where to look when nothing is said: a little from the side and from above.
 struct ViewDirection {
     float azimuth_deg = 30.0f;    ///< 0 = from +z (up y) or from -y (up z); grows counter-clockwise

@@ -3,34 +3,12 @@
 #include "surfels/stopwatch.h"
 
 namespace surfelao {
-namespace {
-
-/// The same scale, so many pixels wider on each side.
 View widened(View view, PictureSize size, int guard)
 {
     view.lens = part_of(view.lens, size.width, size.height,
                         {-guard, -guard, size.width + 2 * guard, size.height + 2 * guard});
     return view;
 }
-
-/// The picture's pixels alone.
-std::vector<std::uint32_t> inner(const std::vector<std::uint32_t>& values, PictureSize size,
-                                 int guard)
-{
-    if (guard == 0)
-        return values;
-    std::vector<std::uint32_t> result;
-    const auto columns = static_cast<std::size_t>(size.width + 2 * guard);
-    for (int y = 0; y < size.height; ++y) {
-        const std::size_t first =
-            static_cast<std::size_t>(y + guard) * columns + static_cast<std::size_t>(guard);
-        const auto from = values.begin() + static_cast<std::ptrdiff_t>(first);
-        result.insert(result.end(), from, from + size.width);
-    }
-    return result;
-}
-
-}  // namespace
 
 std::string name_of(const PixelEngine& engine)
 {

@@ -27,6 +27,24 @@ struct PictureSize {
     bool operator==(const PictureSize&) const = default;
 };
 
+/// The same scale, so many pixels wider on each side.
+[[nodiscard]] View widened(View view, PictureSize size, int guard);
+/// Of the pixels of a widened view those of the picture alone.
+template <class T>
+[[nodiscard]] std::vector<T> inner(std::vector<T> values, PictureSize size, int guard)
+{
+    if (guard == 0)
+        return values;
+    const auto columns = static_cast<std::size_t>(size.width + 2 * guard);
+    const auto edge = static_cast<std::size_t>(guard);
+    std::vector<T> result;
+    for (std::size_t y = edge; y < edge + static_cast<std::size_t>(size.height); ++y) {
+        const auto from = values.begin() + static_cast<std::ptrdiff_t>(y * columns + edge);
+        result.insert(result.end(), from, from + size.width);
+    }
+    return result;
+}
+
 /// A mesh as one camera sees it: what all answers at the same pixels share.
 class PixelView {
 public:

@@ -44,6 +44,21 @@ View view_of(const Camera& camera, int width, int height)
     return {camera.eye, axes.right, axes.upwards, -axes.backwards, {-half, half, false}};
 }
 
+std::vector<glm::vec3> framed_points(const Geometry& geometry)
+{
+    std::vector<bool> is_used(geometry.positions.size(), false);
+    for (const glm::uvec3 triangle : geometry.triangles) {
+        for (int corner = 0; corner < 3; ++corner)
+            is_used[triangle[corner]] = true;
+    }
+    std::vector<glm::vec3> points;
+    for (std::size_t v = 0; v < is_used.size(); ++v) {
+        if (is_used[v])
+            points.push_back(geometry.positions[v]);
+    }
+    return points.empty() ? geometry.positions : points;
+}
+
 // As in shaders/g_surface.frag, with doubles: a grazing triangle leaves few digits.
 SurfacePoint point_on_ray(const Geometry& geometry, const View& view, const PixelRay& ray,
                           std::uint32_t triangle)

@@ -19,6 +19,9 @@ namespace surfelao {
 /// width, height: of the picture, in pixels.
 [[nodiscard]] View view_of(const Camera& camera, int width, int height);
 
+/// Positions that triangles use, all where there are no triangles: what a camera frames.
+[[nodiscard]] std::vector<glm::vec3> framed_points(const Geometry& geometry);
+
 /// Where a ray of view space meets a triangle's plane, moved into the triangle where rounding, or a
 /// pixel at its very edge, puts it beside it.
 [[nodiscard]] SurfacePoint point_on_ray(const Geometry& geometry, const View& view,

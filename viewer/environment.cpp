@@ -16,6 +16,7 @@ namespace surfelao {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kKey = 0.55f;  // automatic exposure: what an average upward normal receives
 
 /// Averages boxes of source pixels; every source pixel counts with its share of the box.
 Image box_shrink(const Image& source, int width, int height)
@@ -127,6 +128,29 @@ Image irradiance_map(const Image& panorama)
         }
     }
     return result;
+}
+
+float automatic_exposure(const Image& irradiance)
+{
+    double sum = 0.0;
+    for (int y = 0; y < irradiance.height / 2; ++y)
+        for (int x = 0; x < irradiance.width; ++x)
+            sum += glm::dot(glm::vec3(irradiance.at(x, y)), glm::vec3(0.2126f, 0.7152f, 0.0722f));
+    const double mean = sum / (0.5 * irradiance.width * irradiance.height);
+    return mean > 0.0 ? static_cast<float>(kKey / mean) : 1.0f;
+}
+
+glm::mat3 sky_frame(glm::vec3 up)
+{
+    // up z: x stays, z becomes y, y becomes -z
+    return up.z > 0.5f ? glm::mat3(glm::vec3(1, 0, 0), glm::vec3(0, 0, -1), glm::vec3(0, 1, 0))
+                       : glm::mat3(1.0f);
+}
+
+glm::vec3 soften(glm::vec3 light)
+{
+    const glm::vec3 over = glm::max(light - 0.6f, 0.0f);
+    return glm::min(light, glm::vec3(0.6f)) + 0.4f * (1.0f - glm::exp(-over / 0.4f));
 }
 
 }  // namespace surfelao

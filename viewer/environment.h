@@ -7,6 +7,7 @@
 
 #include "image/image.h"
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -30,5 +31,15 @@ namespace surfelao {
 
 /// The panorama averaged over boxes to at most that width, for backgrounds; height to match.
 [[nodiscard]] Image shrink_panorama(const Image& panorama, int max_width);
+
+/// Exposure by itself: one over what a surface that faces the sky receives, in the middle; 1 for a
+/// map that is black.
+[[nodiscard]] float automatic_exposure(const Image& irradiance);
+
+/// Model to panorama directions.
+[[nodiscard]] glm::mat3 sky_frame(glm::vec3 up);
+
+/// Rolls bright light off towards 1: twin of shaders/panorama.glsl.
+[[nodiscard]] glm::vec3 soften(glm::vec3 light);
 
 }  // namespace surfelao

@@ -1,6 +1,7 @@
 #include "viewer/model.h"
 
 #include "bake/surface_error.h"
+#include "pixels/seen.h"
 #include "surfels/surfel.h"
 #include "tree/disks/octree.h"
 
@@ -226,16 +227,7 @@ Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings, float lar
     model.up = up;
     const Geometry& g = model.geometry();
 
-    std::vector<bool> is_seen(g.positions.size(), false);
-    for (const glm::uvec3 triangle : g.triangles)
-        for (int corner = 0; corner < 3; ++corner)
-            is_seen[triangle[corner]] = true;
-    for (std::size_t v = 0; v < g.positions.size(); ++v) {
-        if (is_seen[v])
-            model.seen.push_back(g.positions[v]);
-    }
-    if (model.seen.empty())
-        model.seen = g.positions;
+    model.seen = framed_points(g);
 
     for (std::uint32_t v = 0; v < g.positions.size(); ++v) {
         if (g.areas[v] > 0.0f)

@@ -25,7 +25,6 @@ namespace {
 
 constexpr int kMaxSkyWidth = 1024;      // the background is out of focus: more would not be seen
 constexpr float kSkyBlurWidth = 64.0f;  // columns of the panorama that can still be told apart
-constexpr float kKey = 0.55f;  // automatic exposure: what an average upward normal receives
 constexpr float kNearest =
     1e-4f;                     // near plane as a share of the far one, for eyes inside the scene
 constexpr float kPush = 0.3f;  // of a splat's radius: how far apart overlapping disks may lie
@@ -160,25 +159,6 @@ Texture2D upload_heat_colors(const GlContext& context)
     for (int x = 0; x < 256; ++x)
         row.at(x, 0) = glm::vec4(heat_colors()[static_cast<std::size_t>(x)], 1.0f);
     return upload_image(context, row, {.filter = TextureFilter::linear});
-}
-
-/// One over what a surface that faces the sky receives, in the middle: 1 for a map that is black.
-float automatic_exposure(const Image& irradiance)
-{
-    double sum = 0.0;
-    for (int y = 0; y < irradiance.height / 2; ++y)
-        for (int x = 0; x < irradiance.width; ++x)
-            sum += glm::dot(glm::vec3(irradiance.at(x, y)), glm::vec3(0.2126f, 0.7152f, 0.0722f));
-    const double mean = sum / (0.5 * irradiance.width * irradiance.height);
-    return mean > 0.0 ? static_cast<float>(kKey / mean) : 1.0f;
-}
-
-/// Model to panorama directions.
-glm::mat3 sky_frame(glm::vec3 up)
-{
-    // up z: x stays, z becomes y, y becomes -z
-    return up.z > 0.5f ? glm::mat3(glm::vec3(1, 0, 0), glm::vec3(0, 0, -1), glm::vec3(0, 1, 0))
-                       : glm::mat3(1.0f);
 }
 
 }  // namespace
@@ -485,12 +465,12 @@ void Renderer::draw_frame(const Framebuffer& target, const Camera& camera,
     }
 }
 
-glm::vec2 sample_shift(int index)
+void Renderer::draw_background(const Framebuffer& target, const Camera& camera,
+                               const ViewOptions& options)
 {
-    // 1 / g and 1 / g^2 with g^3 = g + 1
-    const glm::dvec2 step(0.7548776662466927, 0.5698402909980532);
-    const glm::dvec2 place = glm::fract(glm::dvec2(0.5) + step * static_cast<double>(index));
-    return glm::vec2(place - 0.5);
+    const float aspect = static_cast<float>(target.width()) / static_cast<float>(target.height());
+    impl_->draw_background({target, camera, options, view_matrix(camera),
+                            projection_matrix(camera, aspect, 0.1f, 1.0f)});
 }
 
 struct SampleSum::Impl {

@@ -6,9 +6,9 @@
 #include "gpu/context.h"
 #include "gpu/objects.h"
 #include "image/image.h"
+#include "pixels/camera.h"
 #include "surfels/occlusion.h"
 #include "viewer/base_paint.h"
-#include "pixels/camera.h"
 #include "viewer/model.h"
 #include "viewer/model_map.h"
 #include "viewer/view_options.h"
@@ -60,17 +60,14 @@ public:
     void draw_frame(const Framebuffer& target, const Camera& camera, const ViewOptions& options,
                     glm::vec2 shift = glm::vec2(0.0f));
 
+    /// The background alone; no model is needed.
+    void draw_background(const Framebuffer& target, const Camera& camera,
+                         const ViewOptions& options);
+
 private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
-
-/// Where inside a pixel the sample of that index lies, -0.5 to 0.5: any first n of them are spread
-/// evenly, and the first is the middle.
-///
-/// Based on:
-///   Roberts. The Unreasonable Effectiveness of Quasirandom Sequences. 2018 (R2)
-[[nodiscard]] glm::vec2 sample_shift(int index);
 
 /// The sum of several drawings of one size, and their mean.
 class SampleSum {

@@ -1,0 +1,285 @@
+#include "pixels/pixel_picture.h"
+
+#include "surfels/errors.h"
+#include "surfels/stopwatch.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace surfelao {
+namespace {
+
+constexpr std::size_t kPaintGrain = 4096;  // receivers of one task
+
+/// A part of the picture that is answered at once.
+struct Band {
+    Rect rect;
+    View view;  ///< of the part
+};
+
+/// From the bottom, rows of as many parts as the device's pictures are narrower.
+std::vector<Band> bands_of(const View& view, const PixelPictureSettings& settings, int largest)
+{
+    const PictureSize size = settings.size;
+    const int most = std::max(1, largest - 2 * settings.guard);
+    const int width = std::min(size.width, most);
+    const int height =
+        std::clamp(static_cast<int>(settings.band_pixels) / width, 1, std::min(size.height, most));
+    std::vector<Band> bands;
+    for (int y = 0; y < size.height; y += height) {
+        for (int x = 0; x < size.width; x += width) {
+            const Rect rect{x, y, std::min(width, size.width - x),
+                            std::min(height, size.height - y)};
+            Band& band = bands.emplace_back(Band{rect, view});
+            band.view.lens = part_of(view.lens, size.width, size.height, rect);
+        }
+    }
+    return bands;
+}
+
+/// The answers of one list of receivers.
+struct Answers {
+    std::vector<Occlusion> values, references;
+};
+
+/// What the receivers of each pixel add up to.
+class PixelSums {
+public:
+    explicit PixelSums(PictureSize size)
+        : size_(size),
+          sums_(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height))
+    {
+    }
+
+    /// colors: one for each share.
+    void add(std::span<const PixelSamples::Share> shares, std::span<const glm::vec3> colors)
+    {
+        for (std::size_t i = 0; i < shares.size(); ++i)
+            sums_[shares[i].pixel] +=
+                glm::vec4(colors[i] * shares[i].base, static_cast<float>(shares[i].samples));
+    }
+
+    /// Means of what is covered, and its share of all samples.
+    void put_into(Image& image, const Rect& rect, int samples) const
+    {
+        for (int y = 0; y < size_.height; ++y) {
+            for (int x = 0; x < size_.width; ++x) {
+                const glm::vec4 sum = sums_[static_cast<std::size_t>(y * size_.width + x)];
+                if (sum.w > 0.0f)
+                    image.at(rect.x + x, image.height - 1 - rect.y - y) = {
+                        glm::vec3(sum) / sum.w, sum.w / static_cast<float>(samples)};
+            }
+        }
+    }
+
+private:
+    PictureSize size_;
+    std::vector<glm::vec4> sums_;
+};
+
+class PictureMaker {
+public:
+    PictureMaker(const GlContext& context, const Mesh& mesh, const DrawnMesh& drawn,
+                 Occluders& occluders, const PixelPictureSettings& settings,
+                 const PixelPaint& paint, const StageProgress& progress)
+        : context_(context),
+          mesh_(mesh),
+          drawn_(drawn),
+          occluders_(occluders),
+          settings_(settings),
+          paint_(paint),
+          progress_(progress),
+          parts_(parts_of(mesh)),
+          screen_(context)
+    {
+    }
+
+    PixelPicture make(const View& view)
+    {
+        picture_.image = Image(settings_.size.width, settings_.size.height);
+        const std::vector<Band> bands = bands_of(view, settings_, context_.info().max_texture_size);
+        picture_.bands = static_cast<int>(bands.size());
+        prepare();
+        for (band_ = 0; band_ < bands.size(); ++band_)
+            make_band(bands[band_]);
+        return std::move(picture_);
+    }
+
+private:
+    /// How far a stage is, of all bands.
+    [[nodiscard]] Progress stage(std::string_view name) const
+    {
+        if (!progress_)
+            return {};
+        return [this, name](double done) {
+            return progress_(name, (static_cast<double>(band_) + done) / picture_.bands);
+        };
+    }
+
+    /// An engine that runs on the device uses our context, which stays current.
+    [[nodiscard]] EngineSettings here(EngineSettings engine) const
+    {
+        if (engine.device == Device::gpu)
+            engine.context = &context_;
+        engine.definition = settings_.definition;
+        return engine;
+    }
+    [[nodiscard]] EngineSettings rays() const
+    {
+        EngineSettings engine{{.engine = Engine::rays}, {.rays = *settings_.reference_rays}};
+        return here(engine);
+    }
+
+    void prepare()
+    {
+        Stopwatch watch;
+        if (!settings_.engine)
+            return;
+        if (const auto* engine = std::get_if<EngineSettings>(&*settings_.engine))
+            static_cast<void>(occluders_.prepared_for(here(*engine)));
+        picture_.prepare_s = watch.lap();
+    }
+
+    /// What the engine of the scene says of them, or nothing.
+    std::vector<Occlusion> solved(std::span<const Receiver> receivers, const Progress& progress)
+    {
+        if (!settings_.engine || std::holds_alternative<ScreenSettings>(*settings_.engine))
+            return std::vector<Occlusion>(receivers.size());
+        const EngineSettings engine = here(std::get<EngineSettings>(*settings_.engine));
+        return solve(occluders_.prepared_for(engine), receivers, engine, progress).occlusion;
+    }
+
+    std::vector<Occlusion> referenced(std::span<const Receiver> receivers, const Progress& progress)
+    {
+        if (!settings_.reference_rays)
+            return {};
+        Stopwatch watch;
+        const EngineSettings engine = rays();
+        std::vector<Occlusion> values =
+            solve(occluders_.prepared_for(engine), receivers, engine, progress).occlusion;
+        picture_.reference_s += watch.lap();
+        return values;
+    }
+
+    [[nodiscard]] const ScreenSettings* on_screen() const
+    {
+        return settings_.engine ? std::get_if<ScreenSettings>(&*settings_.engine) : nullptr;
+    }
+
+    /// What the picture's method finds at those of the pixels that the G-buffer was drawn for.
+    template <class Pixels>
+    void put_screen(const GBuffer& drawing, PictureSize size, const Pixels& pixels,
+                    std::span<Occlusion> values)
+    {
+        const Framebuffer target = screen_.make_target(drawing);
+        screen_.draw(drawing, *on_screen(), settings_.definition, target);
+        const std::vector<float> occlusion =
+            inner(target.read_red(target.rect()), size, settings_.guard);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            values[i].occlusion = occlusion[pixels(i)];
+    }
+
+    void make_band(const Band& band)
+    {
+        const PictureSize size{band.rect.width, band.rect.height};
+        GBuffer drawing(context_, size.width + 2 * settings_.guard,
+                        size.height + 2 * settings_.guard);
+        const auto see = [&](const View& view) {
+            const View wide = widened(view, size, settings_.guard);
+            if (on_screen())
+                drawing.draw(drawn_, wide);
+            else
+                drawing.draw_triangles(drawn_, wide);
+            return inner(drawing.read_triangles(), size, settings_.guard);
+        };
+        Stopwatch watch;
+        const SeenPixels seen = seen_pixels(mesh_, band.view, size.width, size.height,
+                                            see(band.view), settings_.offset);
+        picture_.middles += seen.pixels.size();
+        picture_.see_s += watch.lap();
+
+        Answers middles{solved(seen.receivers, stage("solve")), {}};
+        if (on_screen())
+            put_screen(
+                drawing, size, [&](std::size_t i) { return seen.pixels[i]; }, middles.values);
+        picture_.solve_s += watch.lap();
+
+        PixelSamples samples(mesh_, parts_, seen, paint_.base);
+        Answers extras;
+        ProgressMeter meter(stage("edges"), static_cast<std::uint64_t>(settings_.samples) - 1);
+        for (int i = 1; i < settings_.samples; ++i) {
+            View view = band.view;
+            view.lens = shifted(view.lens, size.width, size.height, sample_shift(i));
+            const std::size_t added = samples.add(view, see(view));
+            const std::size_t before = extras.values.size();
+            extras.values.resize(before + added);
+            if (on_screen())
+                put_screen(
+                    drawing, size,
+                    [&](std::size_t k) { return samples.extras()[before + k].pixel; },
+                    std::span(extras.values).subspan(before));
+            meter.add(1);
+        }
+        const std::vector<Receiver> extra_receivers =
+            receivers_facing(mesh_, band.view, samples.extra_points(), settings_.offset);
+        if (!on_screen())
+            extras.values = solved(extra_receivers, {});
+        picture_.extras += extra_receivers.size();
+        picture_.edge_pixels += samples.edge_pixels();
+        picture_.edges_s += watch.lap();
+
+        middles.references = referenced(seen.receivers, stage("reference"));
+        extras.references = referenced(extra_receivers, {});
+        watch.lap();
+        PixelSums sums(size);
+        sums.add(samples.middles(), colors_of(seen.receivers, middles));
+        sums.add(samples.extras(), colors_of(extra_receivers, extras));
+        sums.put_into(picture_.image, band.rect, settings_.samples);
+        picture_.paint_s += watch.lap();
+    }
+
+    [[nodiscard]] std::vector<glm::vec3> colors_of(std::span<const Receiver> receivers,
+                                                   const Answers& answers) const
+    {
+        const std::vector<Occlusion>& references =
+            answers.references.empty() ? answers.values : answers.references;
+        std::vector<glm::vec3> colors(receivers.size());
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, receivers.size(), kPaintGrain),
+            [&](const tbb::blocked_range<std::size_t>& range) {
+                for (std::size_t i = range.begin(); i < range.end(); ++i)
+                    colors[i] = paint_.color({receivers[i], answers.values[i], references[i]});
+            });
+        return colors;
+    }
+
+    const GlContext& context_;
+    const Mesh& mesh_;
+    const DrawnMesh& drawn_;
+    Occluders& occluders_;
+    const PixelPictureSettings& settings_;
+    const PixelPaint& paint_;
+    const StageProgress& progress_;
+    std::vector<std::uint32_t> parts_;
+    ScreenSpace screen_;
+    PixelPicture picture_;
+    std::size_t band_ = 0;
+};
+
+}  // namespace
+
+PixelPicture pixel_picture(const GlContext& context, const Mesh& mesh, const DrawnMesh& drawn,
+                           Occluders& occluders, const View& view,
+                           const PixelPictureSettings& settings, const PixelPaint& paint,
+                           const StageProgress& progress)
+{
+    require(settings.size.width >= 1 && settings.size.height >= 1,
+            "a picture has one pixel at least");
+    require(settings.samples >= 1, "samples: one a pixel at least");
+    return PictureMaker(context, mesh, drawn, occluders, settings, paint, progress).make(view);
+}
+
+}  // namespace surfelao

@@ -1,0 +1,119 @@
+#include "viewer/pixel_paint.h"
+
+#include "image/color_map.h"
+#include "surfels/errors.h"
+#include "surfels/srgb.h"
+#include "viewer/environment.h"
+#include "viewer/renderer.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace surfelao {
+namespace {
+
+constexpr float kAlbedo = 0.80f;          // of the model in the environment, as in shading.glsl
+constexpr int kLargestBackground = 2048;  // pixels each way: it is smooth, and stretched beyond
+
+glm::vec3 direction_number(glm::vec3 direction)
+{
+    return 0.5f + 0.5f * direction;
+}
+
+/// Light from all around, along a bent normal.
+class SkyLight {
+public:
+    SkyLight(const ViewOptions& options, UpAxis up, const Image* panorama)
+        : irradiance_(irradiance_map(panorama ? *panorama : builtin_sky())),
+          frame_(sky_frame(up_direction(up))),
+          exposure_(automatic_exposure(irradiance_) * std::exp2(options.exposure))
+    {
+    }
+    [[nodiscard]] glm::vec3 operator()(const AnsweredPixel& pixel) const
+    {
+        // methods that know no bent normal leave the receiver's own
+        const glm::vec3 bent = pixel.value.bent_normal == glm::vec3(0.0f) ? pixel.receiver.normal
+                                                                          : pixel.value.bent_normal;
+        const glm::vec3 light(sample_panorama(irradiance_, panorama_uv(frame_ * bent)));
+        return soften(kAlbedo * (1.0f - pixel.value.occlusion) * exposure_ * light);
+    }
+
+private:
+    Image irradiance_;
+    glm::mat3 frame_;
+    float exposure_;
+};
+
+}  // namespace
+
+PixelPaint pixel_paint(const ViewOptions& options, UpAxis up, const Image* panorama,
+                       const BasePaint* paint)
+{
+    const auto visibility = [](const AnsweredPixel& pixel) {
+        return glm::vec3(1.0f - pixel.value.occlusion);
+    };
+    switch (options.colors) {
+        case Colors::rays:
+            return {[](const AnsweredPixel& pixel) {
+                return glm::vec3(1.0f - pixel.reference.occlusion);
+            }};
+        case Colors::difference:
+            return {[scale = options.difference_scale](const AnsweredPixel& pixel) {
+                return heat_color(std::abs(pixel.value.occlusion - pixel.reference.occlusion) /
+                                  scale);
+            }};
+        case Colors::bent_normals:
+            return {[](const AnsweredPixel& pixel) {
+                return direction_number(pixel.value.bent_normal);
+            }};
+        case Colors::normals:
+            return {
+                [](const AnsweredPixel& pixel) { return direction_number(pixel.receiver.normal); }};
+        case Colors::environment:
+            return {SkyLight(options, up, panorama)};
+        case Colors::textured:
+            SURFELAO_CHECK(paint != nullptr);
+            return {visibility,
+                    [paint](const SurfacePoint& point) { return paint_at(*paint, point); }};
+        default:
+            return {visibility};
+    }
+}
+
+void show_numbers(Image& image)
+{
+    for (glm::vec4& pixel : image.pixels) {
+        for (int c = 0; c < 3; ++c)
+            pixel[c] = srgb_decode(pixel[c]);
+    }
+}
+
+void put_on_background(const GlContext& context, Image& image, const Camera& camera,
+                       const ViewOptions& options, const Image* panorama)
+{
+    Renderer renderer(context);
+    if (panorama)
+        renderer.set_environment(*panorama);
+    const int width = std::min(image.width, kLargestBackground);
+    const int height = std::min(image.height, kLargestBackground);
+    const Framebuffer target = renderer.make_target(width, height);
+    renderer.draw_background(target, camera, options);
+    const std::vector<glm::vec4> background = target.read_color(target.rect());
+    for (int y = 0; y < image.height; ++y) {
+        const int row = height - 1 - y * height / image.height;  // row 0 of targets is the bottom
+        for (int x = 0; x < image.width; ++x) {
+            const int column = x * width / image.width;
+            glm::vec4& pixel = image.at(x, y);
+            pixel = glm::vec4(
+                glm::mix(glm::vec3(background[static_cast<std::size_t>(row * width + column)]),
+                         glm::vec3(pixel), pixel.a),
+                1.0f);
+        }
+    }
+}
+
+}  // namespace surfelao

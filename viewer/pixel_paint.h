@@ -1,0 +1,35 @@
+/// pixel_paint.h: the colours of a picture whose pixels are asked themselves
+/// (pixels/pixel_picture.h): twins of shaders/shading.glsl.
+#pragma once
+
+#include "gpu/context.h"
+#include "image/image.h"
+#include "pixels/camera.h"
+#include "pixels/pixel_picture.h"
+#include "viewer/base_paint.h"
+#include "viewer/view_options.h"
+
+namespace surfelao {
+
+/// Whether a picture of these colours is numbers, not light: visibility as it is, directions as (n
+/// + 1) / 2.
+[[nodiscard]] constexpr bool shows_numbers(Colors colors)
+{
+    return colors == Colors::visibility || colors == Colors::rays ||
+           colors == Colors::bent_normals || colors == Colors::normals;
+}
+
+/// Numbers for shows_numbers(), else display-referred linear light: the lit picture times the
+/// visibility. panorama: for Colors::environment; null = builtin_sky(). paint: for
+/// Colors::textured; what it returns refers to it. Colors that need a map or levels are no choice.
+[[nodiscard]] PixelPaint pixel_paint(const ViewOptions& options, UpAxis up, const Image* panorama,
+                                     const BasePaint* paint);
+
+/// Numbers as light that a screen shows as these numbers.
+void show_numbers(Image& image);
+
+/// Puts the picture on render()'s background: opaque then.
+void put_on_background(const GlContext& context, Image& image, const Camera& camera,
+                       const ViewOptions& options, const Image* panorama);
+
+}  // namespace surfelao
