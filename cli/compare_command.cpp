@@ -235,6 +235,31 @@ void check(const CompareOptions& options)
     files.writes_report(options.csv, "--csv");
 }
 
+/// What is right, and how often everything runs.
+void add_run_options(CLI::App& command, CompareOptions& options)
+{
+    command
+        .add_option("--reference-rays", options.reference_rays,
+                    "Rays per surface point or pixel of the reference, an even number")
+        ->check(CLI::Range(2u, kMostRays))
+        ->type_name("N")
+        ->default_str("4096; at pixels 256");
+    command
+        .add_option("--sample", options.sample,
+                    "Take errors at N points of the surface (times are of all receivers)")
+        ->check(CLI::Range(std::uint64_t{1}, kMostSample))
+        ->type_name("N")
+        ->default_str(std::to_string(kSurfacePoints));
+    command.add_option("--rounds", options.rounds, "Runs of every engine, in turns; medians count")
+        ->check(CLI::Range(1, 99))
+        ->type_name("N")
+        ->capture_default_str();
+    command.add_flag("--no-cache", options.no_cache,
+                     "Trace the reference even if the same one was kept from before");
+    command.add_flag("--avx2", options.avx2,
+                     "Limit masks and rays to AVX2 instructions, which most machines have");
+}
+
 }  // namespace
 
 std::vector<std::string> qualities_of(const CompareOptions& options)
@@ -295,27 +320,7 @@ void add_compare_command(CLI::App& app, Work& work)
     add_layout_options(*command, options->texels, kShownMaps);
     add_part_options(*command, options->parts);
     add_pixel_table_options(*command, options->pixels);
-    command
-        ->add_option("--reference-rays", options->reference_rays,
-                     "Rays per surface point or pixel of the reference, an even number")
-        ->check(CLI::Range(2u, kMostRays))
-        ->type_name("N")
-        ->default_str("4096; at pixels 256");
-    command
-        ->add_option("--sample", options->sample,
-                     "Take errors at N points of the surface (times are of all receivers)")
-        ->check(CLI::Range(std::uint64_t{1}, kMostSample))
-        ->type_name("N")
-        ->default_str(std::to_string(kSurfacePoints));
-    command
-        ->add_option("--rounds", options->rounds, "Runs of every engine, in turns; medians count")
-        ->check(CLI::Range(1, 99))
-        ->type_name("N")
-        ->capture_default_str();
-    command->add_flag("--no-cache", options->no_cache,
-                      "Trace the reference even if the same one was kept from before");
-    command->add_flag("--avx2", options->avx2,
-                      "Limit masks and rays to AVX2 instructions, which most machines have");
+    add_run_options(*command, *options);
     command->add_option("--json", options->json, "Write all figures; - = standard output")
         ->type_name("FILE");
     command->add_option("--csv", options->csv, "Write the rows as CSV; - = standard output")

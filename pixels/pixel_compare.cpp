@@ -271,7 +271,8 @@ PixelComparison compare_pixels(const Mesh& mesh, const PixelCompareSettings& set
 
     const float aspect =
         static_cast<float>(settings.size.width) / static_cast<float>(settings.size.height);
-    const CameraWishes wishes{.points = mesh.geometry.positions,
+    const std::vector<glm::vec3> framed = framed_points(mesh.geometry);
+    const CameraWishes wishes{.points = framed,
                               .frame_centre = frame.centre,
                               .frame_diagonal = frame.diagonal,
                               .up = settings.up,
