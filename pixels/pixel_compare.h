@@ -166,7 +166,8 @@ inline constexpr float kFullPixelError = 0.25f;
 /// One line of names, then one line per row, then the means, whose camera is "mean".
 [[nodiscard]] std::string csv_of(const PixelComparison& comparison);
 
-/// For people: means, then the rows of each camera; of a sweep its values, the best marked.
+/// For people: means of several cameras, then the rows of each; of a sweep its values, the best
+/// marked.
 [[nodiscard]] std::string table_of(const PixelComparison& comparison);
 
 /// A page of its own: settings, table, and of each camera a strip of pictures: rays, each engine,

@@ -162,13 +162,16 @@ std::string csv_of(const PixelComparison& comparison)
 
 std::string table_of(const PixelComparison& comparison)
 {
-    std::string text = settings_text(comparison) + "\n\n" + means_text(comparison) + '\n';
+    std::string text = settings_text(comparison) + '\n';
     if (comparison.sweep)
-        return text + sweep_table(comparison, *comparison.sweep);
-    Table means(kPixelColumns);
-    for (const PixelMean& mean : comparison.means)
-        means.add(cells_of(mean.engine, mean.error, mean.ms));
-    text += means.text();
+        return text + '\n' + means_text(comparison) + '\n' +
+               sweep_table(comparison, *comparison.sweep);
+    if (comparison.cameras.size() > 1) {
+        Table means(kPixelColumns);
+        for (const PixelMean& mean : comparison.means)
+            means.add(cells_of(mean.engine, mean.error, mean.ms));
+        text += '\n' + means_text(comparison) + '\n' + means.text();
+    }
     for (std::size_t camera = 0; camera < comparison.cameras.size(); ++camera) {
         Table table(kPixelColumns);
         for (const PixelRow& row : rows_at(comparison, camera))
