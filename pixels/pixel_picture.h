@@ -28,10 +28,10 @@ namespace surfelao {
 inline constexpr std::uint32_t kBandPixels = 2'000'000;
 
 struct PixelPictureSettings {
-    PictureSize size;                   ///< each way at least 1, of any size
-    int samples = 16;                   ///< >= 1 a pixel: 1 = its middle alone
-    std::optional<PixelEngine> engine;  ///< none: nothing is asked, all is open
-    Definition definition;
+    PictureSize size = {};                   ///< each way at least 1, of any size
+    int samples = 16;                        ///< >= 1 a pixel: 1 = its middle alone
+    std::optional<PixelEngine> engine = {};  ///< none: nothing is asked, all is open
+    Definition definition = {};
     std::optional<std::uint32_t> reference_rays = {};  ///< ask them too; an even number
     Offset offset = {};
     int guard = 0;  ///< pixels beyond each edge, for screen-space methods

@@ -28,14 +28,14 @@ def sets(settings):
 def runs(trial):
     """(name, options) of each comparison of a model."""
     small = ("--width", 64, "--height", 36)
-    full = small if trial else ()
-    # a thousand reads a pixel take seconds on software: pictures of half the size, once
-    half = small if trial else ("--width", 640, "--height", 360)
+    full = small if trial else ("--width", 960, "--height", 540)
+    # a thousand reads a pixel take seconds on software: smaller pictures, once
+    smaller = small if trial else ("--width", 640, "--height", 360)
     most = 64 if trial else 1024
     return (("origin", [*full, "--engines", ",".join(ORIGIN), "--taps", "8,16,24", *sets(AS_THERE)]),
             ("ours", [*full, "--engines", "masks,rays," + ",".join(ORIGIN) + ",gtao,bitmask",
-                      "--qualities", "draft,good", "--rays", "64", "--taps", "8,16,24"]),
-            ("limit", [*half, "--engines", "masks," + ",".join(ORIGIN) + ",gtao,bitmask",
+                      "--qualities", "draft,good", "--rays", "64", "--taps", "8,24"]),
+            ("limit", [*smaller, "--engines", "masks," + ",".join(ORIGIN) + ",gtao,bitmask",
                        "--qualities", "good", "--taps", most, "--rounds", 1]))
 
 
