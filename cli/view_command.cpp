@@ -2,6 +2,7 @@
 #include "cli/engine_options.h"
 #include "cli/interrupt.h"
 #include "cli/part_options.h"
+#include "cli/pixel_options.h"
 #include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "cli/view_options.h"
@@ -16,6 +17,10 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
 
 namespace surfelao {
 namespace {
@@ -26,6 +31,7 @@ struct ViewCommandOptions {
     std::string camera;
     ShowOptions show;
     EngineOptions engine;
+    PixelOptions pixels;
     MeasureOptions measure;
     SurfaceOptions surface;
     TexelOptions texels;
@@ -33,6 +39,51 @@ struct ViewCommandOptions {
     bool atlas = false;
     std::optional<int> threads;
 };
+
+/// Of the picture; the engine of the scene where it is that one.
+std::optional<ScreenSettings> screen_of(const ViewCommandOptions& options)
+{
+    const PixelEngine engine = pixel_engine_of(options.engine, options.pixels);
+    const auto* screen = std::get_if<ScreenSettings>(&engine);
+    return screen ? std::optional(*screen) : std::nullopt;
+}
+
+/// What the window begins with. Throws UsageError.
+Cell cell_of(const ViewCommandOptions& options)
+{
+    Cell cell;
+    cell.from_maps = is_at_cube_maps(options.texels);
+    cell.at_pixels = is_at_pixels(options.texels) || cell.from_maps;
+    if (is_at_pixels(options.texels))
+        cell.screen = screen_of(options);
+    if (!cell.screen)
+        cell.settings.engine = settings_of(options.engine);
+    cell.settings.max_distance = distance_limit_of(options.measure);
+    cell.settings.target = target_settings_of(options.surface, options.show.up);
+    cell.settings.texels = shown_texels_of(options.texels);
+    cell.settings.parts = part_choice_of(options.parts);
+    cell.settings.ground = ground_plane_of(options.measure, options.show.up);
+    return cell;
+}
+
+void check_view(const ViewCommandOptions& options)
+{
+    const std::string engine = options.engine.engine.value_or("masks");
+    check_pixel_options(std::span(&engine, 1), options.pixels, options.texels, options.measure);
+    if (options.pixels.guard)
+        throw UsageError("--guard is for render and compare.");
+    const Cell cell = cell_of(options);
+    const ViewOptions view = view_options_of(options.show);
+    if (cell.at_pixels)
+        check_shown_pixels(view, options.atlas, cell.from_maps);
+    else
+        check_shown_map(view, cell.settings.texels.has_value(), options.atlas);
+    const DistanceLimit& distance = cell.settings.max_distance;
+    if (std::isfinite(distance.value) && !distance.percent)
+        throw UsageError("--max-distance of a window is in % of the diagonal (10%).");
+    if (kernel_of(options.measure) != Kernel::cosine)
+        throw UsageError("--kernel bunnell is not for a window: compare and bake know it.");
+}
 
 int run(const ViewCommandOptions& options)
 {
@@ -53,12 +104,7 @@ int run(const ViewCommandOptions& options)
     if (!options.input.empty() && !std::filesystem::exists(options.input))
         throw InputError(options.input + ": no such file");
 
-    window.panel.settings = {settings_of(options.engine),
-                             distance_limit_of(options.measure),
-                             target_settings_of(options.surface, options.show.up),
-                             shown_texels_of(options.texels),
-                             part_choice_of(options.parts),
-                             ground_plane_of(options.measure, options.show.up)};
+    window.panel.left = cell_of(options);
     window.other_inputs.insert(window.other_inputs.end(), options.parts.occluders.begin(),
                                options.parts.occluders.end());
     window.panel.shows_atlas = options.atlas;
@@ -90,21 +136,13 @@ void add_view_command(CLI::App& app, Work& work)
     add_layout_options(*command, options->texels, kShownMaps);
     add_part_options(*command, options->parts);
     add_atlas_option(*command, options->atlas);
-    add_engine_options(*command, options->engine);
+    add_engine_options(*command, options->engine, pixel_engine_names());
+    add_pixel_options(*command, options->pixels);
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
     add_thread_option(*command, options->threads);
     command->callback([options, &work] {
-        static_cast<void>(settings_of(options->engine));
-        check_shown_map(view_options_of(options->show),
-                        shown_texels_of(options->texels).has_value(), options->atlas);
-        static_cast<void>(target_settings_of(options->surface, options->show.up));
-        static_cast<void>(ground_plane_of(options->measure, options->show.up));
-        const DistanceLimit distance = distance_limit_of(options->measure);
-        if (std::isfinite(distance.value) && !distance.percent)
-            throw UsageError("--max-distance of a window is in % of the diagonal (10%).");
-        if (kernel_of(options->measure) != Kernel::cosine)
-            throw UsageError("--kernel bunnell is not for a window: compare and bake know it.");
+        check_view(*options);
         work = [options] { return run(*options); };
     });
 }

@@ -22,6 +22,7 @@ struct Camera {
     glm::vec3 target{0.0f};  ///< seen in the middle of the picture; what orbiting turns about
     glm::vec3 up{0.0f, 1.0f, 0.0f};  ///< unit length
     float fovy_deg = 35.0f;          ///< from the upper to the lower edge of the picture
+    bool operator==(const Camera&) const = default;
 };
 
 /// Unit vectors: to the right and upwards in the picture, and from the scene towards the eye.

@@ -1,7 +1,7 @@
 // shading.glsl: the colour of a surface point, linear light, display-referred.
 //
 // Right of u_wipe_x (pixels) the reference stands in for the result.
-//   u_colors            the value of Colors in viewer/view_options.h
+//   u_colors            the value of Colors in viewer/view_options.h; -1: occlusion as it is
 //   u_difference_scale  occlusion difference that is shown hottest
 //   u_heat              256 x 1, heat_colors() of image/color_map.h
 //   u_irradiance        irradiance_map() of viewer/environment.h, row 0 = sky
@@ -16,6 +16,7 @@ uniform sampler2D u_irradiance;
 const float kAlbedo = 0.80;  // of the model in the environment
 const float kPaper = 0.94;   // shown value of an open place: not pure white, so that edges show
 
+const int kAsNumbers = -1;
 const int kVisibility = 0;
 const int kRays = 1;
 const int kDifference = 2;
@@ -54,6 +55,8 @@ vec4 at_wipe(vec4 own, vec4 reference) { return gl_FragCoord.x < u_wipe_x ? own 
 vec3 shade(vec4 normal_level, vec4 own, vec4 reference)
 {
     vec4 values = at_wipe(own, reference);
+    if (u_colors == kAsNumbers)
+        return vec3(values.w);
     if (u_colors == kDifference)
         return heat_color(abs(own.w - reference.w) / u_difference_scale);
     if (u_colors == kBentNormals)

@@ -1,10 +1,11 @@
 #version 330 core
 #include "shading.glsl"
+#include "pixel_values.glsl"
 
 // split_surface.frag: a triangle's pixel, with the values of a map and a base colour.
 //
 // Vertices   split_surface.vert
-// Reads      shading.glsl
+// Reads      shading.glsl, pixel_values.glsl
 //            u_place_count      0: the values are the vertices'
 //            u_facts            RGBA32UI, u_place_count texels per triangle: 1 + page, 0 where the
 //                               triangle is not in the map; colour of the chart, 0xBBGGRR as shown;
@@ -104,7 +105,8 @@ vec3 color()
 {
     vec4 own = v_own;
     vec4 reference = v_reference;
-    if (u_place_count > 0) {
+    read_pixels(own, reference, v_normal_level.xyz);
+    if (u_place_count > 0 && u_has_pixels == 0) {
         MapValues values = map_values();
         if (!values.is_there)
             return kNoPlace;

@@ -1,15 +1,26 @@
 #version 330 core
 #include "shading.glsl"
+#include "pixel_values.glsl"
 
 // surface.frag: a triangle's pixel.
 //
 // Vertices   surface.vert
-// Reads      shading.glsl
+// Reads      shading.glsl, pixel_values.glsl
 // Writes     out_color  linear, opaque
+
+const int kCoverage = 10;
+const vec3 kHole = vec3(1.0, 0.0, 0.0);
 
 in vec4 v_normal_level;
 in vec4 v_own;
 in vec4 v_reference;
 out vec4 out_color;
 
-void main() { out_color = vec4(shade(v_normal_level, v_own, v_reference), 1.0); }
+void main()
+{
+    vec4 own = v_own;
+    vec4 reference = v_reference;
+    read_pixels(own, reference, v_normal_level.xyz);
+    bool is_hole = u_colors == kCoverage && pixel_coverage == 0.0;
+    out_color = vec4(is_hole ? kHole : shade(v_normal_level, own, reference), 1.0);
+}

@@ -8,9 +8,9 @@
 #include "bake/point_target.h"
 #include "bake/vertex_target.h"
 #include "engines/engine.h"
+#include "pixels/camera.h"
 #include "surfels/geometry.h"
 #include "surfels/receiver.h"
-#include "pixels/camera.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>

@@ -1,5 +1,6 @@
 #include "viewer/panel.h"
 
+#include "viewer/cell_widgets.h"
 #include "viewer/panel_widgets.h"
 #include "viewer/render.h"
 
@@ -32,9 +33,9 @@ void style_widgets(float scale)
     ImGui::GetIO().FontGlobalScale = scale;
 }
 
-void switch_place(PanelState& state, ReferencePlace place)
+void switch_beside(PanelState& state, Beside beside)
 {
-    state.reference_place = state.reference_place == place ? ReferencePlace::nowhere : place;
+    state.beside = state.beside == beside ? Beside::nothing : beside;
 }
 
 /// One key that the widgets leave to the picture.
@@ -52,16 +53,19 @@ void press(char key, PanelState& state, PanelInput& input)
             state.view.ground = !state.view.ground;
             break;
         case 'W':
-            switch_place(state, ReferencePlace::wipe);
+            switch_beside(state, Beside::wipe);
             break;
         case 'S':
-            switch_place(state, ReferencePlace::side_by_side);
+            switch_beside(state, Beside::side_by_side);
             break;
         case 'R':
             state.wants_reference = !state.wants_reference;
             break;
         case 'H':
             state.shows_help = !state.shows_help;
+            break;
+        case 'C':
+            input.add_map = true;
             break;
         case 'F':
             input.frame_all = true;
@@ -126,6 +130,22 @@ void place_labels(float x, const char* left, const char* right)
     list.AddText(ImVec2(x + margin, margin), color, right);
 }
 
+/// "masks at pixels"; what stands in is told.
+std::string label_of(const Cell& cell, const CellView& view)
+{
+    const Model* model = view.session().state().model.get();
+    const std::string label =
+        how_of(cell) + " at " + name_of(where_of(cell), model && model->cloud);
+    return cell.at_pixels && !view.has_pixels() ? label + ": not yet" : label;
+}
+
+std::string right_label(const PanelState& state, const CellView& left, const CellView* right)
+{
+    if (right)
+        return label_of(right_cell(state), *right);
+    return left.has_reference() ? "rays" : "no rays yet";
+}
+
 }  // namespace
 
 Panel::Panel(GLFWwindow* window, float scale)
@@ -145,30 +165,32 @@ Panel::~Panel()
     ImGui::DestroyContext();
 }
 
-void choose_engine(PanelState& state, Engine engine, Device device)
-{
-    EngineSettings& settings = state.settings.engine;
-    settings.device = device;
-    if (engine == settings.engine)
-        return;
-    state.qualities[settings.engine] = settings.quality;
-    settings.engine = engine;
-    settings.quality = state.qualities.try_emplace(engine, kGood).first->second;
-}
-
-std::string name_of(const EngineChoice& choice)
-{
-    return name_of(choice.engine) + (choice.device == Device::gpu ? " on GPU" : "");
-}
-
 bool needs_reference(const PanelState& state)
 {
-    return needs_reference(state.view) || state.reference_place != ReferencePlace::nowhere;
+    return needs_reference(state.view) || (state.beside != Beside::nothing && !state.right);
 }
 
-PanelInput Panel::build(PanelState& state, const Session& session, const PanelFigures& figures,
-                        std::string_view keys)
+Cell right_cell(const PanelState& state)
 {
+    Cell cell = state.left;
+    if (!state.right) {
+        cell.screen.reset();
+        cell.settings.engine = {};
+        cell.settings.engine.engine = Engine::rays;
+        return cell;
+    }
+    cell.at_pixels = state.right->at_pixels;
+    cell.from_maps = state.right->from_maps;
+    cell.screen = state.right->screen;
+    cell.settings.engine = state.right->settings.engine;
+    cell.settings.texels = state.right->settings.texels;
+    return cell;
+}
+
+PanelInput Panel::build(PanelState& state, const CellView& left_view, const CellView* right_view,
+                        const PanelFigures& figures, std::string_view keys)
+{
+    const Session& session = left_view.session();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
@@ -189,7 +211,7 @@ PanelInput Panel::build(PanelState& state, const Session& session, const PanelFi
         input.covered = beside ? kWidth * scale / display.x : 0.0f;
         ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
         ImGui::SetNextWindowSize(ImVec2(kWidth * scale, beside ? display.y : 0.0f));
-        widgets(state, session, figures, input);
+        widgets(state, left_view, right_view, figures, input);
     }
     if (state.shows_help)
         help_window(state.shows_help);
@@ -201,11 +223,10 @@ PanelInput Panel::build(PanelState& state, const Session& session, const PanelFi
     }
     const float left = input.covered * display.x;
     const float line =
-        left +
-        (display.x - left) * (state.reference_place == ReferencePlace::wipe ? state.wipe : 0.5f);
-    if (state.reference_place != ReferencePlace::nowhere)
-        place_labels(line, name_of(state.settings.engine).c_str(),
-                     session.state().has_reference() ? "rays" : "no rays yet");
+        left + (display.x - left) * (state.beside == Beside::wipe ? state.wipe : 0.5f);
+    if (state.beside != Beside::nothing)
+        place_labels(line, label_of(state.left, left_view).c_str(),
+                     right_label(state, left_view, right_view).c_str());
     mouse(state, input, line, left);
     if (input.view_changed && needs_reference(state))
         state.wants_reference = true;
@@ -213,33 +234,66 @@ PanelInput Panel::build(PanelState& state, const Session& session, const PanelFi
     return input;
 }
 
-void Panel::solver_widgets(PanelState& state, const Session& session)
+void Panel::solver_widgets(PanelState& state, const Model* model)
 {
     if (!ImGui::IsAnyItemActive())
-        edited_ = state.settings;
-    if (ImGui::BeginCombo("engine", name_of(edited_.engine).c_str())) {
-        for (const Engine engine : {Engine::masks, Engine::disks, Engine::rays}) {
-            for (const Device device : {Device::cpu, Device::gpu}) {
-                if (!runs_on(engine, device))
-                    continue;
-                const EngineChoice choice = {.engine = engine, .device = device};
-                const bool is_chosen =
-                    engine == edited_.engine.engine && device == edited_.engine.device;
-                if (ImGui::Selectable(name_of(choice).c_str(), is_chosen)) {
-                    choose_engine(state, engine, device);
-                    edited_ = state.settings;
-                }
-            }
-        }
-        ImGui::EndCombo();
-    }
-    bool apply = edit_settings(edited_.engine);
-    apply |= edit_distance(edited_.max_distance, falloff_);
-    apply |= edit_ground(edited_.ground, session.state().model.get());
-    apply |= edit_target(edited_.target);
-    apply |= edit_texels(edited_.texels, texels_);
+        edited_ = state.left;
+    if (edited_.settings.texels)
+        texels_ = *edited_.settings.texels;
+    bool apply = choose_where(edited_, model, texels_);
+    apply |= choose_how(edited_, state.qualities);
+    apply |= edit_how(edited_);
+    SessionSettings& question = edited_.settings;
+    if (question.texels)
+        apply |= edit_texels(*question.texels);
+    apply |= edit_distance(question.max_distance, falloff_);
+    apply |= edit_ground(question.ground, model);
+    apply |= edit_target(question.target);
     if (apply)
-        state.settings = edited_;
+        state.left = edited_;
+}
+
+void Panel::compare_widgets(PanelState& state, const CellView& left, const CellView* right,
+                            PanelInput& input)
+{
+    int beside = static_cast<int>(state.beside);
+    if (ImGui::Combo("beside", &beside, "nothing\0wipe\0side by side\0")) {
+        state.beside = static_cast<Beside>(beside);
+        input.view_changed = true;
+    }
+    if (state.beside != Beside::nothing) {
+        ImGui::PushID("right");
+        if (!ImGui::IsAnyItemActive())
+            edited_right_ = right_cell(state);
+        bool apply = choose_where(edited_right_, left.session().state().model.get(), texels_);
+        apply |= choose_how(edited_right_, state.qualities);
+        if (state.right)
+            apply |= edit_how(edited_right_);
+        if (apply) {
+            const bool is_reference = !edited_right_.screen &&
+                                      edited_right_.settings.engine.engine == Engine::rays &&
+                                      where_of(edited_right_) == where_of(state.left);
+            state.right = is_reference ? std::nullopt : std::optional(edited_right_);
+            input.view_changed = true;
+        }
+        ImGui::PopID();
+    }
+    ImGui::Checkbox("trace", &state.wants_reference);
+    ImGui::SameLine();
+    int half = state.reference_rays / 2;
+    if (ImGui::SliderInt("rays##reference", &half, 8, 4096, "2 x %d",
+                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
+        state.reference_rays = 2 * half;
+    if (right)
+        cell_progress(*right);
+    if (left.session().tracing())
+        progress_line("tracing", left.session().trace_progress());
+    else if (const std::optional<double> done = left.ray_progress())
+        progress_line("rays at pixels", *done);
+    else if (needs_reference(state) && left.session().state().model && !left.has_reference())
+        ImGui::TextUnformatted("not traced: the result is shown instead");
+    if (left.pixel_error())
+        error_lines(*left.pixel_error());
 }
 
 void Panel::mouse(PanelState& state, PanelInput& input, float wipe_x, float left)
@@ -247,7 +301,7 @@ void Panel::mouse(PanelState& state, PanelInput& input, float wipe_x, float left
     const ImGuiIO& io = ImGui::GetIO();
     if (io.WantCaptureMouse)
         return;
-    const bool at_line = state.reference_place == ReferencePlace::wipe &&
+    const bool at_line = state.beside == Beside::wipe &&
                          std::abs(io.MousePos.x - wipe_x) < kGrip * io.FontGlobalScale;
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left))
         drags_wipe_ = at_line;
@@ -279,9 +333,10 @@ void name_model(const SessionState& state)
 
 }  // namespace
 
-void Panel::widgets(PanelState& state, const Session& session, const PanelFigures& figures,
-                    PanelInput& input)
+void Panel::widgets(PanelState& state, const CellView& left, const CellView* right,
+                    const PanelFigures& figures, PanelInput& input)
 {
+    const Session& session = left.session();
     const SessionState& shown_state = session.state();
     ImGui::Begin("surfelao", nullptr,
                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse);
@@ -294,11 +349,11 @@ void Panel::widgets(PanelState& state, const Session& session, const PanelFigure
         ImGui::TextUnformatted("reading ...");
 
     if (ImGui::CollapsingHeader("Solve", ImGuiTreeNodeFlags_DefaultOpen)) {
-        solver_widgets(state, session);
-        if (session.solving() && !session.opening()) {
-            progress_line(!shown_state.is_solved ? "draft" : "solving", session.solve_progress());
+        solver_widgets(state, shown_state.model.get());
+        if ((session.solving() && !session.opening()) || left.pixel_progress()) {
+            cell_progress(left);
             input.cancel |= ImGui::Button("cancel");
-        } else if (session.was_cancelled() && shown_state.model) {
+        } else if (left.was_cancelled() && shown_state.model) {
             ImGui::TextUnformatted(!shown_state.is_solved ? "cancelled"
                                    : shown_state.is_draft ? "cancelled: the draft is shown"
                                                           : "cancelled: the last answer is shown");
@@ -306,31 +361,22 @@ void Panel::widgets(PanelState& state, const Session& session, const PanelFigure
             input.solve_again |= ImGui::SmallButton("solve");
         }
         stage_lines(shown_state);
-        histogram(session);
+        if (state.left.from_maps)
+            map_lines(left);
+        else if (state.left.at_pixels)
+            pixel_lines(left);
+        else
+            histogram(session);
     }
     if (shown_state.model && ImGui::CollapsingHeader("Parts"))
-        edit_parts(shown_state.model->mesh->scene, state.settings.parts);
+        edit_parts(shown_state.model->mesh->scene, state.left.settings.parts);
     if (ImGui::CollapsingHeader("Show", ImGuiTreeNodeFlags_DefaultOpen)) {
         input.view_changed |= view_widgets(state);
+        ImGui::SameLine();
         input.frame_all |= ImGui::Button("frame all");
     }
-    if (ImGui::CollapsingHeader("Ray reference", ImGuiTreeNodeFlags_DefaultOpen)) {
-        ImGui::Checkbox("trace", &state.wants_reference);
-        ImGui::SameLine();
-        int half = state.reference_rays / 2;
-        if (ImGui::SliderInt("rays##reference", &half, 8, 4096, "2 x %d",
-                             ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
-            state.reference_rays = 2 * half;
-        int place = static_cast<int>(state.reference_place);
-        if (ImGui::Combo("comparison", &place, "none\0wipe\0side by side\0")) {
-            state.reference_place = static_cast<ReferencePlace>(place);
-            input.view_changed = true;
-        }
-        if (session.tracing())
-            progress_line("tracing", session.trace_progress());
-        else if (needs_reference(state) && shown_state.model && !shown_state.has_reference())
-            ImGui::TextUnformatted("not traced: the result is shown instead");
-    }
+    if (ImGui::CollapsingHeader("Compare", ImGuiTreeNodeFlags_DefaultOpen))
+        compare_widgets(state, left, right, input);
     if (ImGui::CollapsingHeader("Save")) {
         ImGui::InputText("##picture", state.picture_path, sizeof state.picture_path);
         ImGui::SameLine();
@@ -351,6 +397,10 @@ void Panel::widgets(PanelState& state, const Session& session, const PanelFigure
     ImGui::PushTextWrapPos(0.0f);
     if (!shown_state.message.empty())
         ImGui::TextColored(warning, "%s", shown_state.message.c_str());
+    for (const CellView* view : {&left, right}) {
+        if (view && !view->pixel_message().empty())
+            ImGui::TextColored(warning, "%s", view->pixel_message().c_str());
+    }
     if (!figures.note.empty())
         ImGui::TextUnformatted(figures.note.c_str());
     ImGui::PopTextWrapPos();

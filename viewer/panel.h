@@ -1,7 +1,8 @@
 /// panel.h: the widgets beside the picture, and the mouse and keys that they leave to the picture.
 #pragma once
 
-#include "viewer/session.h"
+#include "viewer/cell.h"
+#include "viewer/cell_view.h"
 #include "viewer/view_options.h"
 
 #include <glm/vec2.hpp>
@@ -17,11 +18,11 @@ struct GLFWwindow;
 
 namespace surfelao {
 
-/// How the ray reference is shown beside the result.
-enum class ReferencePlace {
-    nowhere,
+/// How the right cell is shown.
+enum class Beside {
+    nothing,       ///< not at all
     wipe,          ///< right of a line
-    side_by_side,  ///< in a picture of its own
+    side_by_side,  ///< in a picture of its own, by the same camera
 };
 
 /// What can be saved.
@@ -37,13 +38,15 @@ enum class SaveReply { none, replace, keep_both, cancel };
 
 /// What the widgets show and change.
 struct PanelState {
-    ViewOptions view;  ///< but its wipe, which follows from the reference's place
-    ReferencePlace reference_place = ReferencePlace::nowhere;
+    ViewOptions view;  ///< but its wipe, which follows from what is beside
+    Beside beside = Beside::nothing;
     float wipe = 0.5f;         ///< where the line is, as a share of the picture's width
     bool shows_atlas = false;  ///< in place of the model, where there is a map
     bool is_hidden = false;
-    SessionSettings settings;
-    std::map<Engine, float> qualities;  ///< of the engines that are not chosen: see choose_engine
+    Cell left;
+    /// Of its settings, only engine and texels count. None: rays, where the left one's values lie.
+    std::optional<Cell> right;
+    std::map<Engine, float> qualities;  ///< of the engines that are not chosen
     int reference_rays = 1024;          ///< even
     bool wants_reference = false;
     bool shows_help = false;
@@ -63,8 +66,9 @@ struct PanelFigures {
 
 /// What the user did in one frame.
 struct PanelInput {
-    bool view_changed = false;  ///< PanelState::view and the reference's place
+    bool view_changed = false;  ///< PanelState::view and what is beside
     bool frame_all = false;
+    bool add_map = false;  ///< a cube map where the eye is
     bool save_picture = false;
     bool save_baked = false;
     bool cancel = false;
@@ -80,11 +84,8 @@ struct PanelInput {
 /// Whether what is to be shown needs a ray reference.
 [[nodiscard]] bool needs_reference(const PanelState& state);
 
-/// Sets who solves. Each engine keeps its own quality, and is `good` at first.
-void choose_engine(PanelState& state, Engine engine, Device device);
-
-/// "masks", "masks on GPU"
-[[nodiscard]] std::string name_of(const EngineChoice& choice);
+/// The right one with the left one's question.
+[[nodiscard]] Cell right_cell(const PanelState& state);
 
 /// Dear ImGui in a window whose context is current in this thread. At most one at a time.
 class Panel {
@@ -95,23 +96,26 @@ public:
     Panel(const Panel&) = delete;
     Panel& operator=(const Panel&) = delete;
 
-    /// Takes the input that came since the last call and lays the widgets out. keys: pressed since
-    /// then, in order: capital letters, digits, signs, and the two below.
-    PanelInput build(PanelState& state, const Session& session, const PanelFigures& figures,
-                     std::string_view keys);
+    /// Takes the input that came since the last call and lays the widgets out. right: null where
+    /// there is none of its own. keys: pressed since then, in order: capital letters, digits,
+    /// signs, and the two below.
+    PanelInput build(PanelState& state, const CellView& left, const CellView* right,
+                     const PanelFigures& figures, std::string_view keys);
     static constexpr char kEscape = 27, kTab = 9;
 
     /// Draws what build() laid out onto the window.
     void draw();
 
 private:
-    void widgets(PanelState& state, const Session& session, const PanelFigures& figures,
-                 PanelInput& input);
-    void solver_widgets(PanelState& state, const Session& session);
+    void widgets(PanelState& state, const CellView& left, const CellView* right,
+                 const PanelFigures& figures, PanelInput& input);
+    void solver_widgets(PanelState& state, const Model* model);
+    void compare_widgets(PanelState& state, const CellView& left, const CellView* right,
+                         PanelInput& input);
     void mouse(PanelState& state, PanelInput& input, float wipe_x, float left);
-    SessionSettings edited_;           ///< what the widgets show while they are dragged
+    Cell edited_, edited_right_;       ///< what the widgets show while they are dragged
     Falloff falloff_ = Falloff::none;  ///< kept while the distance is unlimited
-    TexelSettings texels_;             ///< kept while the values are at vertices
+    TexelSettings texels_;             ///< kept while the values lie elsewhere
     bool drags_wipe_ = false;
 };
 

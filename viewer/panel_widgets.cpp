@@ -2,6 +2,7 @@
 
 #include "image/color_map.h"
 #include "viewer/part_list.h"
+#include "viewer/pixel_fill.h"
 
 #include <imgui.h>
 
@@ -16,9 +17,9 @@ namespace {
 
 constexpr int kBins = 48;
 
-constexpr const char* kColorNames[] = {"visibility", "rays",    "difference",  "bent normals",
-                                       "normals",    "levels",  "environment", "charts",
-                                       "density",    "textured"};
+constexpr const char* kColorNames[] = {"visibility", "rays",     "difference",  "bent normals",
+                                       "normals",    "levels",   "environment", "charts",
+                                       "density",    "textured", "coverage"};
 constexpr const char* kSurfaceNames[] = {"triangles", "splats", "affine", "points"};
 
 constexpr const char* kHelp[][2] = {
@@ -29,9 +30,10 @@ constexpr const char* kHelp[][2] = {
     {"1 .. 9, 0", "colours, in the panel's order"},
     {"A", "the map flat or on the model, where there is one"},
     {"T", "next surface: triangles, splats, affine, points"},
-    {"R", "ray reference on or off"},
-    {"W", "wipe to the reference on or off; drag the line"},
-    {"S", "reference side by side on or off"},
+    {"R", "rays on or off"},
+    {"W", "wipe to the right cell on or off; drag the line"},
+    {"S", "the right cell side by side on or off"},
+    {"C", "with cube maps: one where the eye is"},
     {"G", "shadow on the ground on or off"},
     {"Esc", "cancel what runs in the background"},
     {"Tab", "hide or show the panel"},
@@ -54,29 +56,6 @@ bool was_set()
 }
 
 }  // namespace
-
-bool edit_settings(EngineSettings& engine)
-{
-    bool apply = false;
-    if (engine.engine == Engine::rays) {
-        int rays = static_cast<int>(engine.rays);
-        ImGui::SliderInt("rays", &rays, 1, 4096, "%d",
-                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-        engine.rays = static_cast<std::uint32_t>(rays);
-        return was_set();
-    }
-    ImGui::SliderFloat("quality", &engine.quality, least_quality(engine.engine),
-                       most_quality(engine.engine), "%.2f", ImGuiSliderFlags_AlwaysClamp);
-    apply |= was_set();
-    if (engine.engine == Engine::disks) {
-        ImGui::SliderInt("passes", &engine.passes, 1, 8, "%d", ImGuiSliderFlags_AlwaysClamp);
-        apply |= was_set();
-        ImGui::SliderFloat("strength", &engine.strength, 0.0f, 2.0f, "%.2f",
-                           ImGuiSliderFlags_AlwaysClamp);
-        apply |= was_set();
-    }
-    return apply;
-}
 
 bool edit_distance(DistanceLimit& limit, Falloff& falloff)
 {
@@ -141,34 +120,25 @@ bool edit_target(TargetSettings& target)
     return apply;
 }
 
-bool edit_texels(std::optional<TexelSettings>& texels, TexelSettings& chosen)
+bool edit_texels(TexelSettings& texels)
 {
-    if (texels)
-        chosen = *texels;
     bool apply = false;
-    int where = texels ? 1 : 0;
-    if (ImGui::Combo("at", &where, "vertices\0texels\0")) {
-        texels = where == 1 ? std::optional(chosen) : std::nullopt;
-        apply = true;
-    }
-    if (!texels)
-        return apply;
     constexpr std::uint32_t kSizes[] = {256, 512, 1024, 2048, 4096};
-    if (ImGui::BeginCombo("size", std::to_string(texels->size).c_str())) {
+    if (ImGui::BeginCombo("size", std::to_string(texels.size).c_str())) {
         for (const std::uint32_t size : kSizes) {
-            if (ImGui::Selectable(std::to_string(size).c_str(), size == texels->size)) {
-                texels->size = size;
-                texels->texels_per_unit.reset();
+            if (ImGui::Selectable(std::to_string(size).c_str(), size == texels.size)) {
+                texels.size = size;
+                texels.texels_per_unit.reset();
                 apply = true;
             }
         }
         ImGui::EndCombo();
     }
-    int uvs = texels->uvs != UvChoice::made ? 0 : texels->blended ? 2 : 1;
+    int uvs = texels.uvs != UvChoice::made ? 0 : texels.blended ? 2 : 1;
     if (ImGui::Combo("charts", &uvs, "the file's, or new\0new\0new, blended\0")) {
-        texels->uvs = uvs == 0 ? UvChoice::automatic : UvChoice::made;
-        texels->blended = uvs == 2;
-        texels->udim = false;
+        texels.uvs = uvs == 0 ? UvChoice::automatic : UvChoice::made;
+        texels.blended = uvs == 2;
+        texels.udim = false;
         apply = true;
     }
     return apply;
@@ -227,19 +197,27 @@ bool view_widgets(PanelState& state)
 {
     ViewOptions& view = state.view;
     bool changed = false;
+    if (state.left.from_maps) {
+        bool shows_holes = view.colors == Colors::coverage;
+        if (ImGui::Checkbox("coverage: holes are red", &shows_holes)) {
+            view.colors = shows_holes ? Colors::coverage : Colors::visibility;
+            changed = true;
+        }
+    }
     int colors = static_cast<int>(view.colors);
     if (ImGui::Combo("colours", &colors, kColorNames, IM_ARRAYSIZE(kColorNames))) {
         view.colors = static_cast<Colors>(colors);
         changed = true;
     }
     int surface = static_cast<int>(view.surface);
-    if (state.settings.texels)
+    if (state.left.settings.texels)
         changed |= ImGui::Checkbox("flat (A)", &state.shows_atlas);
-    else if (ImGui::Combo("surface", &surface, kSurfaceNames, IM_ARRAYSIZE(kSurfaceNames))) {
+    else if (!state.left.at_pixels &&
+             ImGui::Combo("surface", &surface, kSurfaceNames, IM_ARRAYSIZE(kSurfaceNames))) {
         view.surface = static_cast<Shape>(surface);
         changed = true;
     }
-    if (view.surface != Shape::triangles && !state.settings.texels)
+    if (view.surface != Shape::triangles && !state.left.settings.texels && !state.left.at_pixels)
         changed |= ImGui::SliderFloat("splat radius", &view.radius_scale, 0.1f, 4.0f, "%.2f",
                                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     if (view.colors == Colors::environment)
@@ -259,10 +237,51 @@ void progress_line(const char* what, double done)
     ImGui::ProgressBar(static_cast<float>(done), ImVec2(-1.0f, 0.0f), text);
 }
 
+void cell_progress(const CellView& view)
+{
+    const Session& session = view.session();
+    if (session.solving() && !session.opening())
+        progress_line(!session.state().is_solved ? "draft" : "solving", session.solve_progress());
+    if (const std::optional<double> done = view.pixel_progress())
+        progress_line("pixels", *done);
+}
+
+void error_lines(const PixelError& error)
+{
+    ImGui::TextWrapped(
+        "at pixels: RMSE %.4f   bias %+.4f\n95 %% %.4f   (%llu pixels, %u rays each)",
+        error.found.rmse, error.found.bias, error.found.p95,
+        static_cast<unsigned long long>(error.found.count), error.rays);
+}
+
+void map_lines(const CellView& view)
+{
+    if (view.map_count() == 0)
+        ImGui::TextWrapped("no cube map yet: C puts one where the eye is");
+    else if (view.coverage())
+        ImGui::Text("%zu cube maps, %.1f %% of the pixels", view.map_count(),
+                    100.0 * *view.coverage());
+    else
+        ImGui::Text("%zu cube maps", view.map_count());
+}
+
+void pixel_lines(const CellView& view)
+{
+    const PixelAnswers& found = view.pixels();
+    if (found.picture.empty())
+        return;
+    if (found.is_draft)
+        ImGui::Text("%d x %d pixels: one of %d is solved", found.width, found.height,
+                    kDraftStep * kDraftStep);
+    else
+        ImGui::Text("%d x %d pixels %.3f s", found.width, found.height, found.seconds);
+}
+
 void stage_lines(const SessionState& s)
 {
     if (s.build_s)
-        ImGui::Text("read %.3f s   build %.3f s   solve %.3f s", s.read_s, *s.build_s, s.solve_s);
+        ImGui::TextWrapped("read %.3f s   build %.3f s   solve %.3f s", s.read_s, *s.build_s,
+                           s.solve_s);
     else
         ImGui::Text("read %.3f s   solve %.3f s", s.read_s, s.solve_s);
     if (!s.reference.empty() && s.reference_s)

@@ -8,11 +8,8 @@
 
 namespace surfelao {
 
-/// The settings of the chosen engine. True when they are to be solved: not while a slider is
-/// dragged.
-bool edit_settings(EngineSettings& engine);
-
-/// The same for the limit, in % of the diagonal. falloff: what a limit has, once there is one.
+/// The limit, in % of the diagonal. falloff: what a limit has, once there is one. True when it is
+/// to be solved: not while a slider is dragged.
 bool edit_distance(DistanceLimit& limit, Falloff& falloff);
 
 /// The same for a ground that occludes. model: as it is shown, or null.
@@ -21,9 +18,8 @@ bool edit_ground(std::optional<GroundPlane>& ground, const Model* model);
 /// The same for the surface's normals and what the values at vertices are.
 bool edit_target(TargetSettings& target);
 
-/// The same for where values are: at vertices, or at the texels of a map. chosen: what a map has,
-/// once there is one.
-bool edit_texels(std::optional<TexelSettings>& texels, TexelSettings& chosen);
+/// The same for a map.
+bool edit_texels(TexelSettings& texels);
 
 /// The parts of the model's scene with two ticks each, and what light goes through. The last part
 /// that is baked stays so.
@@ -34,6 +30,18 @@ bool view_widgets(PanelState& state);
 
 /// A bar with words. done: 0 to 1.
 void progress_line(const char* what, double done);
+
+/// How far a cell is, one bar each for its session and its pixels.
+void cell_progress(const CellView& view);
+
+/// What a picture shows against rays at its pixels.
+void error_lines(const PixelError& error);
+
+/// How many cube maps there are, and how much they show.
+void map_lines(const CellView& view);
+
+/// What a picture's pixels took.
+void pixel_lines(const CellView& view);
 
 /// Times and errors.
 void stage_lines(const SessionState& s);

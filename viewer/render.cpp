@@ -3,6 +3,7 @@
 #include "image/color_map.h"
 #include "surfels/errors.h"
 #include "viewer/renderer.h"
+#include "viewer/sample_sum.h"
 
 #include <algorithm>
 #include <string>

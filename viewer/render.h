@@ -3,9 +3,9 @@
 
 #include "gpu/context.h"
 #include "image/image.h"
+#include "pixels/camera.h"
 #include "surfels/occlusion.h"
 #include "surfels/progress.h"
-#include "pixels/camera.h"
 #include "viewer/model.h"
 #include "viewer/model_map.h"
 #include "viewer/view_options.h"

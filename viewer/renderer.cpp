@@ -185,8 +185,26 @@ struct Renderer::Impl {
         const Framebuffer& target;
         const Camera& camera;
         const ViewOptions& options;
+        const PixelValues& pixels;
         glm::mat4 view, projection;
     };
+
+    [[nodiscard]] Frame frame_of(const Framebuffer& target, const Camera& camera,
+                                 const ViewOptions& options, const PixelValues& pixels,
+                                 glm::vec2 shift) const
+    {
+        const glm::vec2 size(target.width(), target.height());
+        // as much depth precision as the place of the eye allows
+        const float distance = glm::length(camera.eye);
+        const float far = distance + upload->radius;
+        const float near = std::max(distance - upload->radius, far * kNearest);
+        return {target,
+                camera,
+                options,
+                pixels,
+                view_matrix(camera),
+                projection_matrix(camera, size.x / size.y, near, far, 2.0f * shift / size)};
+    }
 
     void set_shading(Program& program, const Frame& frame)
     {
@@ -246,6 +264,7 @@ struct Renderer::Impl {
         program.set("u_extra_vertices", upload->extra_vertices);
         program.set("u_vertex_count", static_cast<int>(upload->vertex_count));
         program.set("u_view_projection", frame.projection * frame.view);
+        set_pixel_values(program, frame.pixels, heat);
     }
 
     void draw_triangles(const Frame& frame)
@@ -426,17 +445,10 @@ Framebuffer Renderer::make_target(int width, int height) const
 }
 
 void Renderer::draw_frame(const Framebuffer& target, const Camera& camera,
-                          const ViewOptions& options, glm::vec2 shift)
+                          const ViewOptions& options, glm::vec2 shift, const PixelValues& pixels)
 {
     SURFELAO_CHECK(impl_->upload.has_value());
-    const glm::vec2 size(target.width(), target.height());
-    // as much depth precision as the place of the eye allows
-    const float distance = glm::length(camera.eye);
-    const float far = distance + impl_->upload->radius;
-    const float near = std::max(distance - impl_->upload->radius, far * kNearest);
-    const Impl::Frame frame{
-        target, camera, options, view_matrix(camera),
-        projection_matrix(camera, size.x / size.y, near, far, 2.0f * shift / size)};
+    const Impl::Frame frame = impl_->frame_of(target, camera, options, pixels, shift);
 
     target.clear_depth();
     impl_->draw_background(frame);
@@ -445,7 +457,7 @@ void Renderer::draw_frame(const Framebuffer& target, const Camera& camera,
     if (shows_ground(options))
         impl_->draw_ground(frame);
     if (impl_->upload->splat_count > 0) {
-        Shape shape = impl_->split.has_layout() ? Shape::triangles : options.surface;
+        Shape shape = impl_->split.has_layout() || pixels.own ? Shape::triangles : options.surface;
         if (shape == Shape::triangles && impl_->upload->index_count == 0)
             shape = Shape::splats;
         switch (shape) {
@@ -465,97 +477,27 @@ void Renderer::draw_frame(const Framebuffer& target, const Camera& camera,
     }
 }
 
+void Renderer::draw_values(const Framebuffer& target, const Camera& camera,
+                           const PixelValues& pixels)
+{
+    constexpr auto kAsNumbers = static_cast<Colors>(-1);
+    const ViewOptions options{.colors = kAsNumbers};
+    target.clear_color(glm::vec4(0.0f));
+    target.clear_depth();
+    if (impl_->upload->index_count > 0)
+        impl_->draw_triangles(impl_->frame_of(target, camera, options, pixels, glm::vec2(0.0f)));
+}
+
 void Renderer::draw_background(const Framebuffer& target, const Camera& camera,
                                const ViewOptions& options)
 {
     const float aspect = static_cast<float>(target.width()) / static_cast<float>(target.height());
-    impl_->draw_background({target, camera, options, view_matrix(camera),
+    impl_->draw_background({target,
+                            camera,
+                            options,
+                            {},
+                            view_matrix(camera),
                             projection_matrix(camera, aspect, 0.1f, 1.0f)});
-}
-
-struct SampleSum::Impl {
-    Impl(const GlContext& gl, int width, int height)
-        : context(gl),
-          program(context, "fullscreen.vert", "sum.frag"),
-          nothing(context),
-          sum(context, FramebufferOptions{
-                           .width = width, .height = height, .colors = {TexelFormat::rgba32f}})
-    {
-    }
-    void add(const Texture2D& drawing)
-    {
-        program.set("u_image", drawing);
-        program.set("u_factor", 1.0f);
-        program.set("u_encode", 0);
-        program.set("u_corner", glm::ivec2(0));
-        draw_fullscreen(sum, program, nothing, {.blend = Blend::add});
-        ++count;
-    }
-    const GlContext& context;
-    Program program;
-    VertexArray nothing;
-    Framebuffer sum;
-    int count = 0;
-};
-
-SampleSum::SampleSum(const GlContext& context, int width, int height)
-    : impl_(std::make_unique<Impl>(context, width, height))
-{
-    clear();
-}
-SampleSum::~SampleSum() = default;
-SampleSum::SampleSum(SampleSum&&) noexcept = default;
-SampleSum& SampleSum::operator=(SampleSum&&) noexcept = default;
-
-void SampleSum::clear()
-{
-    impl_->sum.clear_color(glm::vec4(0.0f));
-    impl_->count = 0;
-}
-
-int SampleSum::count() const
-{
-    return impl_->count;
-}
-
-void SampleSum::add(const Framebuffer& drawing)
-{
-    impl_->add(drawing.color());
-}
-
-void SampleSum::add(const Image& picture)
-{
-    Image upright = picture;  // row 0 of textures is the bottom
-    for (int y = 0; y < upright.height; ++y)
-        for (int x = 0; x < upright.width; ++x)
-            upright.at(x, y) = picture.at(x, upright.height - 1 - y);
-    impl_->add(upload_image(impl_->context, upright, {}));
-}
-
-Image SampleSum::mean() const
-{
-    SURFELAO_CHECK(impl_->count > 0);
-    const std::vector<glm::vec4> texels = impl_->sum.read_color(impl_->sum.rect());
-    const float share = 1.0f / static_cast<float>(impl_->count);
-    Image image(impl_->sum.width(), impl_->sum.height());
-    for (int y = 0; y < image.height; ++y) {
-        const std::size_t row = static_cast<std::size_t>(image.height - 1 - y);
-        for (int x = 0; x < image.width; ++x)
-            image.at(x, y) =
-                share *
-                texels[row * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)];
-    }
-    return image;
-}
-
-void SampleSum::show(const Framebuffer& target, glm::ivec2 corner) const
-{
-    impl_->program.set("u_image", impl_->sum.color());
-    impl_->program.set("u_factor", 1.0f / static_cast<float>(std::max(1, impl_->count)));
-    impl_->program.set("u_encode", 1);
-    impl_->program.set("u_corner", corner);
-    const Rect place = {corner.x, corner.y, impl_->sum.width(), impl_->sum.height()};
-    draw_fullscreen(target, impl_->program, impl_->nothing, {.viewport = place, .scissor = place});
 }
 
 }  // namespace surfelao

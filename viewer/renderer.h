@@ -11,6 +11,7 @@
 #include "viewer/base_paint.h"
 #include "viewer/model.h"
 #include "viewer/model_map.h"
+#include "viewer/pixel_values.h"
 #include "viewer/view_options.h"
 
 #include <glm/vec2.hpp>
@@ -56,39 +57,19 @@ public:
     [[nodiscard]] Framebuffer make_target(int width, int height) const;
 
     /// Draws background, model and ground over all of the target. `shift`: the whole picture moved
-    /// by a part of a pixel, for samples between -0.5 and 0.5.
+    /// by a part of a pixel, for samples between -0.5 and 0.5. pixels: of this camera and size;
+    /// then triangles are drawn.
     void draw_frame(const Framebuffer& target, const Camera& camera, const ViewOptions& options,
-                    glm::vec2 shift = glm::vec2(0.0f));
+                    glm::vec2 shift = glm::vec2(0.0f), const PixelValues& pixels = {});
+
+    /// The occlusion that draw_frame() would show on triangles at the pixels' middles, in red;
+    /// alpha 0 where there is none.
+    void draw_values(const Framebuffer& target, const Camera& camera,
+                     const PixelValues& pixels = {});
 
     /// The background alone; no model is needed.
     void draw_background(const Framebuffer& target, const Camera& camera,
                          const ViewOptions& options);
-
-private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
-};
-
-/// The sum of several drawings of one size, and their mean.
-class SampleSum {
-public:
-    SampleSum(const GlContext& context, int width, int height);
-    ~SampleSum();
-    SampleSum(SampleSum&&) noexcept;
-    SampleSum& operator=(SampleSum&&) noexcept;
-
-    void clear();
-    void add(const Framebuffer& drawing);
-    /// A picture of the same size, as one drawing.
-    void add(const Image& picture);
-    int count() const;
-
-    /// The mean as linear light; row 0 is the top. At least one drawing must have been added.
-    [[nodiscard]] Image mean() const;
-
-    /// Shows the mean, sRGB-encoded, on an 8-bit target, a window's for example; `corner` is where
-    /// its lower left corner goes.
-    void show(const Framebuffer& target, glm::ivec2 corner) const;
 
 private:
     struct Impl;

@@ -46,6 +46,7 @@ struct Session::Answer {
     std::shared_ptr<const ModelMap> map;
     std::optional<StatedError> map_error;
     std::optional<double> build_s;
+    std::shared_ptr<const Prepared> prepared;  // on the CPU
     SessionSettings settings;
     bool is_draft = false;
 };
@@ -61,7 +62,7 @@ struct Session::Traced {
 struct Session::Engines {
     std::optional<GlContext> own_context;
     std::shared_ptr<const Model> model;
-    std::optional<Prepared> prepared;
+    std::shared_ptr<const Prepared> prepared;
     std::optional<double> untold_s;  ///< seconds of preparing, until a whole answer has come of it
     std::optional<TexelSettings> texels;        ///< that the layout was made for
     std::shared_ptr<const ModelLayout> layout;  ///< of the model
@@ -93,7 +94,7 @@ struct Session::Engines {
         if (model != wanted)
             layout.reset();
         model = wanted;
-        prepared.emplace(surfelao::prepare(*wanted, choice));
+        prepared = std::make_shared<const Prepared>(surfelao::prepare(*wanted, choice));
         untold_s = prepared->seconds().surfels + prepared->seconds().tree;
     }
 
@@ -121,6 +122,30 @@ void Session::open(const std::filesystem::path& path, UpAxis up, const SessionSe
 {
     settings_ = settings;
     open(path, up, reading);
+}
+
+void Session::open(const Session& other, const SessionSettings& settings)
+{
+    const SessionState& shown = other.state_;
+    SURFELAO_CHECK(shown.model);
+    settings_ = settings;
+    settings_.target = shown.model->settings;
+    settings_.parts = shown.parts;
+    settings_.ground = shown.model->ground_plane;
+    state_.message.clear();
+    making_ = Making{.path = shown.path,
+                     .up = shown.model->up,
+                     .scene = nullptr,
+                     .target = settings_.target,
+                     .parts = settings_.parts,
+                     .ground = settings_.ground};
+    auto made = std::make_unique<Made>();
+    made->number = ++solve_number_;
+    made->scene = other.scene_;
+    made->model = shown.model;
+    solver_.cancel();
+    const std::lock_guard lock(mailbox_);
+    made_ = std::move(made);
 }
 
 void Session::start_making(Making making)
@@ -187,6 +212,15 @@ void Session::solve_or_make()
                       settings_.ground});
 }
 
+void Session::solve_as(const SessionSettings& settings)
+{
+    SessionSettings own = settings_;
+    own.engine = settings.engine;
+    own.max_distance = settings.max_distance;
+    own.texels = settings.texels;
+    solve(own);
+}
+
 Definition Session::definition() const
 {
     Definition definition =
@@ -214,6 +248,8 @@ void Session::start_solve()
                 answer->number = number;
                 answer->is_draft = i + 1 < steps.size();
                 answer->build_s = engines_->untold_s;
+                if (choice.device == Device::cpu)
+                    answer->prepared = engines_->prepared;
                 answer->settings = {steps[i], limit, model->settings,
                                     texels,   parts, model->ground_plane};
                 answer->found =
@@ -342,6 +378,7 @@ Session::Changes Session::update()
             state_.is_solved = false;
             state_.layout.reset();
             state_.map.reset();
+            state_.prepared.reset();
             scene_ = made->scene;
             occlusion_.clear();
             start_reference();
@@ -362,6 +399,7 @@ Session::Changes Session::update()
         state_.is_draft = answer->is_draft;
         was_cancelled_ = was_cancelled_ && answer->is_draft;
         state_.build_s = answer->build_s;
+        state_.prepared = answer->prepared;
         state_.solve_s = answer->found.seconds;
         state_.message.clear();
         changes.occlusion = true;

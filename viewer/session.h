@@ -5,10 +5,10 @@
 #include "bake/world.h"
 #include "engines/engine.h"
 #include "files/scene_io.h"
+#include "pixels/camera.h"
 #include "surfels/occlusion.h"
 #include "surfels/scene.h"
 #include "viewer/background_worker.h"
-#include "pixels/camera.h"
 #include "viewer/model.h"
 #include "viewer/solve_map.h"
 #include "viewer/solve_model.h"
@@ -51,7 +51,9 @@ struct SessionState {
     std::shared_ptr<const ModelMap> map;
     std::shared_ptr<const ModelMap> map_reference;  ///< null until it was traced
     std::optional<StatedError> map_error;           ///< of a whole answer, as displayed
-    std::uint64_t answer_count = 0;                 ///< how many have come so far, drafts too
+    /// Who has answered, for whoever asks more of the same model; null where that is the GPU.
+    std::shared_ptr<const Prepared> prepared;
+    std::uint64_t answer_count = 0;  ///< how many have come so far, drafts too
     double read_s = 0.0;
     std::optional<double> build_s;  ///< empty where what was built before has answered again
     double solve_s = 0.0;
@@ -81,11 +83,18 @@ public:
     void open(const std::filesystem::path& path, UpAxis up, const SessionSettings& settings,
               const ReadOptions& reading = {});
 
+    /// The model that another session shows, without reading or making it again; of the settings,
+    /// only engine, distance and texels count.
+    void open(const Session& other, const SessionSettings& settings);
+
     /// Solves the model with these settings: a draft first where the engine has one, then the
     /// whole. What is running is given up. Other targets, parts or another ground need another
     /// model: it is made first, of the scene that was read. Does nothing when they are the last
     /// settings.
     void solve(const SessionSettings& settings);
+
+    /// The same of the model at hand, or that is being made: as open() of another session.
+    void solve_as(const SessionSettings& settings);
 
     /// An even number of rays: the reference is traced now and whenever the definition changes.
     /// 0: no more.
@@ -118,6 +127,8 @@ public:
 
     const SessionState& state() const { return state_; }
     const SessionSettings& settings() const { return settings_; }
+    /// What the settings ask of the model, which must be there.
+    [[nodiscard]] Definition definition() const;
     bool opening() const { return making_.has_value() && !making_->scene; }
     bool was_cancelled() const { return was_cancelled_; }  ///< the last solving, before its end
     bool solving() const { return solver_.busy(); }
@@ -142,7 +153,6 @@ private:
     struct Engines;
     void start_making(Making making);
     void solve_or_make();
-    [[nodiscard]] Definition definition() const;
     void start_solve();
     void start_reference();
     void save_map(const std::filesystem::path& path, const std::string& mark) const;

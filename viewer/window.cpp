@@ -5,10 +5,12 @@
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
 #include "viewer/atlas_picture.h"
+#include "viewer/cell_view.h"
 #include "viewer/native_window.h"
 #include "viewer/output_files.h"
 #include "viewer/render.h"
 #include "viewer/renderer.h"
+#include "viewer/sample_sum.h"
 
 #include <GLFW/glfw3.h>
 
@@ -26,34 +28,42 @@ constexpr double kPollSeconds = 0.03;  // while something runs in the background
 constexpr double kIdleSeconds = 0.5;
 constexpr int kEchoFrames = 4;  // after an event: widgets take some until they stand still
 
+/// Where a picture goes.
+struct PaneWish {
+    Rect place;
+    Rect shown;          ///< a part of it
+    float wipe = 1.0f;   ///< ViewOptions::wipe
+    bool right = false;  ///< of the right cell
+};
+
 /// A picture of the model in a part of the window, sample by sample.
 struct Pane {
-    Pane(const Renderer& renderer, const GlContext& context, const Rect& part, float wipe_at)
-        : place(part),
-          wipe(wipe_at),
-          target(renderer.make_target(part.width, part.height)),
-          sum(context, part.width, part.height)
+    Pane(const Renderer& renderer, const GlContext& context, const PaneWish& wish)
+        : as(wish),
+          target(renderer.make_target(wish.place.width, wish.place.height)),
+          sum(context, wish.place.width, wish.place.height)
     {
     }
-    Rect place;
-    float wipe;  ///< ViewOptions::wipe
+    PictureSize size() const { return {as.place.width, as.place.height}; }
+    PaneWish as;
     Framebuffer target;
     SampleSum sum;
 };
 
-/// Left and right of each other. They are of one height.
-Image joined(const std::vector<Image>& images)
+/// What the panes show, without what is around them.
+Image joined(const std::vector<Pane>& panes)
 {
-    int width = 0;
-    for (const Image& image : images)
-        width += image.width;
-    Image all(width, images.front().height);
-    int left = 0;
-    for (const Image& image : images) {
+    int right = 0;
+    for (const Pane& pane : panes)
+        right = std::max(right, pane.as.place.x + pane.as.place.width);
+    const Rect& first = panes.front().as.place;
+    Image all(right - first.x, first.height);
+    for (const Pane& pane : panes) {
+        const Image image = pane.sum.mean();
+        const int left = pane.as.shown.x - pane.as.place.x;
         for (int y = 0; y < image.height; ++y)
-            for (int x = 0; x < image.width; ++x)
-                all.at(left + x, y) = image.at(x, y);
-        left += image.width;
+            for (int x = left; x < left + pane.as.shown.width; ++x)
+                all.at(pane.as.place.x - first.x + x, y) = image.at(x, y);
     }
     return all;
 }
@@ -66,18 +76,18 @@ public:
           window_(window),
           inbox_(window),
           context_(adopt_context(window)),
-          renderer_(context_),
+          left_(context_),
           panel_state_(options.panel),
           panel_(window, content_scale(window))
     {
         if (options.environment)
-            renderer_.set_environment(*options.environment);
+            left_.renderer().set_environment(*options.environment);
         for (const std::filesystem::path& path : options.other_inputs)
             files_.add_input(path);
         panel_state_.wants_reference |= needs_reference(panel_state_);
-        session_.solve(panel_state_.settings);
+        left_.session().solve(panel_state_.left.settings);
         if (!options.input.empty())
-            session_.open(options.input, options.up, options.reading);
+            left_.session().open(options.input, options.up, options.reading);
     }
 
     void run()
@@ -105,8 +115,8 @@ private:
             glfwPollEvents();
             echo_frames_ = std::max(0, echo_frames_ - 1);
         } else {
-            const double timeout =
-                session_.solving() || session_.tracing() ? kPollSeconds : kIdleSeconds;
+            const bool is_busy = left_.is_busy() || (right_ && right_->is_busy());
+            const double timeout = is_busy ? kPollSeconds : kIdleSeconds;
             const double start = glfwGetTime();
             glfwWaitEventsTimeout(timeout);
             if (glfwGetTime() - start < timeout)
@@ -114,45 +124,61 @@ private:
         }
         if (inbox_.path.empty())
             return;
-        PartChoice& parts = panel_state_.settings.parts;  // names are of the file that is shown
+        PartChoice& parts =
+            panel_state_.left.settings.parts;  // names are of the file that is shown
         parts.exclude = parts.receivers = {};
-        session_.open(std::exchange(inbox_.path, {}), options_.up, panel_state_.settings);
+        left_.session().open(std::exchange(inbox_.path, {}), options_.up,
+                             panel_state_.left.settings);
     }
 
-    bool has_view() const { return session_.state().model != nullptr; }
+    const SessionState& state() const { return left_.session().state(); }
+    bool has_view() const { return state().model != nullptr; }
 
     /// What the background threads have finished goes to the device.
     void take_results()
     {
-        const Session::Changes changes = session_.update();
-        const SessionState& state = session_.state();
         try {
-            if (changes.model) {
-                renderer_.set_model(*state.model);
-                keep_view(state.model->geometry().frame);
-                shown_layout_.reset();
-                paint_.reset();
-            }
+            const CellView::Changes changes = left_.update();
+            if (changes.model)
+                keep_view(state().model->geometry().frame);
             if (changes.file) {
                 note_.clear();
-                files_.add_input(state.path);
+                files_.add_input(state().path);
                 glfwSetWindowTitle(window_,
-                                   (state.path.filename().string() + " - surfelao").c_str());
+                                   (state().path.filename().string() + " - surfelao").c_str());
                 frame_all();
             }
-            if (changes.occlusion) {
-                renderer_.set_occlusion(session_.occlusion());
-                take_map();
-            }
-            if (changes.reference && state.map_reference)
-                renderer_.set_map_reference(*state.map_reference);
-            else if (changes.reference)
-                renderer_.set_reference(state.reference);
-            if (changes.model || changes.occlusion || changes.reference)
+            take_right(changes.model);
+            if (changes.model || changes.occlusion || changes.reference || changes.pixels)
                 restart();
         } catch (const std::exception& error) {
             note_ = error.what();
         }
+    }
+
+    /// The right cell is there where it is wanted, with the left one's model.
+    void take_right(bool is_other_model)
+    {
+        const bool is_wanted =
+            has_view() && panel_state_.right && panel_state_.beside != Beside::nothing;
+        if (!is_wanted) {
+            right_.reset();
+            return;
+        }
+        const SessionSettings settings = right_cell(panel_state_).settings;
+        if (right_ && !is_other_model) {
+            right_->session().solve_as(settings);
+        } else {
+            if (!right_) {
+                right_.emplace(context_);
+                if (options_.environment)
+                    right_->renderer().set_environment(*options_.environment);
+            }
+            right_->session().open(left_.session(), settings);
+        }
+        const CellView::Changes changes = right_->update();
+        if (changes.model || changes.occlusion || changes.pixels)
+            restart();
     }
 
     /// Other parts of a file have another frame: what is seen stays where it is.
@@ -164,37 +190,15 @@ private:
         frame_ = frame;
     }
 
-    /// The answer's map, or that it has none.
-    void take_map()
-    {
-        const SessionState& state = session_.state();
-        if (!state.layout)
-            renderer_.forget_layout();
-        else if (state.layout != shown_layout_)
-            renderer_.set_layout(*state.model->mesh, *state.layout);
-        shown_layout_ = state.layout;
-        if (state.map)
-            renderer_.set_map(*state.map);
-    }
+    CellView& view_of_pane(const Pane& pane) { return pane.as.right ? *right_ : left_; }
 
-    /// Read when it is first wanted.
-    void take_paint()
-    {
-        if (paint_ || shown_view().colors != Colors::textured)
-            return;
-        paint_ = base_paint_of(*session_.state().model->mesh);
-        renderer_.set_paint(*paint_);
-        if (!paint_->notes.empty())
-            note_ = paint_->notes.front();
-    }
-
-    bool shows_atlas() const { return panel_state_.shows_atlas && session_.state().layout; }
+    bool shows_atlas() const { return panel_state_.shows_atlas && state().layout; }
     int most_samples() const { return shows_atlas() ? 1 : kMostSamples; }
 
     void frame_all()
     {
-        const Rect seen = panes_.empty() ? Rect{0, 0, 1, 1} : panes_.front().place;
-        const Model& model = *session_.state().model;
+        const PictureSize seen = panes_.empty() ? PictureSize{1, 1} : panes_.front().size();
+        const Model& model = *state().model;
         try {
             camera_ = parse_camera(
                 options_.camera,
@@ -224,29 +228,55 @@ private:
     void lay_out(const Rect& part)
     {
         // a reference that is not there yet is not shown instead of the result
-        const bool traced = session_.state().has_reference();
-        const ReferencePlace place = panel_state_.reference_place;
-        std::vector<std::pair<Rect, float>> wanted;
-        if (place == ReferencePlace::side_by_side && part.width > 1) {
+        const bool traced = left_.has_reference();
+        const bool right = right_.has_value();
+        const Beside beside = panel_state_.beside;
+        std::vector<PaneWish> wanted;
+        if (beside == Beside::side_by_side && part.width > 1) {
             const int half = part.width / 2;
-            wanted = {
-                {{part.x, part.y, half, part.height}, 1.0f},
-                {{part.x + half, part.y, part.width - half, part.height}, traced ? 0.0f : 1.0f}};
+            const Rect low = {part.x, part.y, half, part.height};
+            const Rect high = {part.x + part.width - half, part.y, half, part.height};
+            wanted = {{low, low}, {high, high, traced && !right ? 0.0f : 1.0f, right}};
+        } else if (beside == Beside::wipe && right) {
+            const auto line = static_cast<int>(panel_state_.wipe * static_cast<float>(part.width));
+            wanted = {{part, {part.x, part.y, line, part.height}},
+                      {part, {part.x + line, part.y, part.width - line, part.height}, 1.0f, true}};
         } else {
-            wanted = {{part, traced && place == ReferencePlace::wipe ? panel_state_.wipe : 1.0f}};
+            wanted = {{part, part, traced && beside == Beside::wipe ? panel_state_.wipe : 1.0f}};
         }
-        const auto same = [](const Pane& pane, const std::pair<Rect, float>& other) {
-            const Rect &a = pane.place, &b = other.first;
-            return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
+        const auto same = [](const Pane& pane, const PaneWish& wish) {
+            const Rect &a = pane.as.place, &b = wish.place;
+            return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height &&
+                   pane.as.right == wish.right;
         };
         if (!std::equal(panes_.begin(), panes_.end(), wanted.begin(), wanted.end(), same)) {
             panes_.clear();
-            for (const auto& [rect, wipe] : wanted)
-                panes_.emplace_back(renderer_, context_, rect, wipe);
+            for (const PaneWish& wish : wanted)
+                panes_.emplace_back(left_.renderer(), context_, wish);
         }
         for (std::size_t i = 0; i < wanted.size(); ++i) {
-            if (std::exchange(panes_[i].wipe, wanted[i].second) != wanted[i].second)
+            if (std::exchange(panes_[i].as, wanted[i]).wipe != wanted[i].wipe)
                 restart();
+        }
+    }
+
+    /// What lies on the pixels of the pictures.
+    void look()
+    {
+        const bool is_whole = panel_state_.left.at_pixels && needs_reference(panel_state_);
+        const PixelRays rays = {panel_state_.wants_reference
+                                    ? static_cast<std::uint32_t>(panel_state_.reference_rays)
+                                    : 0,
+                                is_whole};
+        try {
+            const PictureSize size = panes_.front().size();
+            bool has_changed = left_.look(panel_state_.left, camera_, size, rays);
+            if (right_ && right_->session().state().model)
+                has_changed |= right_->look(right_cell(panel_state_), camera_, size, {});
+            if (has_changed)
+                restart();
+        } catch (const std::exception& error) {
+            note_ = error.what();
         }
     }
 
@@ -254,8 +284,8 @@ private:
     bool frame(int width, int height)
     {
         take_results();
-        const PanelInput input =
-            panel_.build(panel_state_, session_, figures(), std::exchange(inbox_.keys, {}));
+        const PanelInput input = panel_.build(panel_state_, left_, right_ ? &*right_ : nullptr,
+                                              figures(), std::exchange(inbox_.keys, {}));
         const int covered = static_cast<int>(input.covered * static_cast<float>(width));
         const bool is_first = panes_.empty();
         lay_out({covered, 0, width - covered, height});
@@ -265,25 +295,28 @@ private:
 
         const Framebuffer shown = Framebuffer::window(context_, width, height);
         shown.clear_color(glm::vec4(0.16f, 0.17f, 0.18f, 1.0f));
-        if (has_view())
+        if (has_view()) {
+            look();
             draw_model(shown);
+        }
+        save_wanted(input);
         panel_.draw();
 
         bool keep_open = !input.close;
         if (options_.on_frame)
-            keep_open &= options_.on_frame(read_window(shown), session_);
+            keep_open &= options_.on_frame(read_window(shown), left_.session());
         glfwSwapBuffers(window_);
         return keep_open;
     }
 
     /// Normals until the first values have come: all open is a silhouette without a shape.
-    ViewOptions shown_view() const
+    ViewOptions shown_view(const CellView& cell) const
     {
-        const SessionState& state = session_.state();
+        const SessionState& found = cell.session().state();
         ViewOptions view = panel_state_.view;
-        const bool has_values = state.is_solved || view.colors == Colors::levels ||
-                                view.colors == Colors::textured ||
-                                (view.colors == Colors::rays && state.has_reference());
+        const bool has_values = found.is_solved || cell.has_pixels() ||
+                                view.colors == Colors::levels || view.colors == Colors::textured ||
+                                (view.colors == Colors::rays && cell.has_reference());
         if (!has_values)
             view.colors = Colors::normals;
         return view;
@@ -292,35 +325,45 @@ private:
     void draw_model(const Framebuffer& shown)
     {
         if (samples() < most_samples()) {
-            take_paint();
             Stopwatch watch;
-            for (Pane& pane : panes_) {
-                ViewOptions view = shown_view();
-                view.wipe = pane.wipe;
-                if (shows_atlas()) {
-                    pane.sum.add(flat_map(pane, view));
-                    continue;
-                }
-                renderer_.draw_frame(pane.target, camera_, view, sample_shift(pane.sum.count()));
-                pane.sum.add(pane.target);
-            }
+            for (Pane& pane : panes_)
+                add_sample(pane);
             context_.finish("drawing the model");
             frame_ms_ = 1000.0 * watch.lap();
         }
         for (const Pane& pane : panes_)
-            pane.sum.show(shown, {pane.place.x, pane.place.y});
+            pane.sum.show(shown, {pane.as.place.x, pane.as.place.y}, pane.as.shown);
+    }
+
+    void add_sample(Pane& pane)
+    {
+        CellView& cell = view_of_pane(pane);
+        if (!cell.session().state().model)
+            return;
+        ViewOptions view = shown_view(cell);
+        view.wipe = pane.as.wipe;
+        if (view.colors == Colors::textured) {
+            if (const auto notes = cell.take_paint(); !notes.empty())
+                note_ = notes.front();
+        }
+        if (shows_atlas() && cell.session().state().layout) {
+            pane.sum.add(flat_map(pane, cell, view));
+            return;
+        }
+        cell.draw_frame(pane.target, camera_, view, sample_shift(pane.sum.count()));
+        pane.sum.add(pane.target);
     }
 
     /// The rays' where the pane shows them alone.
-    Image flat_map(const Pane& pane, const ViewOptions& view) const
+    static Image flat_map(const Pane& pane, const CellView& cell, const ViewOptions& view)
     {
-        const SessionState& state = session_.state();
+        const SessionState& state = cell.session().state();
         const ModelMap* rays = state.map_reference.get();
         const SurfaceData data{.layout = state.layout.get(),
-                               .map = rays && pane.wipe == 0.0f ? rays : state.map.get(),
+                               .map = rays && pane.as.wipe == 0.0f ? rays : state.map.get(),
                                .reference = rays,
-                               .paint = paint_ ? &*paint_ : nullptr};
-        return atlas_picture(*state.model->mesh, data, view, pane.place.width, pane.place.height);
+                               .paint = cell.paint()};
+        return atlas_picture(*state.model->mesh, data, view, pane.size().width, pane.size().height);
     }
 
     PanelFigures figures() const
@@ -331,19 +374,24 @@ private:
 
     void apply(const PanelInput& input)
     {
-        session_.solve(panel_state_.settings);
-        session_.want_reference(panel_state_.wants_reference
-                                    ? static_cast<std::uint32_t>(panel_state_.reference_rays)
-                                    : 0);
+        left_.session().solve(panel_state_.left.settings);
+        // at pixels they are traced there
+        left_.session().want_reference(panel_state_.wants_reference && !panel_state_.left.at_pixels
+                                           ? static_cast<std::uint32_t>(panel_state_.reference_rays)
+                                           : 0);
         if (input.cancel) {
-            if (session_.tracing())
+            if (left_.session().tracing() || left_.ray_progress())
                 panel_state_.wants_reference = false;
-            session_.cancel();
+            left_.cancel();
+            if (right_)
+                right_->cancel();
         }
         if (input.solve_again)
-            session_.solve_again();
+            left_.solve_again();
         if (input.frame_all && has_view())
             frame_all();
+        if (input.add_map)
+            add_map();
         if (input.orbit_deg != glm::vec2(0.0f)) {
             orbit(camera_, input.orbit_deg.x, input.orbit_deg.y);
             restart();
@@ -358,6 +406,24 @@ private:
         }
         if (input.view_changed)
             restart();
+    }
+
+    /// For each cell that shows some.
+    void add_map()
+    {
+        try {
+            if (has_view() && panel_state_.left.from_maps)
+                note_ = left_.add_map();
+            if (right_ && right_cell(panel_state_).from_maps)
+                note_ = right_->add_map();
+        } catch (const std::exception& error) {
+            note_ = error.what();
+        }
+    }
+
+    /// After drawing, so that there is a picture.
+    void save_wanted(const PanelInput& input)
+    {
         if (input.save_picture)
             ask_or_save(Saved::picture, panel_state_.picture_path);
         if (input.save_baked)
@@ -391,9 +457,8 @@ private:
     /// Whatever fails is told in the window.
     void save(Saved what, const std::filesystem::path& path)
     {
-        const SessionState& state = session_.state();
         const bool has_content =
-            what == Saved::picture ? has_view() && samples() > 0 : state.is_solved;
+            what == Saved::picture ? has_view() && samples() > 0 : state().is_solved;
         if (!has_content) {
             note_ = what == Saved::picture ? "there is no picture yet" : "nothing is solved yet";
             return;
@@ -402,10 +467,10 @@ private:
             if (what == Saved::picture)
                 save_picture(path);
             else
-                session_.save(path);
+                left_.session().save(path);
             files_.add_written(path);
             note_ = "saved " + path.string();
-            if (what == Saved::baked && state.is_draft)
+            if (what == Saved::baked && state().is_draft)
                 note_ += ", of the draft";
         } catch (const std::exception& error) {
             note_ = error.what();
@@ -414,12 +479,8 @@ private:
 
     void save_picture(const std::filesystem::path& path)
     {
-        std::vector<Image> images;
-        for (const Pane& pane : panes_)
-            images.push_back(pane.sum.mean());
-        Image image = joined(images);
-        if (const auto legend =
-                legend_of(*session_.state().model, session_.state().layout.get(), shown_view()))
+        Image image = joined(panes_);
+        if (const auto legend = legend_of(*state().model, state().layout.get(), shown_view(left_)))
             draw_heat_legend(image, legend->title, legend->low, legend->high);
         write_image(path, image);
     }
@@ -447,15 +508,13 @@ private:
     GLFWwindow* window_;
     Inbox inbox_;
     GlContext context_;
-    Renderer renderer_;
-    Session session_;
+    CellView left_;
+    std::optional<CellView> right_;
     PanelState panel_state_;
     Panel panel_;
     Camera camera_;
     Frame frame_;  ///< that the camera is in
     std::vector<Pane> panes_;
-    std::shared_ptr<const ModelLayout> shown_layout_;  ///< that the renderer has
-    std::optional<BasePaint> paint_;                   ///< of the model; empty until it is wanted
     OutputFiles files_;
     std::string note_;
     double frame_ms_ = 0.0;

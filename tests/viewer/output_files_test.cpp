@@ -1,7 +1,7 @@
 #include "viewer/output_files.h"
 
 #include "temporary_folder.h"
-#include "viewer/panel.h"
+#include "viewer/cell.h"
 
 #include <gtest/gtest.h>
 
@@ -51,19 +51,20 @@ TEST(NextFreeName, IsTheFirstUnderWhichNothingStandsNotEvenALinkToNothing)
 
 TEST(ChooseEngine, EachEngineKeepsItsQuality)
 {
-    PanelState state;
-    EngineSettings& settings = state.settings.engine;
+    Cell cell;
+    std::map<Engine, float> qualities;
+    EngineSettings& settings = cell.settings.engine;
     settings.quality = 3.0f;
-    choose_engine(state, Engine::rays, Device::cpu);
-    choose_engine(state, Engine::disks, Device::gpu);
+    choose_engine(cell, Engine::rays, Device::cpu, qualities);
+    choose_engine(cell, Engine::disks, Device::gpu, qualities);
     EXPECT_EQ(settings.quality, kGood);
     settings.quality = 0.5f;
-    choose_engine(state, Engine::masks, Device::gpu);
+    choose_engine(cell, Engine::masks, Device::gpu, qualities);
     EXPECT_EQ(settings.quality, 3.0f);
-    choose_engine(state, Engine::masks, Device::cpu);
+    choose_engine(cell, Engine::masks, Device::cpu, qualities);
     EXPECT_EQ(settings.quality, 3.0f);
     EXPECT_EQ(settings.device, Device::cpu);
-    choose_engine(state, Engine::disks, Device::cpu);
+    choose_engine(cell, Engine::disks, Device::cpu, qualities);
     EXPECT_EQ(settings.quality, 0.5f);
 }
 

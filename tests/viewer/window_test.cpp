@@ -282,8 +282,8 @@ TEST_F(Window, TheReferenceStandsRightOfTheWipeAndInThePictureBeside)
         options.panel.is_hidden = true;
         options.panel.view.ground = false;
         options.panel.reference_rays = 16;
-        options.panel.settings.engine.engine = Engine::disks;
-        options.panel.settings.engine.strength = 100.0f;
+        options.panel.left.settings.engine.engine = Engine::disks;
+        options.panel.left.settings.engine.strength = 100.0f;
         options.on_frame = [&](const Image& shown, const Session& session) {
             if (session.state().is_solved && !std::exchange(pressed, true))
                 press(key);
@@ -297,6 +297,44 @@ TEST_F(Window, TheReferenceStandsRightOfTheWipeAndInThePictureBeside)
     }
 }
 
+Cell cell_of_disks(bool at_pixels, float strength)
+{
+    Cell cell;
+    cell.at_pixels = at_pixels;
+    cell.settings.engine.engine = Engine::disks;
+    cell.settings.engine.strength = strength;
+    return cell;
+}
+
+// As above, with another cell in the rays' place: one is at vertices, the other at pixels. Until
+// pixels are solved the vertices' values stand there: they are as light.
+TEST_F(Window, AnyCellStandsRightOfTheWipeAndInThePictureBeside)
+{
+    for (const bool is_wipe : {false, true}) {
+        int frames = 0;
+        Extent light{};
+        WindowOptions options;
+        options.input = bowl_file();
+        options.up = UpAxis::z;
+        options.camera = "elevation=60";
+        options.width = 600;
+        options.height = 200;
+        options.panel.is_hidden = true;
+        options.panel.view.ground = false;
+        options.panel.beside = is_wipe ? Beside::wipe : Beside::side_by_side;
+        options.panel.left = cell_of_disks(is_wipe, 100.0f);
+        options.panel.right = cell_of_disks(!is_wipe, 0.0f);
+        options.on_frame = [&](const Image& shown, const Session& session) {
+            light = light_columns(shown);
+            frames += session.state().is_solved && light.high > light.low + 50;
+            return frames < 8;
+        };
+        (void)show_window(options);
+        EXPECT_GE(light.low, 300) << is_wipe;
+        EXPECT_GT(light.high, light.low + 50) << is_wipe;
+    }
+}
+
 /// Saves under these names, a pane on each side.
 WindowOptions saving_options(const std::filesystem::path& input,
                              const std::filesystem::path& picture,
@@ -307,7 +345,7 @@ WindowOptions saving_options(const std::filesystem::path& input,
     options.width = 320;
     options.height = 240;
     options.panel.is_hidden = true;
-    options.panel.reference_place = ReferencePlace::side_by_side;
+    options.panel.beside = Beside::side_by_side;
     options.panel.reference_rays = 2;
     std::snprintf(options.panel.picture_path, sizeof options.panel.picture_path, "%s",
                   picture.c_str());
@@ -394,7 +432,7 @@ Image picture_of_ball(const EngineSettings& engine)
     options.width = 320;
     options.height = 240;
     options.panel.is_hidden = true;
-    options.panel.settings.engine = engine;
+    options.panel.left.settings.engine = engine;
     options.on_frame = [&](const Image& shown, const Session& session) {
         EXPECT_EQ(session.state().message, "");
         frames += session.state().is_solved && !session.state().is_draft;
@@ -425,7 +463,7 @@ TEST_F(Window, AnswersOfTheGpuLookLikeTheCpus)
 // The widget opens a list of two, the second of which is taken. The box has become small before.
 TEST_F(Window, AnotherTargetInThePanelMakesTheModelAnewUnderTheSameCamera)
 {
-    constexpr double kX = 60.0, kWidget = 228.0, kSecond = 269.0;  // pixels: see the panel
+    constexpr double kX = 60.0, kWidget = 251.0, kSecond = 292.0;  // pixels: see the panel
     int frames = 0, frames_after = 0;
     double small = 0.0, after = 0.0;
     WindowOptions options;
@@ -474,7 +512,7 @@ TEST_F(Window, AMapIsShownOnTheModelAndFlat)
     double on_model = 0.0, flat = 0.0;
     WindowOptions options;
     options.input = file;
-    options.panel.settings.texels.emplace().size = 64;
+    options.panel.left.settings.texels.emplace().size = 64;
     options.on_frame = [&](const Image& shown, const Session& session) {
         frames += session.state().is_solved && !session.state().is_draft;
         (frames <= 3 ? on_model : flat) = share(shown, is_border);
@@ -495,7 +533,7 @@ TEST_F(Window, MayGetAsSmallAsItWill)
     options.input = box_file();
     options.width = 320;
     options.height = 240;
-    options.panel.reference_place = ReferencePlace::side_by_side;
+    options.panel.beside = Beside::side_by_side;
     options.panel.reference_rays = 2;
     options.on_frame = [&](const Image& shown, const Session& session) {
         const int sizes[][2] = {{1, 1}, {2, 1}, {1, 300}, {700, 20}, {400, 300}};

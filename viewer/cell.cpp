@@ -1,0 +1,58 @@
+#include "viewer/cell.h"
+
+namespace surfelao {
+
+Where where_of(const Cell& cell)
+{
+    if (cell.at_pixels)
+        return cell.from_maps ? Where::cube_maps : Where::pixels;
+    return cell.settings.texels ? Where::texels : Where::vertices;
+}
+
+void set_where(Cell& cell, Where where, const TexelSettings& texels)
+{
+    cell.from_maps = where == Where::cube_maps;
+    cell.at_pixels = where == Where::pixels || cell.from_maps;
+    cell.settings.texels = where == Where::texels ? std::optional(texels) : std::nullopt;
+    if (where != Where::pixels)
+        cell.screen.reset();
+}
+
+void choose_engine(Cell& cell, Engine engine, Device device, std::map<Engine, float>& qualities)
+{
+    EngineSettings& settings = cell.settings.engine;
+    cell.screen.reset();
+    settings.device = device;
+    if (engine == settings.engine)
+        return;
+    qualities[settings.engine] = settings.quality;
+    settings.engine = engine;
+    settings.quality = qualities.try_emplace(engine, kGood).first->second;
+}
+
+std::string name_of(Where where, bool is_cloud)
+{
+    switch (where) {
+        case Where::vertices:
+            return is_cloud ? "points" : "vertices";
+        case Where::texels:
+            return "texels";
+        case Where::pixels:
+            return "pixels";
+        case Where::cube_maps:
+            return "cube maps";
+    }
+    return {};
+}
+
+std::string how_of(const Cell& cell)
+{
+    return cell.screen ? name_of(cell.screen->method) : name_of(cell.settings.engine);
+}
+
+std::string name_of(const EngineChoice& choice)
+{
+    return name_of(choice.engine) + (choice.device == Device::gpu ? " on GPU" : "");
+}
+
+}  // namespace surfelao

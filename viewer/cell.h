@@ -1,0 +1,46 @@
+/// cell.h: what a picture shows, as a cell of a table: where values lie, and how they are found.
+#pragma once
+
+#include "gpu/screen_space.h"
+#include "viewer/session.h"
+
+#include <map>
+#include <optional>
+#include <string>
+
+namespace surfelao {
+
+enum class Where {
+    vertices,  ///< of a cloud: its points
+    texels,
+    pixels,
+    cube_maps,  ///< texels of cube maps, which pixels read
+};
+
+struct Cell {
+    /// Values at vertices or in a map. At pixels they are shown while the camera moves, and always
+    /// on the ground.
+    SessionSettings settings;
+    bool at_pixels = false;
+    bool from_maps = false;                ///< at pixels: read from cube maps
+    std::optional<ScreenSettings> screen;  ///< at pixels: who answers in the engine's place
+    bool operator==(const Cell&) const = default;
+};
+
+[[nodiscard]] Where where_of(const Cell& cell);
+/// texels: of a map. How stays what it is where that can be.
+void set_where(Cell& cell, Where where, const TexelSettings& texels);
+
+/// Sets who solves. Each engine keeps its own quality, and is `good` at first. qualities: of the
+/// engines that are not chosen.
+void choose_engine(Cell& cell, Engine engine, Device device, std::map<Engine, float>& qualities);
+
+/// "vertices", "texels", "points", "pixels", "cube maps"
+[[nodiscard]] std::string name_of(Where where, bool is_cloud);
+/// "masks", "masks on GPU", "gtao"
+[[nodiscard]] std::string how_of(const Cell& cell);
+
+/// "masks", "masks on GPU"
+[[nodiscard]] std::string name_of(const EngineChoice& choice);
+
+}  // namespace surfelao

@@ -1,0 +1,416 @@
+#include "viewer/cell_view.h"
+
+#include "pixels/seen.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace surfelao {
+namespace {
+
+std::optional<double> progress_of(const PixelSession& session)
+{
+    return session.solving() ? std::optional(session.progress()) : std::nullopt;
+}
+
+}  // namespace
+
+CellView::CellView(const GlContext& context) : context_(context), renderer_(context)
+{
+}
+
+CellView::Changes CellView::update()
+{
+    Changes changes;
+    static_cast<Session::Changes&>(changes) = session_.update();
+    const SessionState& state = session_.state();
+    if (changes.model) {
+        forget_shot();
+        cubes_.forget();
+        maps_asked_.reset();
+        projector_.reset();
+        map_weights_.clear();
+        mesh_.reset();
+        layout_.reset();
+        paint_.reset();
+        renderer_.set_model(*state.model);
+    }
+    if (changes.occlusion) {
+        renderer_.set_occlusion(session_.occlusion());
+        take_map();
+    }
+    if (changes.reference && state.map_reference)
+        renderer_.set_map_reference(*state.map_reference);
+    else if (changes.reference)
+        renderer_.set_reference(state.reference);
+    if (pixels_.update() && !pixels_.answers().picture.empty()) {
+        picture_.emplace(upload(pixels_.answers()));
+        changes.pixels = true;
+    }
+    const bool has_rays = rays_.update();
+    if (has_rays && !rays_.answers().picture.empty()) {
+        rays_picture_.emplace(upload(rays_.answers()));
+        changes.pixels = true;
+    }
+    for (CubeMap& map : cubes_.update()) {
+        if (!projector_)
+            projector_.emplace(context_);
+        projector_->add(std::move(map), 0.0f);
+        map_weights_.push_back(0.0f);
+        changes.pixels = true;
+    }
+    if (changes.occlusion || changes.pixels || has_rays)
+        is_measured_ = false;
+    return changes;
+}
+
+/// The answer's map, or that it has none.
+void CellView::take_map()
+{
+    const SessionState& state = session_.state();
+    if (!state.layout)
+        renderer_.forget_layout();
+    else if (state.layout != layout_)
+        renderer_.set_layout(*state.model->mesh, *state.layout);
+    layout_ = state.layout;
+    if (state.map)
+        renderer_.set_map(*state.map);
+}
+
+std::span<const std::string> CellView::take_paint()
+{
+    if (!paint_) {
+        paint_ = base_paint_of(*session_.state().model->mesh);
+        renderer_.set_paint(*paint_);
+    }
+    return paint_->notes;
+}
+
+Texture2D CellView::upload(const PixelAnswers& found) const
+{
+    return {context_, found.width, found.height, TexelFormat::rgba32f,
+            std::span<const glm::vec4>(found.picture)};
+}
+
+bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, const PixelRays& rays)
+{
+    const std::shared_ptr<const Model>& model = session_.state().model;
+    const Shot shot{model, camera, size};
+    const bool rests = shot == shot_;
+    bool has_changed = !rests && has_pixels();
+    if (!rests) {
+        forget_shot();
+        shot_ = shot;
+    }
+    if (model->geometry().triangles.empty())
+        return has_changed;
+    const Where where = where_of(cell);
+    if (where != Where::pixels || cell.screen)
+        has_changed |= forget_picture();
+    if (where != Where::pixels || !cell.screen)
+        has_changed |= forget_screen();
+    if (where != Where::cube_maps)
+        has_changed |= forget_projection();
+    if (where == Where::cube_maps) {
+        ask_maps(cell.settings.engine);
+        has_changed |= project(rests);
+    } else if (where == Where::pixels && cell.screen) {
+        has_changed |= draw_screen(*cell.screen);
+    } else if (where == Where::pixels && rests) {
+        ask_pixels(cell.settings.engine);
+    }
+    if (rests)
+        ask_rays(rays);
+    if (has_changed)
+        is_measured_ = false;
+    const bool is_there = cell.at_pixels ? has_pixels() : session_.state().is_solved;
+    if (!is_there || rays_.answers().sample.values.empty())
+        error_.reset();
+    else if (!is_measured_)
+        measure();
+    return has_changed;
+}
+
+void CellView::forget_shot()
+{
+    forget_picture();
+    forget_screen();
+    forget_projection();
+    rays_.forget();
+    rays_asked_.reset();
+    rays_picture_.reset();
+    is_drawn_ = false;
+    triangles_.clear();
+    error_.reset();
+    is_measured_ = false;
+    shot_ = {};
+}
+
+/// Whether there was one.
+bool CellView::forget_picture()
+{
+    if (asked_)
+        pixels_.forget();
+    was_cancelled_ = false;
+    asked_.reset();
+    const bool was_there = picture_.has_value();
+    picture_.reset();
+    return was_there;
+}
+
+bool CellView::forget_screen()
+{
+    const bool was_there = screen_asked_.has_value();
+    screen_asked_.reset();
+    return was_there;
+}
+
+bool CellView::forget_projection()
+{
+    coverage_.reset();
+    return std::exchange(is_projected_, false);
+}
+
+const GBuffer& CellView::drawn()
+{
+    const auto [width, height] = shot_.size;
+    if (!mesh_)
+        mesh_.emplace(context_, shot_.model->geometry(), shot_.model->mesh->surface);
+    if (!g_buffer_ || g_buffer_->width() != width || g_buffer_->height() != height)
+        g_buffer_.emplace(context_, width, height);
+    if (!is_drawn_)
+        g_buffer_->draw(*mesh_, view_of(shot_.camera, width, height));
+    is_drawn_ = true;
+    return *g_buffer_;
+}
+
+bool CellView::draw_screen(const ScreenSettings& settings)
+{
+    std::pair<ScreenSettings, Definition> wanted{settings, session_.definition()};
+    wanted.second.ground.reset();  // pictures do not know it
+    if (screen_asked_ == wanted)
+        return false;
+    if (!screen_)
+        screen_.emplace(context_);
+    const GBuffer& seen = drawn();
+    if (!screen_picture_ || screen_picture_->width() != seen.width() ||
+        screen_picture_->height() != seen.height())
+        screen_picture_.emplace(screen_->make_target(seen));
+    screen_->draw(seen, wanted.first, wanted.second, *screen_picture_);
+    screen_asked_ = wanted;
+    return true;
+}
+
+PixelQuestion CellView::question_for(const EngineSettings& engine)
+{
+    const GBuffer& seen = drawn();
+    if (triangles_.empty())
+        triangles_ = seen.read_triangles();
+    return {.model = shot_.model,
+            .view = seen.view(),
+            .width = seen.width(),
+            .height = seen.height(),
+            .triangles = triangles_,
+            .engine = engine};
+}
+
+/// By the session. The GPU's engine is not shared.
+bool CellView::is_prepared(const EngineSettings& engine) const
+{
+    const SessionState& state = session_.state();
+    if (engine.device == Device::gpu)
+        return state.is_solved;
+    return state.prepared && state.prepared->choice() == EngineChoice(engine);
+}
+
+void CellView::ask_pixels(EngineSettings engine)
+{
+    engine.definition = session_.definition();
+    if (asked_ == engine || !is_prepared(engine))
+        return;
+    PixelQuestion question = question_for(engine);
+    question.prepared = engine.device == Device::gpu ? nullptr : session_.state().prepared;
+    pixels_.solve(std::move(question));
+    was_cancelled_ = false;
+    asked_ = engine;
+}
+
+void CellView::ask_maps(EngineSettings engine)
+{
+    engine.definition = session_.definition();
+    if (maps_asked_ == engine || !is_prepared(engine))
+        return;
+    maps_asked_ = engine;
+    if (projector_)
+        projector_->clear();
+    map_weights_.clear();
+    cubes_.ask(
+        {shot_.model, engine, engine.device == Device::gpu ? nullptr : session_.state().prepared});
+}
+
+std::string CellView::add_map()
+{
+    if (!shot_.model || shot_.model->geometry().triangles.empty())
+        return "there is nothing to put a cube map into";
+    static_cast<void>(drawn());  // makes the mesh
+    const Mesh& mesh = *shot_.model->mesh;
+    auto sight = std::make_shared<const CubeSight>(
+        look_around(context_, mesh, *mesh_, shot_.camera.eye, kCubeSize,
+                    offset_of(shot_.model->settings, mesh.geometry.frame)));
+    if (sight->texels.empty())
+        return "a cube map would see nothing from here";
+    if (sight->is_inside)
+        return "here is the inside of a body: no place for a cube map";
+    cubes_.add(std::move(sight));
+    return {};
+}
+
+/// What the maps tell of the shot, where that has changed.
+bool CellView::project(bool rests)
+{
+    if (map_weights_.empty())
+        return forget_projection();
+    constexpr float kFade = 1.0f / 20.0f;  // a picture
+    for (std::size_t i = 0; i < map_weights_.size(); ++i) {
+        if (map_weights_[i] >= 1.0f)
+            continue;
+        map_weights_[i] = std::min(1.0f, map_weights_[i] + kFade);
+        projector_->set_weight(i, map_weights_[i]);
+        is_projected_ = false;
+    }
+    if (is_projected_) {
+        if (rests && !coverage_)
+            measure_coverage();
+        return false;
+    }
+    const GBuffer& seen = drawn();
+    if (!map_picture_ || map_picture_->width() != seen.width() ||
+        map_picture_->height() != seen.height())
+        map_picture_.emplace(projector_->make_target(seen.width(), seen.height()));
+    projector_->project(seen, *map_picture_);
+    is_projected_ = true;
+    coverage_.reset();
+    return true;
+}
+
+void CellView::measure_coverage()
+{
+    if (triangles_.empty())
+        triangles_ = drawn().read_triangles();
+    const std::vector<glm::vec4> found = map_picture_->read_color(map_picture_->rect());
+    std::size_t seen = 0, covered = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        seen += triangles_[i] != 0;
+        covered += triangles_[i] != 0 && found[i].g > 0.0f;
+    }
+    coverage_ = seen > 0 ? static_cast<double>(covered) / static_cast<double>(seen) : 1.0;
+}
+
+void CellView::ask_rays(const PixelRays& rays)
+{
+    const std::pair<PixelRays, Definition> wanted{rays, session_.definition()};
+    if (rays_asked_ == wanted)
+        return;
+    rays_asked_ = wanted;
+    rays_picture_.reset();
+    is_measured_ = false;
+    if (rays.rays == 0)
+        return rays_.forget();
+    EngineSettings engine;
+    engine.engine = Engine::rays;
+    engine.rays = rays.rays;
+    engine.definition = wanted.second;
+    PixelQuestion question = question_for(engine);
+    question.sample = kErrorPixels;
+    question.whole = rays.whole;
+    rays_.solve(std::move(question));
+}
+
+PixelValues CellView::pixel_values() const
+{
+    PixelValues values;
+    if (screen_asked_) {
+        values.own = &screen_picture_->color();
+        values.form = PixelForm::occlusion;
+    } else if (is_projected_) {
+        values.own = &map_picture_->color();
+        values.form = PixelForm::covered;
+    } else if (picture_) {
+        values.own = &*picture_;
+    }
+    if (values.own) {
+        values.rays = rays_picture_ ? &*rays_picture_ : nullptr;
+        values.surface = &g_buffer_->surface();
+    }
+    return values;
+}
+
+void CellView::draw_frame(const Framebuffer& target, const Camera& camera,
+                          const ViewOptions& options, glm::vec2 shift)
+{
+    renderer_.draw_frame(target, camera, options, shift, pixel_values());
+}
+
+/// Of what is shown at the pixels of the sample.
+void CellView::measure()
+{
+    is_measured_ = true;
+    const Framebuffer target = renderer_.make_target(shot_.size.width, shot_.size.height);
+    renderer_.draw_values(target, shot_.camera, pixel_values());
+    const std::vector<glm::vec4> shown = target.read_color(target.rect());
+    const PixelSample& sample = rays_.answers().sample;
+    std::vector<Occlusion> own, traced;
+    for (std::size_t i = 0; i < sample.pixels.size(); ++i) {
+        const glm::vec4& value = shown[sample.pixels[i]];
+        if (value.a == 0.0f)  // an edge that this drawing has rounded to the other side
+            continue;
+        own.push_back({value.r, glm::vec3(0.0f)});
+        traced.push_back(sample.values[i]);
+    }
+    error_ = PixelError{error_statistics(own, traced), rays_asked_->first.rays};
+}
+
+bool CellView::is_busy() const
+{
+    return session_.solving() || session_.tracing() || pixels_.solving() || rays_.solving() ||
+           cubes_.solving();
+}
+
+std::optional<double> CellView::pixel_progress() const
+{
+    if (cubes_.solving())
+        return cubes_.progress();
+    return progress_of(pixels_);
+}
+
+std::optional<double> CellView::ray_progress() const
+{
+    return progress_of(rays_);
+}
+
+const std::string& CellView::pixel_message() const
+{
+    for (const std::string* message : {&pixels_.answers().message, &rays_.answers().message}) {
+        if (!message->empty())
+            return *message;
+    }
+    return cubes_.message();
+}
+
+void CellView::cancel()
+{
+    session_.cancel();
+    was_cancelled_ = pixels_.solving();
+    pixels_.cancel();
+    rays_.cancel();
+    cubes_.cancel();
+}
+
+void CellView::solve_again()
+{
+    session_.solve_again();
+    asked_.reset();
+    rays_asked_.reset();
+}
+
+}  // namespace surfelao

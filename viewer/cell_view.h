@@ -1,0 +1,154 @@
+/// cell_view.h: a cell solved and drawn: its session, its pixels, and what of both lies on the
+/// device of a window.
+#pragma once
+
+#include "bake/statistics.h"
+#include "gpu/g_buffer.h"
+#include "pixels/cube_projector.h"
+#include "pixels/pixel_engine.h"
+#include "viewer/base_paint.h"
+#include "viewer/cell.h"
+#include "viewer/cube_session.h"
+#include "viewer/pixel_session.h"
+#include "viewer/renderer.h"
+#include "viewer/session.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace surfelao {
+
+/// How far what a picture shows is from rays at some of its pixels.
+struct PixelError {
+    ErrorStatistics found;   ///< its count: the pixels
+    std::uint32_t rays = 0;  ///< each
+};
+
+/// Which rays are traced at the pixels.
+struct PixelRays {
+    std::uint32_t rays = 0;  ///< a pixel; 0: none
+    bool whole = false;      ///< at all pixels; else at kErrorPixels of them
+    bool operator==(const PixelRays&) const = default;
+};
+
+/// In one thread, the context's. What is at pixels is of one camera: where the camera moves it is
+/// forgotten, and solved again once the camera rests for a frame. Methods that ask the picture
+/// alone are drawn in every frame.
+class CellView {
+public:
+    explicit CellView(const GlContext& context);
+
+    Session& session() { return session_; }
+    const Session& session() const { return session_; }
+    Renderer& renderer() { return renderer_; }
+
+    /// What the background threads have finished goes to the device. Throws where that refuses.
+    struct Changes : Session::Changes {
+        bool pixels = false;
+    };
+    [[nodiscard]] Changes update();
+
+    /// Once a frame, before it is drawn. A model must be there. True where other values lie on the
+    /// pixels than before. Throws std::runtime_error where the device refuses, SettingsError for
+    /// settings out of their ranges.
+    [[nodiscard]] bool look(const Cell& cell, const Camera& camera, PictureSize size,
+                            const PixelRays& rays);
+
+    /// Puts a cube map where the camera of the last look() is. It must not be in a body: what is
+    /// wrong with the place, or an empty text.
+    [[nodiscard]] std::string add_map();
+    std::size_t map_count() const { return cubes_.count(); }
+    /// Of the pixels that see something, the share that maps answer; while the camera rests.
+    const std::optional<double>& coverage() const { return coverage_; }
+
+    /// Read when it is first wanted. Its notes.
+    std::span<const std::string> take_paint();
+    const BasePaint* paint() const { return paint_ ? &*paint_ : nullptr; }
+
+    /// Renderer::draw_frame(), with the pixels' values where look() has found some.
+    void draw_frame(const Framebuffer& target, const Camera& camera, const ViewOptions& options,
+                    glm::vec2 shift);
+
+    bool has_pixels() const { return pixel_values().own != nullptr; }
+    /// By rays, where the values shown lie.
+    bool has_reference() const
+    {
+        return has_pixels() ? rays_picture_.has_value() : session_.state().has_reference();
+    }
+    const std::optional<PixelError>& pixel_error() const { return error_; }
+    const PixelAnswers& pixels() const { return pixels_.answers(); }
+    bool is_busy() const;
+    bool was_cancelled() const { return session_.was_cancelled() || was_cancelled_; }
+    /// 0 to 1 where pixels are solved, or rays traced at them.
+    std::optional<double> pixel_progress() const;
+    std::optional<double> ray_progress() const;
+    /// What went wrong at the pixels; else empty.
+    const std::string& pixel_message() const;
+
+    /// Stops what runs in the background; what was found stays.
+    void cancel();
+    /// After cancel().
+    void solve_again();
+
+private:
+    /// What the pixels are of.
+    struct Shot {
+        std::shared_ptr<const Model> model;
+        Camera camera;
+        PictureSize size;
+        bool operator==(const Shot&) const = default;
+    };
+    const GBuffer& drawn();
+    [[nodiscard]] PixelValues pixel_values() const;
+    [[nodiscard]] PixelQuestion question_for(const EngineSettings& engine);
+    void forget_shot();
+    bool forget_picture();
+    bool forget_screen();
+    bool forget_projection();
+    [[nodiscard]] bool project(bool rests);
+    void ask_maps(EngineSettings engine);
+    [[nodiscard]] bool is_prepared(const EngineSettings& engine) const;
+    void measure_coverage();
+    [[nodiscard]] bool draw_screen(const ScreenSettings& settings);
+    void ask_pixels(EngineSettings engine);
+    void ask_rays(const PixelRays& rays);
+    [[nodiscard]] Texture2D upload(const PixelAnswers& found) const;
+    void take_map();
+    void measure();
+
+    const GlContext& context_;
+    Session session_;
+    Renderer renderer_;
+    std::shared_ptr<const ModelLayout> layout_;  ///< that the renderer has
+    std::optional<BasePaint> paint_;             ///< of the model; empty until it is wanted
+
+    Shot shot_;
+    std::optional<DrawnMesh> mesh_;  ///< of the model; empty until it is wanted
+    std::optional<GBuffer> g_buffer_;
+    bool is_drawn_ = false;                 ///< it shows the shot
+    std::vector<std::uint32_t> triangles_;  ///< of it; empty until they were read
+    std::optional<ScreenSpace> screen_;
+    std::optional<Framebuffer> screen_picture_;
+    std::optional<std::pair<ScreenSettings, Definition>> screen_asked_;
+    std::optional<EngineSettings> asked_;
+    std::optional<std::pair<PixelRays, Definition>> rays_asked_;
+    std::optional<Texture2D> picture_, rays_picture_;
+    std::optional<EngineSettings> maps_asked_;
+    std::optional<CubeProjector> projector_;
+    std::vector<float> map_weights_;  ///< a map fades in
+    std::optional<Framebuffer> map_picture_;
+    bool is_projected_ = false;  ///< it shows the shot
+    std::optional<double> coverage_;
+    bool is_measured_ = false;  ///< error_ is of what is shown
+    std::optional<PixelError> error_;
+    bool was_cancelled_ = false;  ///< the pixels, before their end
+    PixelSession pixels_, rays_;
+    CubeSession cubes_;
+};
+
+}  // namespace surfelao
