@@ -367,6 +367,11 @@ std::string mark_of(const BakeSettings& settings)
     if (const auto& ground = settings.ground)
         text += " ground=" + text_of(*ground);
     text += " " + text_of(settings.target) + text_of(settings.parts);
+    if (const auto& moment = settings.reading.moment) {
+        add(" time=", moment->seconds);
+        if (!moment->animation.empty())
+            text += " animation=" + moment->animation;
+    }
     if (settings.subdivide)
         add(" subdivide=", *settings.subdivide);
     for (const fs::path& other : settings.beside)
