@@ -67,7 +67,7 @@ struct PixelPicture {
 
 /// view: of the whole picture. drawn: of the mesh, on this context. occluders: of mesh.occluding().
 /// Throws as solve(), ScreenSpace::draw() and std::runtime_error where the device refuses;
-/// Cancelled. progress: "see", "solve", "edges", "reference", band by band.
+/// Cancelled. progress: "solve", "edges", "reference", band by band.
 [[nodiscard]] PixelPicture pixel_picture(const GlContext& context, const Mesh& mesh,
                                          const DrawnMesh& drawn, Occluders& occluders,
                                          const View& view, const PixelPictureSettings& settings,

@@ -7,6 +7,8 @@
 //                                 against robust rays at so many of the pixels' middles, evenly
 //                                 spread over the pixels in their order.
 //
+//                                 Then the same of all views together, as "all": without times.
+//
 // between: the RMS difference, at places of the first view's pixels that the second one sees too,
 // of the answers there among the first view's receivers and among the second's.
 
@@ -45,6 +47,17 @@ struct ExactWorld {
     const DrawnMesh& drawn;
     Occluders& occluders;
     PictureSize size;
+};
+
+/// All views of one setting together.
+struct Pool {
+    float limit = 0.0f;
+    float quality = 0.0f;
+    std::vector<Occlusion> answers = {}, reference = {};
+    double noise2 = 0.0;    // of the reference, times points
+    double between2 = 0.0;  // of each view, summed
+    std::uint64_t ill_defined = 0;
+    int views = 0;
 };
 
 /// What one camera sees.
@@ -176,14 +189,71 @@ PictureSeconds time_picture(const ExactWorld& world, const Sight& sight,
     return seconds;
 }
 
+Pool& pool_of(std::vector<Pool>& pools, float limit, float quality)
+{
+    for (Pool& pool : pools) {
+        if (pool.limit == limit && pool.quality == quality)
+            return pool;
+    }
+    return pools.emplace_back(Pool{.limit = limit, .quality = quality});
+}
+
+std::string errors_text(const ErrorStatistics& error, std::uint64_t ill_defined, double between)
+{
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "\"points\": %llu, \"ill_defined\": %llu, \"rmse\": %.6f, \"bias\": %.6f, "
+                  "\"p95\": %.5f, \"max\": %.4f, \"between\": %.6f",
+                  static_cast<unsigned long long>(error.count),
+                  static_cast<unsigned long long>(ill_defined), error.rmse, error.bias, error.p95,
+                  error.max, between);
+    return text;
+}
+
+std::string begin_of(const std::string& model, float limit, float quality)
+{
+    EngineSettings engine;
+    engine.quality = quality;
+    char text[256];
+    std::snprintf(text, sizeof text, "{\"model\": \"%s\", \"limit\": %g, \"setting\": \"%s\"",
+                  model.c_str(), std::isfinite(limit) ? double{limit} : 0.0,
+                  setting_of(engine).c_str());
+    return text;
+}
+
+/// One row: a view with a limit by an engine.
+void print_row(const ExactWorld& world, const Sight& sight, const Sight& other,
+               const SurfaceTruth& truth, const EngineSettings& engine,
+               const std::vector<Receiver>& asked, Pool& pool)
+{
+    const Prepared& prepared = world.occluders.prepared_for(engine);
+    const std::vector<Occlusion> answers = solve(prepared, sight.seen.receivers, engine).occlusion;
+    const std::vector<Occlusion> judged = kept(truth, asked, spread(answers, asked.size()));
+    const double apart = between(world, sight, answers, other, engine);
+    const PictureSeconds seconds = time_picture(world, sight, engine);
+    std::printf(
+        ", \"pixels\": %zu, %s, \"tree_s\": %.4f, \"see_s\": %.4f, \"solve_s\": %.4f, "
+        "\"edges_s\": %.4f, \"extras\": %llu}",
+        sight.seen.pixels.size(),
+        errors_text(error_against(truth, judged), truth.ill_defined, apart).c_str(),
+        prepared.seconds().surfels + prepared.seconds().tree, seconds.see, seconds.solve,
+        seconds.edges, static_cast<unsigned long long>(seconds.extras));
+    std::fflush(stdout);
+    pool.answers.insert(pool.answers.end(), judged.begin(), judged.end());
+    pool.reference.insert(pool.reference.end(), truth.reference.begin(), truth.reference.end());
+    pool.noise2 += truth.noise * truth.noise * static_cast<double>(judged.size());
+    pool.between2 += apart * apart;
+    pool.ill_defined += truth.ill_defined;
+    ++pool.views;
+}
+
 void print_model(const GlContext& context, const char* file, PictureSize size, std::size_t points,
-                 bool& is_first)
+                 std::vector<Pool>& pools)
 {
     const Mesh mesh = make_mesh(read_scene(file));
     const DrawnMesh drawn(context, mesh.geometry, mesh.surface);
     Occluders occluders(mesh.geometry);
     const ExactWorld world{context, mesh, drawn, occluders, size};
-    const Prepared& prepared = occluders.prepared_for({});
     const Sight sights[] = {sight_of(world, kStandpoints[0]), sight_of(world, kStandpoints[1])};
     for (const float limit : kLimits) {
         for (int v = 0; v < 2; ++v) {
@@ -198,29 +268,26 @@ void print_model(const GlContext& context, const char* file, PictureSize size, s
                 EngineSettings engine;
                 engine.quality = quality;
                 engine.definition = truth_settings.definition;
-                const std::vector<Occlusion> answers =
-                    solve(prepared, sight.seen.receivers, engine).occlusion;
-                const ErrorStatistics error =
-                    error_against(truth, kept(truth, asked, spread(answers, points)));
-                const PictureSeconds seconds = time_picture(world, sight, engine);
-                std::printf(
-                    "%s\n{\"model\": \"%s\", \"view\": %d, \"limit\": %g, "
-                    "\"setting\": \"%s\", \"pixels\": %zu, \"points\": %zu, "
-                    "\"ill_defined\": %llu, \"rmse\": %.6f, \"bias\": %.6f, "
-                    "\"p95\": %.5f, \"max\": %.4f, \"between\": %.6f, \"tree_s\": %.4f, "
-                    "\"see_s\": %.4f, \"solve_s\": %.4f, \"edges_s\": %.4f, "
-                    "\"extras\": %llu}",
-                    is_first ? "" : ",", mesh.scene.name.c_str(), v + 1,
-                    std::isfinite(limit) ? double{limit} : 0.0, setting_of(engine).c_str(),
-                    sight.seen.pixels.size(), truth.points.size(),
-                    static_cast<unsigned long long>(truth.ill_defined), error.rmse, error.bias,
-                    error.p95, error.max, between(world, sight, answers, sights[1 - v], engine),
-                    prepared.seconds().surfels + prepared.seconds().tree, seconds.see,
-                    seconds.solve, seconds.edges, static_cast<unsigned long long>(seconds.extras));
-                std::fflush(stdout);
-                is_first = false;
+                std::printf("%s, \"view\": %d", begin_of(mesh.scene.name, limit, quality).c_str(),
+                            v + 1);
+                print_row(world, sight, sights[1 - v], truth, engine, asked,
+                          pool_of(pools, limit, quality));
+                std::printf(",\n");
             }
         }
+    }
+}
+
+void print_pools(const std::vector<Pool>& pools)
+{
+    for (const Pool& pool : pools) {
+        const double noise = std::sqrt(
+            pool.noise2 / static_cast<double>(std::max<std::size_t>(1, pool.answers.size())));
+        std::printf("%s, %s}%s\n", begin_of("all", pool.limit, pool.quality).c_str(),
+                    errors_text(error_statistics(pool.answers, pool.reference, noise),
+                                pool.ill_defined, std::sqrt(pool.between2 / pool.views))
+                        .c_str(),
+                    &pool == &pools.back() ? "" : ",");
     }
 }
 
@@ -230,11 +297,12 @@ int run(int count, char** words)
         return 2;
     const GlContext context = GlContext::create(GlBackend::osmesa);
     const PictureSize size{std::stoi(words[3]), std::stoi(words[4])};
-    bool is_first = true;
-    std::printf("[");
+    std::vector<Pool> pools;
+    std::printf("[\n");
     for (int i = 5; i < count; ++i)
-        print_model(context, words[i], size, std::stoul(words[2]), is_first);
-    std::printf("\n]\n");
+        print_model(context, words[i], size, std::stoul(words[2]), pools);
+    print_pools(pools);
+    std::printf("]\n");
     return 0;
 }
 
