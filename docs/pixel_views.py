@@ -4,6 +4,7 @@ views, beside what the comparison from which the project comes has published (do
 from figure_views import fixed, joined, table, thousands, view
 
 METHODS = {"ssao-disc": "SSAO disc", "ssao-sphere": "SSAO sphere", "vo": "VO", "hbao": "HBAO"}
+ALL_METHODS = {**METHODS, "gtao": "GTAO", "bitmask": "bit mask"}
 SAMPLES = (24, 16, 8)
 
 # Vocilka. Vergleich von Screen-Space-Ambient-Occlusion-Verfahren. Bachelor thesis, University of Applied
@@ -22,7 +23,7 @@ PUBLISHED = {
 
 
 def views_of(figures):
-    return [camera["view"] for camera in figures["origin"]["cameras"]]
+    return [camera["view"] for camera in figures["origin"]["cameras"] if camera["kind"] == "far"]
 
 
 def taps_of(setting):
@@ -62,26 +63,45 @@ def origin_published(figures):
 
 @view
 def origin_again(figures, key="rmse_whole"):
-    """origin_again rmse_whole|rmse: its methods with its settings in our views, RMSE in per cent"""
+    """origin_again rmse_whole|rmse: its methods and others, near, in our views, RMSE in per cent"""
     rows = []
     for shown in views_of(figures):
-        for method, name in METHODS.items():
+        for method, name in ALL_METHODS.items():
             rows.append([shown, name,
-                         *[fixed(rows_of(figures, "origin", method, samples)[shown][key], 1)
+                         *[fixed(rows_of(figures, "near", method, samples)[shown][key], 1)
                            for samples in SAMPLES]])
+        for setting in ("good", "draft"):
+            rows.append([shown, f"masks, {setting}",
+                         fixed(rows_of(figures, "near", "masks", setting)[shown][key], 1), "", ""])
     return table(["view", "method", "24", "16", "8 samples"], rows)
 
 
-LADDER = (("masks", "good", "masks, good", "ours"), ("masks", "draft", "masks, draft", "ours"),
-          ("rays", "64 rays", "rays, 64", "ours"),
-          ("gtao", 24, "GTAO, 24", "ours"), ("gtao", 8, "GTAO, 8", "ours"),
-          ("bitmask", 24, "bit mask, 24", "ours"), ("bitmask", 8, "bit mask, 8", "ours"),
-          ("hbao", 24, "HBAO, 24", "ours"), ("hbao", 24, "HBAO, 24, as there", "origin"),
-          ("vo", 24, "VO, 24", "ours"), ("vo", 24, "VO, 24, as there", "origin"),
-          ("ssao-sphere", 24, "SSAO sphere, 24", "ours"),
-          ("ssao-sphere", 24, "SSAO sphere, 24, as there", "origin"),
-          ("ssao-disc", 24, "SSAO disc, 24", "ours"),
-          ("ssao-disc", 24, "SSAO disc, 24, as there", "origin"))
+@view
+def origin_means(figures):
+    """Means over the views, near: surface and whole RMSE, bias by samples, ms"""
+    rows = []
+    for method, name in ALL_METHODS.items():
+        found = {samples: rows_of(figures, "near", method, samples) for samples in SAMPLES}
+        rows.append([name, *[fixed(mean_of(found[samples], "rmse"), 1) for samples in SAMPLES],
+                     *[f"{mean_of(found[samples], 'bias'):+.1f}" for samples in SAMPLES],
+                     *[fixed(mean_of(found[samples], "ms"), 0) for samples in SAMPLES]])
+    for setting in ("good", "draft"):
+        found = rows_of(figures, "near", "masks", setting)
+        rows.append([f"masks, {setting}", fixed(mean_of(found, "rmse"), 1), "", "",
+                     f"{mean_of(found, 'bias'):+.1f}", "", "", fixed(mean_of(found, "ms"), 0), "", ""])
+    return table(["means, %", "24", "16", "8 samples", "bias: 24", "16", "8", "ms: 24", "16", "8"], rows)
+
+
+LADDER = (("masks", "good", "masks, good", "far"), ("masks", "draft", "masks, draft", "far"),
+          ("rays", "64 rays", "rays, 64", "far"),
+          ("gtao", 24, "GTAO, 24", "far"), ("gtao", 8, "GTAO, 8", "far"),
+          ("bitmask", 24, "bit mask, 24", "far"), ("bitmask", 8, "bit mask, 8", "far"),
+          ("hbao", 24, "HBAO, 24", "far"), ("hbao", 24, "HBAO, 24, as there", "far_there"),
+          ("vo", 24, "VO, 24", "far"), ("vo", 24, "VO, 24, as there", "far_there"),
+          ("ssao-sphere", 24, "SSAO sphere, 24", "far"),
+          ("ssao-sphere", 24, "SSAO sphere, 24, as there", "far_there"),
+          ("ssao-disc", 24, "SSAO disc, 24", "far"),
+          ("ssao-disc", 24, "SSAO disc, 24, as there", "far_there"))
 
 
 @view
@@ -99,14 +119,13 @@ def origin_all(figures):
 
 
 @view
-def origin_limits(figures):
-    """The methods with as many samples as help: RMSE in per cent on surface pixels, and masks there"""
+def origin_limits(figures, kind="far"):
+    """origin_limits near|far: the methods with a thousand samples: RMSE in per cent on surface pixels"""
     shown = views_of(figures)
     rows = []
-    for engine, name in (*METHODS.items(), ("gtao", "GTAO"), ("bitmask", "bit mask"),
-                         ("masks", "masks, good")):
-        found = rows_of(figures, "limit", engine)
-        few = rows_of(figures, "ours", engine, "good" if engine == "masks" else 24)
+    for engine, name in (*ALL_METHODS.items(), ("masks", "masks, good")):
+        found = rows_of(figures, f"{kind}_limit", engine)
+        few = rows_of(figures, kind, engine, "good" if engine == "masks" else 24)
         rows.append([name, *[fixed(found[look]["rmse"], 1) for look in shown],
                      fixed(mean_of(found, "rmse"), 1), fixed(mean_of(few, "rmse"), 1)])
     return table(["", *shown, "mean", "with 24 samples"], rows)
@@ -114,18 +133,24 @@ def origin_limits(figures):
 
 @view
 def origin_setup(figures):
-    """What each view is: camera, radius, share of the picture that is surface, noise of the rays"""
-    return table(["view", "model", "radius, of the diagonal", "camera", "surface, %",
-                  "mean occlusion, %", "noise of 256 rays, %"],
-                 [[camera["view"], camera["model"], camera["radius"].replace("%", " %"),
-                   f"`{camera['from']}`", fixed(100 * camera["share"], 0),
-                   fixed(100 * camera["mean_occlusion"], 0), fixed(camera["noise"], 2)]
-                  for camera in figures["origin"]["cameras"]])
+    """What each view is: camera, share of the picture that is surface; mean occlusion and noise near and far"""
+    rows = []
+    near = {camera["view"]: camera for camera in figures["origin"]["cameras"] if camera["kind"] == "near"}
+    for far in figures["origin"]["cameras"]:
+        if far["kind"] != "far":
+            continue
+        one = near[far["view"]]
+        rows.append([far["view"], f"`{far['from']}`", fixed(100 * far["share"], 0),
+                     *[value for camera in (one, far)
+                       for value in (camera["radius"].replace("%", " %"),
+                                     fixed(100 * camera["mean_occlusion"], 0), fixed(camera["noise"], 2))]])
+    return table(["view", "camera", "surface, %", "near: radius", "mean occlusion, %", "noise of the rays, %",
+                  "far: radius", "mean occlusion, %", "noise, %"], rows)
 
 
 @view
-def origin_picture(figures, kind="ours"):
-    """origin_picture ours|limit: the size of the pictures"""
+def origin_picture(figures, kind="far"):
+    """origin_picture [KIND]: the size of the pictures"""
     row = next(row for row in figures["origin"]["rows"] if row["kind"] == kind)
     return f"{thousands(row['width'])} x {thousands(row['height'])}"
 
@@ -147,7 +172,7 @@ def origin_value(figures, kind, engine, setting, key="rmse", digits="1"):
 
 
 @view
-def origin_better(figures, better, worse, samples, kind="origin"):
+def origin_better(figures, better, worse, samples, kind="near"):
     """origin_better BETTER WORSE SAMPLES [KIND]: "4 of 5" views in which one errs less than the other"""
     few, many = (rows_of(figures, kind, name, int(samples)) for name in (better, worse))
     won = sum(few[look]["rmse"] < many[look]["rmse"] for look in few)
@@ -155,7 +180,7 @@ def origin_better(figures, better, worse, samples, kind="origin"):
 
 
 @view
-def origin_grows(figures, engine, kind="origin"):
+def origin_grows(figures, engine, kind="near"):
     """origin_grows ENGINE [KIND]: what 8 samples add to the error of 24, means, in per cent of it"""
     return fixed(100 * (mean(figures, kind, engine, 8) / mean(figures, kind, engine, 24) - 1), 0)
 
@@ -164,4 +189,4 @@ def origin_grows(figures, engine, kind="origin"):
 def origin_times(figures, engine, setting, over="masks", good="good"):
     """origin_times ENGINE SETTING: its mean RMSE over that of masks at good"""
     wanted = int(setting) if setting.isdigit() else setting
-    return fixed(mean(figures, "ours", engine, wanted) / mean(figures, "ours", over, good), 1)
+    return fixed(mean(figures, "far", engine, wanted) / mean(figures, "far", over, good), 0)
