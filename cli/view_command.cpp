@@ -70,6 +70,9 @@ void check_view(const ViewCommandOptions& options)
 {
     const std::string engine = options.engine.engine.value_or("masks");
     check_pixel_options(std::span(&engine, 1), options.pixels, options.texels, options.measure);
+    if (is_at_cube_maps(options.texels) && screen_of(options))
+        throw UsageError("--engine " + engine +
+                         " is for --at pixels: the window's cube maps have masks, disks or rays.");
     if (options.pixels.guard)
         throw UsageError("--guard is for render and compare.");
     const Cell cell = cell_of(options);

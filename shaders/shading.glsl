@@ -24,6 +24,7 @@ const int kBentNormals = 3;
 const int kNormals = 4;
 const int kLevels = 5;
 const int kEnvironment = 6;
+const int kRadius = 11;
 
 // Twin of heat_color in image/color_map.cpp: x = 0 and 1 are the middles of the outer texels.
 vec3 heat_color(float x)
@@ -65,6 +66,8 @@ vec3 shade(vec4 normal_level, vec4 own, vec4 reference)
         return direction_color(safe_normalize(normal_level.xyz));
     if (u_colors == kLevels)
         return heat_color(normal_level.w);
+    if (u_colors == kRadius)
+        return heat_color(values.w);
     float visibility = 1.0 - (u_colors == kRays ? reference.w : values.w);
     if (u_colors != kEnvironment)  // as the baked colours look in other programs
         return srgb_decode(vec3(kPaper * visibility));

@@ -30,6 +30,18 @@ void choose_engine(Cell& cell, Engine engine, Device device, std::map<Engine, fl
     settings.quality = qualities.try_emplace(engine, kGood).first->second;
 }
 
+bool has_radius(const Cell& cell)
+{
+    return cell.screen && cell.screen->method == ScreenMethod::vo && cell.screen->rule > 0;
+}
+
+ViewOptions options_for(const Cell& cell, ViewOptions options)
+{
+    if (options.colors == Colors::radius && !has_radius(cell))
+        options.colors = Colors::visibility;
+    return options;
+}
+
 std::string name_of(Where where, bool is_cloud)
 {
     switch (where) {

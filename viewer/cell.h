@@ -3,6 +3,7 @@
 
 #include "gpu/screen_space.h"
 #include "viewer/session.h"
+#include "viewer/view_options.h"
 
 #include <map>
 #include <optional>
@@ -34,6 +35,11 @@ void set_where(Cell& cell, Where where, const TexelSettings& texels);
 /// Sets who solves. Each engine keeps its own quality, and is `good` at first. qualities: of the
 /// engines that are not chosen.
 void choose_engine(Cell& cell, Engine engine, Device device, std::map<Engine, float>& qualities);
+
+/// Whether the picture has a radius of its own at every pixel.
+[[nodiscard]] bool has_radius(const Cell& cell);
+/// The same, but visibility where the cell has nothing of these colours.
+[[nodiscard]] ViewOptions options_for(const Cell& cell, ViewOptions options);
 
 /// "vertices", "texels", "points", "pixels", "cube maps"
 [[nodiscard]] std::string name_of(Where where, bool is_cloud);

@@ -92,7 +92,8 @@ Texture2D CellView::upload(const PixelAnswers& found) const
             std::span<const glm::vec4>(found.picture)};
 }
 
-bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, const PixelRays& rays)
+bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, const PixelRays& rays,
+                    Colors colors)
 {
     const std::shared_ptr<const Model>& model = session_.state().model;
     const Shot shot{model, camera, size};
@@ -105,6 +106,7 @@ bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, co
     if (model->geometry().triangles.empty())
         return has_changed;
     const Where where = where_of(cell);
+    const bool shows_radius = colors == Colors::radius && has_radius(cell);
     if (where != Where::pixels || cell.screen)
         has_changed |= forget_picture();
     if (where != Where::pixels || !cell.screen)
@@ -115,7 +117,7 @@ bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, co
         ask_maps(cell.settings.engine);
         has_changed |= project(rests);
     } else if (where == Where::pixels && cell.screen) {
-        has_changed |= draw_screen(*cell.screen);
+        has_changed |= draw_screen(*cell.screen, shows_radius);
     } else if (where == Where::pixels && rests) {
         ask_pixels(cell.settings.engine);
     }
@@ -124,7 +126,7 @@ bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, co
     if (has_changed)
         is_measured_ = false;
     const bool is_there = cell.at_pixels ? has_pixels() : session_.state().is_solved;
-    if (!is_there || rays_.answers().sample.values.empty())
+    if (!is_there || shows_radius || rays_.answers().sample.values.empty())
         error_.reset();
     else if (!is_measured_)
         measure();
@@ -184,10 +186,10 @@ const GBuffer& CellView::drawn()
     return *g_buffer_;
 }
 
-bool CellView::draw_screen(const ScreenSettings& settings)
+bool CellView::draw_screen(const ScreenSettings& settings, bool shows_radius)
 {
-    std::pair<ScreenSettings, Definition> wanted{settings, session_.definition()};
-    wanted.second.ground.reset();  // pictures do not know it
+    ScreenQuestion wanted{settings, session_.definition(), shows_radius};
+    wanted.definition.ground.reset();  // pictures do not know it
     if (screen_asked_ == wanted)
         return false;
     if (!screen_)
@@ -196,7 +198,10 @@ bool CellView::draw_screen(const ScreenSettings& settings)
     if (!screen_picture_ || screen_picture_->width() != seen.width() ||
         screen_picture_->height() != seen.height())
         screen_picture_.emplace(screen_->make_target(seen));
-    screen_->draw(seen, wanted.first, wanted.second, *screen_picture_);
+    if (shows_radius)
+        screen_->draw_radius(seen, settings, wanted.definition, *screen_picture_);
+    else
+        screen_->draw(seen, settings, wanted.definition, *screen_picture_);
     screen_asked_ = wanted;
     return true;
 }

@@ -54,10 +54,10 @@ public:
     [[nodiscard]] Changes update();
 
     /// Once a frame, before it is drawn. A model must be there. True where other values lie on the
-    /// pixels than before. Throws std::runtime_error where the device refuses, SettingsError for
-    /// settings out of their ranges.
+    /// pixels than before. colors: that are drawn; Colors::radius has values of its own. Throws
+    /// std::runtime_error where the device refuses, SettingsError for settings out of their ranges.
     [[nodiscard]] bool look(const Cell& cell, const Camera& camera, PictureSize size,
-                            const PixelRays& rays);
+                            const PixelRays& rays, Colors colors = Colors::visibility);
 
     /// Puts a cube map where the camera of the last look() is. It must not be in a body: what is
     /// wrong with the place, or an empty text.
@@ -114,7 +114,7 @@ private:
     void ask_maps(EngineSettings engine);
     [[nodiscard]] bool is_prepared(const EngineSettings& engine) const;
     void measure_coverage();
-    [[nodiscard]] bool draw_screen(const ScreenSettings& settings);
+    [[nodiscard]] bool draw_screen(const ScreenSettings& settings, bool shows_radius);
     void ask_pixels(EngineSettings engine);
     void ask_rays(const PixelRays& rays);
     [[nodiscard]] Texture2D upload(const PixelAnswers& found) const;
@@ -134,7 +134,13 @@ private:
     std::vector<std::uint32_t> triangles_;  ///< of it; empty until they were read
     std::optional<ScreenSpace> screen_;
     std::optional<Framebuffer> screen_picture_;
-    std::optional<std::pair<ScreenSettings, Definition>> screen_asked_;
+    struct ScreenQuestion {
+        ScreenSettings settings;
+        Definition definition;
+        bool radius = false;  ///< in place of occlusion
+        bool operator==(const ScreenQuestion&) const = default;
+    };
+    std::optional<ScreenQuestion> screen_asked_;  ///< of the shot
     std::optional<EngineSettings> asked_;
     std::optional<std::pair<PixelRays, Definition>> rays_asked_;
     std::optional<Texture2D> picture_, rays_picture_;

@@ -126,8 +126,16 @@ void place_labels(float x, const char* left, const char* right)
     const ImU32 color = IM_COL32(255, 255, 255, 150);
     const float margin = 8.0f * ImGui::GetIO().FontGlobalScale;
     list.AddLine(ImVec2(x, 0.0f), ImVec2(x, ImGui::GetIO().DisplaySize.y), color, 1.0f);
-    list.AddText(ImVec2(x - margin - ImGui::CalcTextSize(left).x, margin), color, left);
-    list.AddText(ImVec2(x + margin, margin), color, right);
+    const auto label = [&](float from, const char* text) {
+        const ImVec2 size = ImGui::CalcTextSize(text);
+        const float around = 0.5f * margin;
+        list.AddRectFilled(ImVec2(from - around, margin - around),
+                           ImVec2(from + size.x + around, margin + size.y + around),
+                           IM_COL32(0, 0, 0, 160), around);
+        list.AddText(ImVec2(from, margin), IM_COL32_WHITE, text);
+    };
+    label(x - margin - ImGui::CalcTextSize(left).x, left);
+    label(x + margin, right);
 }
 
 /// "masks at pixels"; what stands in is told.
@@ -218,7 +226,8 @@ PanelInput Panel::build(PanelState& state, const CellView& left_view, const Cell
     if (state.question)
         question_window(*state.question, input.reply);
     if (const std::shared_ptr<const Model>& model = session.state().model) {
-        if (const auto shown = legend_of(*model, session.state().layout.get(), state.view))
+        if (const auto shown = legend_of(*model, session.state().layout.get(),
+                                         options_for(state.left, state.view)))
             legend(shown->title, shown->low, shown->high);
     }
     const float left = input.covered * display.x;

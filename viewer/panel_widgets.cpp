@@ -19,7 +19,7 @@ constexpr int kBins = 48;
 
 constexpr const char* kColorNames[] = {"visibility", "rays",     "difference",  "bent normals",
                                        "normals",    "levels",   "environment", "charts",
-                                       "density",    "textured", "coverage"};
+                                       "density",    "textured", "coverage",    "radius"};
 constexpr const char* kSurfaceNames[] = {"triangles", "splats", "affine", "points"};
 
 constexpr const char* kHelp[][2] = {
@@ -259,10 +259,10 @@ void map_lines(const CellView& view)
     if (view.map_count() == 0)
         ImGui::TextWrapped("no cube map yet: C puts one where the eye is");
     else if (view.coverage())
-        ImGui::Text("%zu cube maps, %.1f %% of the pixels", view.map_count(),
+        ImGui::Text("cube maps: %zu, %.1f %% of the pixels", view.map_count(),
                     100.0 * *view.coverage());
     else
-        ImGui::Text("%zu cube maps", view.map_count());
+        ImGui::Text("cube maps: %zu", view.map_count());
 }
 
 void pixel_lines(const CellView& view)

@@ -64,6 +64,8 @@ std::optional<Legend> legend_of(const Model& model, const ModelLayout* layout,
         const glm::vec2 range = level_range(model);
         return Legend{"octree level", range.x, range.y};
     }
+    if (options.colors == Colors::radius)
+        return Legend{"radius over the distance", 0.0f, 1.0f};
     if (options.colors == Colors::density && layout)
         return Legend{"texels per unit, median in the middle", 0.0f, most_density(layout->facts)};
     return {};

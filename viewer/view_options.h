@@ -24,6 +24,7 @@ enum class Colors {
     density = 8,       ///< of a map: texels per unit of length, as a heat map
     textured = 9,      ///< the surface's own colour times visibility
     coverage = 10,     ///< of cube maps: visibility, red where none of them answers
+    radius = 11,       ///< of vo with a dynamic radius: that radius, as a heat map
 };
 
 struct ViewOptions {

@@ -270,9 +270,11 @@ private:
                                 is_whole};
         try {
             const PictureSize size = panes_.front().size();
-            bool has_changed = left_.look(panel_state_.left, camera_, size, rays);
+            bool has_changed =
+                left_.look(panel_state_.left, camera_, size, rays, panel_state_.view.colors);
             if (right_ && right_->session().state().model)
-                has_changed |= right_->look(right_cell(panel_state_), camera_, size, {});
+                has_changed |= right_->look(right_cell(panel_state_), camera_, size, {},
+                                            panel_state_.view.colors);
             if (has_changed)
                 restart();
         } catch (const std::exception& error) {
@@ -310,10 +312,12 @@ private:
     }
 
     /// Normals until the first values have come: all open is a silhouette without a shape.
-    ViewOptions shown_view(const CellView& cell) const
+    ViewOptions shown_view(bool of_right) const
     {
+        const CellView& cell = of_right ? *right_ : left_;
         const SessionState& found = cell.session().state();
-        ViewOptions view = panel_state_.view;
+        ViewOptions view =
+            options_for(of_right ? right_cell(panel_state_) : panel_state_.left, panel_state_.view);
         const bool has_values = found.is_solved || cell.has_pixels() ||
                                 view.colors == Colors::levels || view.colors == Colors::textured ||
                                 (view.colors == Colors::rays && cell.has_reference());
@@ -340,7 +344,7 @@ private:
         CellView& cell = view_of_pane(pane);
         if (!cell.session().state().model)
             return;
-        ViewOptions view = shown_view(cell);
+        ViewOptions view = shown_view(pane.as.right);
         view.wipe = pane.as.wipe;
         if (view.colors == Colors::textured) {
             if (const auto notes = cell.take_paint(); !notes.empty())
@@ -480,7 +484,7 @@ private:
     void save_picture(const std::filesystem::path& path)
     {
         Image image = joined(panes_);
-        if (const auto legend = legend_of(*state().model, state().layout.get(), shown_view(left_)))
+        if (const auto legend = legend_of(*state().model, state().layout.get(), shown_view(false)))
             draw_heat_legend(image, legend->title, legend->low, legend->high);
         write_image(path, image);
     }

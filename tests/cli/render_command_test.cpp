@@ -194,7 +194,14 @@ TEST(ViewCommand, RefusesWhatTheWindowCannotShow)
                                                {"--values", "both"},
                                                {"--offset", "0"},
                                                {"--max-distance", "5"},
-                                               {"--kernel", "bunnell"}}) {
+                                               {"--kernel", "bunnell"},
+                                               {"--engine", "gtao"},
+                                               {"--engine", "vo", "--at", "cubemaps"},
+                                               {"--taps", "8"},
+                                               {"--guard", "5%", "--at", "pixels", "--engine", "vo"},
+                                               {"--ground", "y", "--at", "pixels", "--engine", "vo"},
+                                               {"--mode", "coverage"},
+                                               {"--mode", "levels", "--at", "pixels"}}) {
         std::vector<std::string> arguments = {"view"};
         arguments.insert(arguments.end(), options.begin(), options.end());
         const Outcome outcome = run(folder.path(), arguments);

@@ -244,6 +244,57 @@ TEST(CellView, PixelsAreForgottenWhenTheCameraMovesAndSolvedWhenItRests)
     EXPECT_FALSE(view.has_pixels());
 }
 
+// A map shows what the eye saw there, and little of what lies behind; the middle of a ball is no
+// place for one. Another engine solves it again.
+TEST(CellView, ACubeMapIsPutWhereTheEyeIsAndShown)
+{
+    const TemporaryFolder folder;
+    write_obj(folder / "ball.obj", scenes::bumpy_sphere(12));
+    const auto model = ball_model();
+    const Camera camera = camera_of(*model, 30.0f);
+    Cell cell;
+    set_where(cell, Where::cube_maps, {});
+    CellView view(test_context());
+    view.session().open(folder / "ball.obj", UpAxis::y, cell.settings);
+    const auto look_until = [&](const Camera& from, auto condition) {
+        for (int i = 0; i < 30000 && !condition(); ++i) {
+            static_cast<void>(view.update());
+            view.session().solve(cell.settings);
+            if (view.session().state().model)
+                static_cast<void>(view.look(cell, from, kSize, {}));
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return condition();
+    };
+    ASSERT_TRUE(look_until(camera, [&] { return view.session().state().is_solved; }));
+    EXPECT_FALSE(view.has_pixels());
+    Camera inside = camera;
+    inside.eye = glm::vec3(0.0f);
+    inside.target = glm::vec3(0.0f, 0.0f, -1.0f);
+    static_cast<void>(view.look(cell, inside, kSize, {}));
+    EXPECT_NE(view.add_map().find("inside of a body"), std::string::npos);
+    EXPECT_EQ(view.map_count(), 0u);
+    static_cast<void>(view.look(cell, camera, kSize, {}));
+    EXPECT_EQ(view.add_map(), "");
+    const auto is_covered = [&] { return view.coverage().has_value(); };
+    ASSERT_TRUE(look_until(camera, is_covered));
+    const double from_there = *view.coverage();
+    const Camera behind = camera_of(*model, 210.0f);
+    EXPECT_TRUE(view.look(cell, behind, kSize, {}));
+    EXPECT_FALSE(is_covered());
+    ASSERT_TRUE(look_until(behind, is_covered));
+    EXPECT_GT(from_there, *view.coverage() + 0.3);
+
+    cell.settings.engine.engine = Engine::disks;
+    const auto is_solved_again = [&] { return !view.is_busy() && is_covered(); };
+    static_cast<void>(view.look(cell, camera, kSize, {}));
+    ASSERT_TRUE(look_until(camera, is_solved_again));
+    EXPECT_EQ(view.map_count(), 1u);
+    set_where(cell, Where::vertices, {});
+    static_cast<void>(view.look(cell, camera, kSize, {}));
+    EXPECT_FALSE(view.has_pixels());
+}
+
 // Disks of no strength answer 0: what is wrong then is all that rays find. Wherever it is asked.
 TEST(CellView, TheErrorIsThatOfWhatIsShownAtTheSamePixels)
 {
