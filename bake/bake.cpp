@@ -281,8 +281,9 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     Scene scene = read_scene(settings.input, settings.reading);
     check_points(settings, scene);
     if (!scene.triangles.empty()) {
-        const Job job{std::make_shared<const Mesh>(
-            mesh_of(std::move(scene), settings.target.normals, settings.parts, settings.reading))};
+        const Job job{std::make_shared<const Mesh>(mesh_of(std::move(scene),
+                                                           settings.target.normals, settings.parts,
+                                                           settings.reading, settings.frame))};
         return bake_one(job, settings, watch.lap(), progress);
     }
     if (settings.share)
@@ -367,6 +368,17 @@ std::string mark_of(const BakeSettings& settings)
     if (const auto& ground = settings.ground)
         text += " ground=" + text_of(*ground);
     text += " " + text_of(settings.target) + text_of(settings.parts);
+    if (const auto& moment = settings.reading.moment) {
+        add(" time=", moment->seconds);
+        if (!moment->animation.empty())
+            text += " animation=" + moment->animation;
+    }
+    if (const auto& frame = settings.frame) {
+        add(" frame=", frame->centre.x);
+        add(":", frame->centre.y);
+        add(":", frame->centre.z);
+        add(":", frame->diagonal);
+    }
     if (settings.subdivide)
         add(" subdivide=", *settings.subdivide);
     for (const fs::path& other : settings.beside)

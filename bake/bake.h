@@ -53,6 +53,9 @@ struct BakeSettings {
     VertexColors colors = VertexColors::automatic;
     Encoding encoding = Encoding::automatic;
     ReadOptions reading = {};  ///< of the input
+    /// In place of the scene's own: frames of an animation have one in common (world.h). For a
+    /// single file with faces.
+    std::optional<Frame> frame = {};
     /// Only this share is solved; in place of the output stands its file, part_path(output). For
     /// values at vertices by an engine on the CPU.
     std::optional<BakeShare> share = {};

@@ -1,6 +1,6 @@
 #include "bake/compare_text.h"
 #include "bake/frontier.h"
-#include "files/gltf_uri.h"
+#include "bake/html.h"
 #include "files/maker_mark.h"
 #include "image/color_map.h"
 #include "surfels/number_text.h"
@@ -11,39 +11,6 @@
 
 namespace surfelao {
 namespace {
-
-constexpr const char* kStyle =
-    "body{font:15px/1.45 system-ui,sans-serif;max-width:62em;margin:2em auto;padding:0 1em;"
-    "color:#222}"
-    "table{border-collapse:collapse;margin:1em 0;font-variant-numeric:tabular-nums}"
-    "td,th{padding:.15em .6em;text-align:right;border-bottom:1px solid #ddd}"
-    "td:nth-child(-n+2),th:nth-child(-n+2){text-align:left}"
-    "figure{display:inline-block;margin:0 1em 1em 0}figcaption{font-size:13px;color:#555}"
-    "img{border:1px solid #ddd}svg text{font-size:12px;fill:#444}";
-
-std::string escaped(const std::string& text)
-{
-    std::string result;
-    for (const char c : text) {
-        switch (c) {
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '&':
-                result += "&amp;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            default:
-                result += c;
-        }
-    }
-    return result;
-}
 
 /// One line of the plot.
 struct Series {
@@ -162,14 +129,6 @@ std::string plot_of(const Comparison& comparison)
     return svg + "</svg>\n";
 }
 
-std::string row_of_cells(const std::vector<std::string>& cells, const char* tag)
-{
-    std::string html = "<tr>";
-    for (const std::string& cell : cells)
-        html += '<' + std::string(tag) + '>' + escaped(cell) + "</" + tag + '>';
-    return html + "</tr>\n";
-}
-
 std::string rows_html(const Comparison& comparison)
 {
     std::string html = "<table>\n";
@@ -235,11 +194,8 @@ std::string scene_html(const FrontierScene& scene)
         (comparison.ground.empty() ? "" : ", a ground at " + comparison.ground) + ".</p>\n";
     html +=
         plot_of(comparison) + rows_html(comparison) + "<p>" + rows_run_once(comparison) + "</p>\n";
-    for (const auto& [caption, png] : scene.pictures) {
-        html += "<figure><img alt=\"" + escaped(caption) + "\" src=\"" +
-                make_data_uri("image/png", png) + "\"><figcaption>" + escaped(caption) +
-                "</figcaption></figure>\n";
-    }
+    for (const auto& [caption, png] : scene.pictures)
+        html += figure_html(png, caption);
     return html + worst_html(comparison);
 }
 
@@ -277,11 +233,8 @@ std::string summary_html(const Frontier& frontier)
 std::string html_of(const Frontier& frontier)
 {
     std::string html =
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta "
-        "name=\"generator\" content=\"" +
-        make_mark("compare", "speed against error") +
-        "\"><title>surfelao: speed against error</title>\n<style>" + std::string(kStyle) +
-        "</style></head><body>\n<h1>Speed against error</h1>\n"
+        open_page(make_mark("compare", "speed against error"), "surfelao: speed against error",
+                  "Speed against error") +
         "<p>Occlusion, fitted to every vertex or as a map, by point-based engines and by Embree in "
         "its strongest mode, which do the same job; all in one process on the same threads, in "
         "turns. "
@@ -299,7 +252,7 @@ std::string html_of(const Frontier& frontier)
         html += summary_html(frontier);
     for (const FrontierScene& scene : frontier.scenes)
         html += scene_html(scene);
-    return html + "</body></html>\n";
+    return html + close_page();
 }
 
 }  // namespace surfelao

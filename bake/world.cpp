@@ -191,6 +191,17 @@ private:
     Scene scene_;
 };
 
+/// Scene triangles that neither occlude nor are baked; empty: there are none.
+std::vector<bool> left_out_of(const Roles& own, std::size_t count)
+{
+    if (own.occlude.empty() && own.baked.empty())
+        return {};
+    std::vector<bool> left_out(count);
+    for (std::size_t t = 0; t < count; ++t)
+        left_out[t] = !own.occludes(t) && !own.is_baked(t);
+    return left_out;
+}
+
 /// Of what the inputs bake or what occludes in them.
 Frame common_frame(std::span<const Scene> inputs, std::span<const std::vector<bool>> left_out)
 {
@@ -245,7 +256,8 @@ std::string text_of(const PartChoice& choice)
 }
 
 BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
-                     const NormalSettings& normals, const PartChoice& choice)
+                     const NormalSettings& normals, const PartChoice& choice,
+                     const std::optional<Frame>& wanted)
 {
     std::vector<Roles> roles = roles_of(inputs, others, choice);
     std::vector<std::vector<bool>> left_out(inputs.size());
@@ -268,10 +280,9 @@ BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
         if (own.occlude.empty() && own.baked.empty())
             continue;
         const std::size_t count = inputs[i].triangles.size();
-        left_out[i].resize(count);
+        left_out[i] = left_out_of(own, count);
         bool is_any_baked = false;
         for (std::size_t t = 0; t < count; ++t) {
-            left_out[i][t] = !own.occludes(t) && !own.is_baked(t);
             is_any_baked = is_any_baked || own.is_baked(t);
             is_joined = is_joined || (own.is_baked(t) && !own.occludes(t));
         }
@@ -279,7 +290,7 @@ BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
             throw InputError(inputs[i].name + ": nothing of it is left to be baked" +
                              (inputs.size() > 1 ? ", --occluders is for what only occludes" : ""));
     }
-    const Frame frame = common_frame(inputs, left_out);
+    const Frame frame = wanted ? *wanted : common_frame(inputs, left_out);
 
     BakeWorld world;
     OccluderScene occluders;
@@ -334,13 +345,29 @@ BakeWorld read_world(std::span<const std::filesystem::path> inputs, const Normal
 }
 
 Mesh mesh_of(Scene scene, const NormalSettings& normals, const PartChoice& choice,
-             const ReadOptions& reading)
+             const ReadOptions& reading, const std::optional<Frame>& frame)
 {
     std::vector<Scene> input;
     input.push_back(std::move(scene));
     return std::move(
-        make_world(std::move(input), read_all(choice.occluders, reading), normals, choice)
+        make_world(std::move(input), read_all(choice.occluders, reading), normals, choice, frame)
             .meshes.front());
+}
+
+Frame frame_of_moments(const std::filesystem::path& input, std::span<const Moment> moments,
+                       const PartChoice& choice, const ReadOptions& reading)
+{
+    Box all;
+    for (const Moment& moment : moments) {
+        ReadOptions at = reading;
+        at.moment = moment;
+        const Scene scene = read_scene(input, at);
+        const std::vector<Roles> roles = roles_of({&scene, 1}, {}, choice);
+        const Box box = box_of(scene, left_out_of(roles.front(), scene.triangles.size()));
+        all.include(box.low);
+        all.include(box.high);
+    }
+    return frame_of(all);
 }
 
 Mesh read_mesh(const std::filesystem::path& input, const NormalSettings& normals,

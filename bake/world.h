@@ -14,6 +14,7 @@
 #include "surfels/surface.h"
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -54,19 +55,27 @@ struct BakeWorld {
     std::vector<Mesh> meshes;
 };
 
-/// inputs: baked. others: PartChoice::occluders, read. Throws InputError for a pattern that means
-/// no name, where nothing of an input is left to be baked, and as make_mesh().
+/// inputs: baked. others: PartChoice::occluders, read. frame: in place of their own. Throws
+/// InputError for a pattern that means no name, where nothing of an input is left to be baked, and
+/// as make_mesh().
 [[nodiscard]] BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
-                                   const NormalSettings& normals, const PartChoice& choice);
+                                   const NormalSettings& normals, const PartChoice& choice,
+                                   const std::optional<Frame>& frame = {});
 
 /// Reads the files and makes the world of them. Throws as read_scene() too.
 [[nodiscard]] BakeWorld read_world(std::span<const std::filesystem::path> inputs,
                                    const NormalSettings& normals, const PartChoice& choice,
                                    const ReadOptions& reading = {});
 
-/// Of a single input that was read; PartChoice::occluders are read too.
+/// Of a single input that was read; PartChoice::occluders are read too. frame: as make_world().
 [[nodiscard]] Mesh mesh_of(Scene scene, const NormalSettings& normals, const PartChoice& choice,
-                           const ReadOptions& reading = {});
+                           const ReadOptions& reading = {}, const std::optional<Frame>& frame = {});
+
+/// The frame of all that is there at any of these moments: what moves is measured alike from first
+/// to last. Reads the file once a moment. Throws as read_scene().
+[[nodiscard]] Frame frame_of_moments(const std::filesystem::path& input,
+                                     std::span<const Moment> moments, const PartChoice& choice,
+                                     const ReadOptions& reading = {});
 
 /// Of a single input.
 [[nodiscard]] Mesh read_mesh(const std::filesystem::path& input, const NormalSettings& normals,

@@ -4,6 +4,7 @@
 #include "cli/bake_text.h"
 #include "cli/commands.h"
 #include "cli/engine_options.h"
+#include "cli/frame_options.h"
 #include "cli/output.h"
 #include "cli/part_options.h"
 #include "cli/progress_bar.h"
@@ -33,6 +34,7 @@ struct BakeOptions {
     std::vector<std::string> inputs;
     std::string output;
     ReadOptions reading;
+    FrameOptions frames;
     EngineOptions engine;
     MeasureOptions measure;
     std::optional<std::string> up;
@@ -55,6 +57,7 @@ struct BakeOptions {
 /// One file of the batch.
 struct Job {
     fs::path input, output;
+    std::optional<Moment> moment = {};  ///< of a frame
 };
 
 /// Whether -o names a folder: then the names of the files in it are ours, not the user's.
@@ -63,6 +66,25 @@ bool is_folder(const BakeOptions& options)
     std::error_code error;
     return options.inputs.size() > 1 || options.output.ends_with('/') ||
            fs::is_directory(options.output, error);
+}
+
+/// The frames of an animation.
+std::vector<FrameFile> frames_of(const BakeOptions& options)
+{
+    const Moment& asked = options.reading.moment.value_or(Moment{});
+    return frames_of(options.frames, options.output, asked.animation);
+}
+
+/// Throws UsageError for what frames do not go with.
+void check_frames(const BakeOptions& options)
+{
+    if (frames_of(options).empty())
+        return;
+    const FileType type = type_of(options.inputs.front());
+    if (options.inputs.size() != 1 || (type != FileType::gltf && type != FileType::glb))
+        throw UsageError("--frames is for a single .gltf or .glb.");
+    if (options.part || options.subdivide || !options.texels.high.empty())
+        throw UsageError("--frames goes with neither --part nor --subdivide nor --high.");
 }
 
 /// Where every result goes. Two results under one name, or one in the place of an input, are
@@ -80,21 +102,25 @@ std::vector<Job> jobs_of(const BakeOptions& options)
             files.reads(other);
     const bool into_folder = is_folder(options);
     std::vector<Job> jobs;
-    for (const std::string& input : options.inputs) {
-        jobs.push_back({input, into_folder ? output_in_folder(input, options.output)
-                                           : fs::path(options.output)});
-        files.writes(jobs.back().output, input);
-        if (texel_settings_of(options.texels, jobs.back().output)) {
+    for (const FrameFile& frame : frames_of(options))
+        jobs.push_back({options.inputs.front(), frame.output, frame.moment});
+    if (jobs.empty()) {
+        for (const std::string& input : options.inputs)
+            jobs.push_back({input, into_folder ? output_in_folder(input, options.output)
+                                               : fs::path(options.output)});
+    }
+    for (const Job& job : jobs) {
+        files.writes(job.output, job.input.string());
+        if (texel_settings_of(options.texels, job.output)) {
             if (options.subdivide)
                 throw UsageError("--subdivide is for values at vertices: it goes with no map.");
-            for (const auto& beside :
-                 {map_file_of(jobs.back().output), map_materials_of(jobs.back().output)}) {
+            for (const auto& beside : {map_file_of(job.output), map_materials_of(job.output)}) {
                 if (beside)
-                    files.writes(*beside, input);
+                    files.writes(*beside, job.input.string());
             }
         }
         if (options.texels.bent.value_or("none") != "none")
-            files.writes(bent_path(jobs.back().output), input);
+            files.writes(bent_path(job.output), job.input.string());
     }
     files.writes_report(options.json, "--json");
     return jobs;
@@ -143,6 +169,8 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.encoding = encoding_of(options.colors);
     settings.share = share_of(options);
     settings.reading = options.reading;
+    if (job.moment)
+        settings.reading.moment = job.moment;
     return settings;
 }
 
@@ -190,6 +218,20 @@ void add_written(const BatchEntry& entry, std::vector<fs::path>& written)
                        entry.report->texels->written.end());
 }
 
+/// Of the frames of an animation; empty where there are none.
+std::optional<Frame> common_frame_of(const BakeOptions& options, const std::vector<Job>& jobs)
+{
+    std::vector<Moment> moments;
+    for (const Job& job : jobs) {
+        if (job.moment)
+            moments.push_back(*job.moment);
+    }
+    if (moments.empty())
+        return {};
+    return frame_of_moments(jobs.front().input, moments, part_choice_of(options.parts),
+                            options.reading);
+}
+
 int run(const BakeOptions& options, const std::vector<Job>& jobs)
 {
     check_report(options.json);
@@ -210,11 +252,13 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
         entry.output = job.output;
     }
     std::vector<fs::path> written;
+    const std::optional<Frame> frame = common_frame_of(options, jobs);
     const std::size_t step = options.together ? jobs.size() : 1;
     for (std::size_t first = 0; first < jobs.size(); first += step) {
         std::vector<BakeSettings> settings;
         for (const Job& job : std::span(jobs).subspan(first, step))
             settings.push_back(settings_for(options, job));
+        settings.front().frame = frame;
         const std::span<BatchEntry> of_run = std::span(entries).subspan(first, step);
         if (options.resume && std::ranges::all_of(settings, is_finished)) {
             for (const BatchEntry& entry : of_run)
@@ -240,7 +284,8 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
         written.emplace_back(*options.json);
     print_written(written, quiet);
     if (failed > 0 && batch)
-        std::cerr << "surfelao: " << failed << " of " << jobs.size() << " files failed\n";
+        std::cerr << "surfelao: " << failed << " of " << jobs.size()
+                  << (options.frames.frames ? " frames failed\n" : " files failed\n");
     return failed > 0 ? kFailed : kDone;
 }
 
@@ -281,6 +326,7 @@ void check_options(const BakeOptions& options)
     if (options.resume && options.texels.udim)
         throw UsageError("--resume knows no tiles: leave it or --udim out.");
     check_part(options, engine);
+    check_frames(options);
 }
 
 void add_options(CLI::App* command, const std::shared_ptr<BakeOptions>& options)
@@ -298,6 +344,7 @@ void add_options(CLI::App* command, const std::shared_ptr<BakeOptions>& options)
         ->required()
         ->type_name("OUT|DIR");
     add_read_options(*command, options->reading);
+    add_frame_options(*command, options->frames);
     add_engine_options(*command, options->engine);
     add_measure_options(*command, options->measure);
     add_up_option(*command, options->up, "What is measured");

@@ -2,12 +2,9 @@
 #include "bake/frontier.h"
 #include "bake/surface_error.h"
 #include "cli/commands.h"
-#include "cli/engine_options.h"
+#include "cli/compare_options.h"
 #include "cli/output.h"
-#include "cli/part_options.h"
 #include "cli/progress_bar.h"
-#include "cli/read_options.h"
-#include "cli/texel_options.h"
 #include "engines/threads.h"
 #include "reference/rays.h"
 #include "surfels/atomic_file.h"
@@ -26,29 +23,12 @@ namespace fs = std::filesystem;
 /// Each takes some hundred bytes, and thousands of rays.
 constexpr std::uint64_t kMostSample = 10'000'000;
 
-struct CompareOptions {
-    std::vector<std::string> inputs;
-    std::optional<std::string> output;
-    ReadOptions reading;
-    bool overwrite = false;
-    bool frontier = false;
-    std::vector<std::string> engines = {"masks", "disks"};
-    std::vector<std::string> devices = {"cpu"};
-    std::optional<std::vector<std::string>> qualities;
-    MeasureOptions measure;
-    std::optional<std::string> up;
-    SurfaceOptions surface;
-    std::optional<double> subdivide;
-    TexelOptions texels;
-    PartOptions parts;
-    std::uint32_t reference_rays = 4096;
-    std::uint64_t sample = kSurfacePoints;
-    int rounds = 3;
-    bool no_cache = false;
-    bool avx2 = false;
-    std::optional<std::string> json, csv;
-    std::optional<int> threads;
-};
+constexpr std::uint32_t kSurfaceRays = 4096;  // a point of the surface
+
+std::vector<std::string> engines_of_scene(const CompareOptions& options)
+{
+    return options.engines.empty() ? std::vector<std::string>{"masks", "disks"} : options.engines;
+}
 
 /// All but the input and the candidates.
 CompareSettings common_settings(const CompareOptions& options)
@@ -61,8 +41,8 @@ CompareSettings common_settings(const CompareOptions& options)
     settings.parts = part_choice_of(options.parts);
     settings.texels = shown_texels_of(options.texels);
     settings.subdivide = options.subdivide;
-    settings.reference_rays = options.reference_rays;
-    settings.sample = options.sample;
+    settings.reference_rays = options.reference_rays.value_or(kSurfaceRays);
+    settings.sample = options.sample.value_or(kSurfacePoints);
     settings.rounds = options.rounds;
     settings.use_cache = !options.no_cache;
     settings.reading = options.reading;
@@ -74,11 +54,9 @@ CompareSettings compare_settings(const CompareOptions& options)
 {
     CompareSettings settings = common_settings(options);
     settings.input = options.inputs.front();
-    const std::vector<std::string> qualities =
-        options.qualities.value_or(std::vector<std::string>{"draft", "good", "best"});
-    for (const std::string& engine : options.engines) {
+    for (const std::string& engine : engines_of_scene(options)) {
         for (const std::string& device : options.devices) {
-            for (const std::string& quality : qualities) {
+            for (const std::string& quality : qualities_of(options)) {
                 EngineSettings& candidate = settings.candidates.emplace_back();
                 candidate.engine = engine_of(engine);
                 candidate.device = device_of(device);
@@ -94,7 +72,7 @@ FrontierSettings frontier_settings(const CompareOptions& options)
     FrontierSettings settings;
     settings.compare = common_settings(options);
     settings.inputs.assign(options.inputs.begin(), options.inputs.end());
-    for (const std::string& engine : options.engines)
+    for (const std::string& engine : engines_of_scene(options))
         settings.engines.push_back(engine_of(engine));
     return settings;
 }
@@ -144,7 +122,7 @@ int run_compare(const CompareOptions& options, std::vector<fs::path>& written)
         written.push_back(difference_of(options));
     }
     Frontier frontier;
-    for (const std::string& engine : options.engines)
+    for (const std::string& engine : engines_of_scene(options))
         frontier.engines.push_back(engine_of(engine));
     frontier.scenes.push_back(frontier_scene(std::move(comparison)));
     write_atomically(report_of(options), html_of(frontier));
@@ -175,12 +153,28 @@ int run_frontier(const CompareOptions& options, std::vector<fs::path>& written)
     return code;
 }
 
+int run_at_pixels(const CompareOptions& options, std::vector<fs::path>& written)
+{
+    const PixelComparison comparison = [&] {
+        ProgressBar bar;
+        return compare_pixels(
+            pixel_compare_settings(options),
+            [&](std::string_view stage, double done) { return bar.update(stage, done); });
+    }();
+    print_or_write(options, comparison, written);
+    if (options.output) {
+        write_atomically(report_of(options), html_of(comparison));
+        written.push_back(report_of(options));
+    }
+    return kDone;
+}
+
 /// What goes into the folder of -o without having been named by the user.
 std::vector<fs::path> own_names(const CompareOptions& options)
 {
     if (!options.output)
         return {};
-    if (options.frontier || options.texels.at == "texels")
+    if (options.frontier || options.texels.at == "texels" || is_at_pixels(options.texels))
         return {report_of(options)};
     return {difference_of(options), report_of(options)};
 }
@@ -201,8 +195,9 @@ int run(const CompareOptions& options)
     if (options.threads)
         limit.emplace(*options.threads);
     std::vector<fs::path> written;
-    const int code =
-        options.frontier ? run_frontier(options, written) : run_compare(options, written);
+    const int code = is_at_pixels(options.texels) ? run_at_pixels(options, written)
+                     : options.frontier           ? run_frontier(options, written)
+                                                  : run_compare(options, written);
     print_written(written, options.json == "-" || options.csv == "-");
     return code;
 }
@@ -218,15 +213,18 @@ void check(const CompareOptions& options)
         throw UsageError("--frontier runs on the CPU: it does not go with --devices.");
     if (options.frontier && options.rounds < 3)
         throw UsageError("--frontier needs at least 3 rounds.");
-    if (options.reference_rays % 2 != 0)
+    if (options.reference_rays.value_or(kSurfaceRays) % 2 != 0)
         throw UsageError("--reference-rays must be even: two halves tell the noise.");
     if (options.subdivide && options.texels.at == "texels")
         throw UsageError("--subdivide is for values at vertices: it goes with no map.");
     if (options.json == "-" && options.csv == "-")
         throw UsageError("--json and --csv cannot both go to standard output.");
-    const CompareSettings settings = compare_settings(options);
-    for (const EngineSettings& candidate : settings.candidates)
-        check_kernel(candidate.engine, settings.kernel);
+    check_pixel_table(options);
+    if (!is_at_pixels(options.texels)) {
+        const CompareSettings settings = compare_settings(options);
+        for (const EngineSettings& candidate : settings.candidates)
+            check_kernel(candidate.engine, settings.kernel);
+    }
     FilePlan files;
     for (const auto* inputs : {&options.inputs, &options.parts.occluders})
         for (const std::string& input : *inputs)
@@ -237,7 +235,37 @@ void check(const CompareOptions& options)
     files.writes_report(options.csv, "--csv");
 }
 
+/// What is right, and how often everything runs.
+void add_run_options(CLI::App& command, CompareOptions& options)
+{
+    command
+        .add_option("--reference-rays", options.reference_rays,
+                    "Rays per surface point or pixel of the reference, an even number")
+        ->check(CLI::Range(2u, kMostRays))
+        ->type_name("N")
+        ->default_str("4096; at pixels 256");
+    command
+        .add_option("--sample", options.sample,
+                    "Take errors at N points of the surface (times are of all receivers)")
+        ->check(CLI::Range(std::uint64_t{1}, kMostSample))
+        ->type_name("N")
+        ->default_str(std::to_string(kSurfacePoints));
+    command.add_option("--rounds", options.rounds, "Runs of every engine, in turns; medians count")
+        ->check(CLI::Range(1, 99))
+        ->type_name("N")
+        ->capture_default_str();
+    command.add_flag("--no-cache", options.no_cache,
+                     "Trace the reference even if the same one was kept from before");
+    command.add_flag("--avx2", options.avx2,
+                     "Limit masks and rays to AVX2 instructions, which most machines have");
+}
+
 }  // namespace
+
+std::vector<std::string> qualities_of(const CompareOptions& options)
+{
+    return options.qualities.value_or(std::vector<std::string>{"draft", "good", "best"});
+}
 
 void add_compare_command(CLI::App& app, Work& work)
 {
@@ -251,8 +279,8 @@ void add_compare_command(CLI::App& app, Work& work)
         ->type_name("");
     command
         ->add_option("-o,--output", options->output,
-                     "Folder for difference.ply, the scene with the error as colour (not with "
-                     "--frontier or --at texels), and report.html; without it no file is "
+                     "Folder for difference.ply, the scene with the error as colour (of values at "
+                     "vertices, without --frontier), and report.html; without it no file is "
                      "written")
         ->type_name("DIR");
     add_read_options(*command, options->reading);
@@ -261,12 +289,15 @@ void add_compare_command(CLI::App& app, Work& work)
         "--frontier", options->frontier,
         "Every engine's whole curve of speed against error, for any number of files, "
         "with the ratio to Embree at errors of 0.010 and 0.005 beyond the floor, and a summary");
-    command->add_option("--engines", options->engines, "Engines to compare with rays")
+    command
+        ->add_option("--engines", options->engines,
+                     "Engines to compare with rays: masks, disks; at pixels also rays, and what "
+                     "knows the picture alone: ssao-disc, ssao-sphere, vo, hbao, gtao, bitmask")
         ->delimiter(',')
         ->allow_extra_args(false)  // the word behind the list may be IN
-        ->check(CLI::IsMember({"masks", "disks"}))
+        ->check(CLI::IsMember(pixel_engine_names()))
         ->type_name("E,...")
-        ->capture_default_str();
+        ->default_str("masks,disks; at pixels all but disks and rays");
     command
         ->add_option("--devices", options->devices,
                      "Where the engines run: cpu, gpu or both, side by side")
@@ -288,27 +319,8 @@ void add_compare_command(CLI::App& app, Work& work)
     add_subdivide_option(*command, options->subdivide);
     add_layout_options(*command, options->texels, kShownMaps);
     add_part_options(*command, options->parts);
-    command
-        ->add_option("--reference-rays", options->reference_rays,
-                     "Rays per surface point of the reference, an even number")
-        ->check(CLI::Range(2u, kMostRays))
-        ->type_name("N")
-        ->capture_default_str();
-    command
-        ->add_option("--sample", options->sample,
-                     "Take errors at N points of the surface (times are of all receivers)")
-        ->check(CLI::Range(std::uint64_t{1}, kMostSample))
-        ->type_name("N")
-        ->capture_default_str();
-    command
-        ->add_option("--rounds", options->rounds, "Runs of every engine, in turns; medians count")
-        ->check(CLI::Range(1, 99))
-        ->type_name("N")
-        ->capture_default_str();
-    command->add_flag("--no-cache", options->no_cache,
-                      "Trace the reference even if the same one was kept from before");
-    command->add_flag("--avx2", options->avx2,
-                      "Limit masks and rays to AVX2 instructions, which most machines have");
+    add_pixel_table_options(*command, options->pixels);
+    add_run_options(*command, *options);
     command->add_option("--json", options->json, "Write all figures; - = standard output")
         ->type_name("FILE");
     command->add_option("--csv", options->csv, "Write the rows as CSV; - = standard output")

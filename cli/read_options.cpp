@@ -22,6 +22,25 @@ void add_read_options(CLI::App& command, ReadOptions& options)
             return std::string();
         })
         ->type_name("NAMES");
+    command
+        .add_option_function<double>(
+            "--time",
+            [&options](double seconds) {
+                options.moment = Moment{seconds, options.moment.value_or(Moment{}).animation};
+            },
+            "glTF: the pose at this second of an animation, skins and morph targets too; "
+            "without it the default pose")
+        ->check(CLI::Range(0.0, 1e9))
+        ->type_name("S");
+    command
+        .add_option_function<std::string>(
+            "--animation",
+            [&options](const std::string& name) {
+                options.moment = Moment{options.moment.value_or(Moment{}).seconds, name};
+            },
+            "Which animation, by its name or its number from 0; alone its pose at 0 seconds")
+        ->type_name("NAME")
+        ->default_str("0");
 }
 
 }  // namespace surfelao

@@ -13,7 +13,7 @@ namespace surfelao {
 inline constexpr const char* kMeshOrCloud =
     "Mesh: .obj .ply .off .stl .gltf .glb, or cloud: .ply .pcd .xyz .pts .txt .asc";
 
-/// --columns
+/// --columns, --time, --animation
 void add_read_options(CLI::App& command, ReadOptions& options);
 
 }  // namespace surfelao

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "files/gltf_accessor.h"
+#include "files/scene_io.h"
 #include "surfels/scene.h"
 
 #include <glm/mat3x3.hpp>
@@ -82,6 +83,7 @@ struct GltfAsset : SourceAsset {
     std::unique_ptr<nlohmann::json> document;    ///< an object
     std::string_view bin;                        ///< the binary chunk of a GLB; empty without one
     std::vector<std::string_view> other_chunks;  ///< of a GLB: neither JSON nor BIN, with headers
+    std::optional<Moment> moment;    ///< at which the scene stands; empty: its default pose
     std::vector<std::string> notes;  ///< what was let pass in all that, for Scene::notes
     std::vector<GltfBuffer> buffers;
     std::map<std::size_t, GltfAccessor> colors;  ///< COLOR_0 by accessor, of all parts

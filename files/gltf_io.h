@@ -6,14 +6,15 @@
 /// transformed in double precision; under a mirroring node the winding is turned, so that the
 /// outside stays outside. Points and lines are left out, images are not looked at.
 ///
-/// The scene stands as a viewer shows it before any animation is played:
+/// The scene stands as a viewer shows it before any animation is played, or at a moment of one
+/// (gltf_animation.h):
 ///   morph targets    with the node's weights, else the mesh's; weights that are missing are 0
 ///   skins            the joints move the mesh, its node does not. Weights need not sum up to 1; a
 ///                    vertex without any follows its first joint. JOINTS_1 and so on count too
 ///   hidden nodes     (KHR_node_visibility) are left out with all below them
 ///   instances        (EXT_mesh_gpu_instancing) are uses of the mesh like those of nodes
 ///   CESIUM_RTC       is left out: it moves everything alike
-/// Scene::notes says what is not honoured: animations, see-through materials, points and lines.
+/// Scene::notes says what is not honoured: animations that are not played, see-through materials, points and lines.
 ///
 /// Normals are those of NORMAL at unit length, moved along with morph targets, joints and nodes (by
 /// the inverse transpose); zero where a part has none or what it has is no number. Tangents are
@@ -52,6 +53,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -67,7 +69,8 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
 /// `contents` is the file at `path`; the path is for messages, and its folder is where external
 /// buffers are looked for. Throws InputError with one sentence that names file, element and fault.
 /// O(bytes + vertices).
-[[nodiscard]] Scene read_gltf(const std::filesystem::path& path, std::string contents);
+[[nodiscard]] Scene read_gltf(const std::filesystem::path& path, std::string contents,
+                              const std::optional<Moment>& moment = {});
 
 /// The file that `scene` was read from (read_gltf) with new vertex attributes, one Occlusion per
 /// scene vertex, as it is to stand at `path` (whose extension says whether it is a .glb):

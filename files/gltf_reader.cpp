@@ -1,5 +1,6 @@
 #include "files/gltf_io.h"
 
+#include "files/gltf_animation.h"
 #include "files/gltf_asset.h"
 #include "files/gltf_instances.h"
 #include "files/gltf_json.h"
@@ -483,17 +484,24 @@ private:
 
 }  // namespace
 
-Scene read_gltf(const fs::path& path, std::string contents)
+Scene read_gltf(const fs::path& path, std::string contents, const std::optional<Moment>& moment)
 {
     const auto asset = std::make_shared<GltfAsset>();
     load_gltf_asset(path, std::move(contents), *asset);
-    std::string text = geometry_text(*asset->document, path);
+    const Animations animations = moment ? Animations::kept : Animations::left_out;
+    std::string text = geometry_text(*asset->document, path, animations);
     if (drop_old_results(*asset))
-        text = geometry_text(*asset->document, path);
-    const tinygltf::Model model = parse_model(*asset, text);
+        text = geometry_text(*asset->document, path, animations);
+    tinygltf::Model model = parse_model(*asset, text);
+    asset->moment = moment;
+    std::string played;
+    if (moment)
+        played = pose_model(model, AccessorResolver(*asset), *moment);
     Scene scene;
     scene.name = path.filename().string();
     SceneBuilder(model, *asset, scene).build();
+    if (moment)
+        scene.notes.push_back("the pose is that of " + played);
     scene.asset = asset;
     return scene;
 }

@@ -88,6 +88,17 @@ constexpr Field kSkin[] = {
     {"joints", Kind::indices, Need::required, "nodes"},
     {"inverseBindMatrices", Kind::index, Need::optional, "accessors"},
 };
+constexpr Field kAnimation[] = {{"name", Kind::text}};
+constexpr Field kSampler[] = {
+    {"input", Kind::index, Need::required, "accessors"},
+    {"output", Kind::index, Need::required, "accessors"},
+    {"interpolation", Kind::text},
+};
+constexpr Field kChannel[] = {{"sampler", Kind::small, Need::required}};
+constexpr Field kTarget[] = {
+    {"node", Kind::index, Need::required, "nodes"},
+    {"path", Kind::text, Need::required},
+};
 constexpr Field kVisibility[] = {{"visible", Kind::flag}};
 constexpr Field kScene[] = {{"nodes", Kind::indices, Need::optional, "nodes"}};
 constexpr Field kRoot[] = {{"scene", Kind::index, Need::optional, "scenes"}};
@@ -333,9 +344,46 @@ json checked_mesh(const Checker& check, const json& value, const std::string& el
     return mesh;
 }
 
+/// A required member that is an array.
+const json& list_of(const json& value, const char* key, const std::string& element,
+                    const fs::path& path)
+{
+    const auto found = value.find(key);
+    if (found == value.end() || !found->is_array())
+        fail_gltf(path, element, std::string("has no list of ") + key);
+    return *found;
+}
+
+/// Channels that move no node (their target is an extension's matter) are left out.
+json checked_animation(const Checker& check, const json& value, const std::string& element,
+                       const fs::path& path)
+{
+    json animation = check.object(value, kAnimation, element);
+    json& samplers = animation["samplers"] = json::array();
+    json& channels = animation["channels"] = json::array();
+    for (const json& entry : list_of(value, "samplers", element, path))
+        samplers.push_back(
+            check.object(entry, kSampler, element + " sampler " + std::to_string(samplers.size())));
+    std::size_t number = 0;
+    for (const json& entry : list_of(value, "channels", element, path)) {
+        const std::string place = element + " channel " + std::to_string(number++);
+        json channel = check.object(entry, kChannel, place);
+        if (channel["sampler"].get<std::size_t>() >= samplers.size())
+            fail_gltf(path, place + ": sampler",
+                      channel["sampler"].dump() + " is out of range, there are " +
+                          std::to_string(samplers.size()) + " samplers");
+        const json& target = check.child(entry, "target", place);
+        if (!target.contains("node"))
+            continue;
+        channel["target"] = check.object(target, kTarget, place + " target");
+        channels.push_back(std::move(channel));
+    }
+    return animation;
+}
+
 }  // namespace
 
-std::string geometry_text(const json& document, const fs::path& path)
+std::string geometry_text(const json& document, const fs::path& path, Animations animations)
 {
     check_required_extensions(document, path);
     const Checker check(document, path);
@@ -369,6 +417,10 @@ std::string geometry_text(const json& document, const fs::path& path)
     collect("scenes", "scene", [&](const json& value, const std::string& element) {
         return check.object(value, kScene, element);
     });
+    if (animations == Animations::kept)
+        collect("animations", "animation", [&](const json& value, const std::string& element) {
+            return checked_animation(check, value, element, path);
+        });
     return geometry.dump();
 }
 

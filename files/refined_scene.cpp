@@ -64,7 +64,7 @@ Scene read_refined(const Scene& scene, const Refinement& refinement)
         return read_off(scene.name,
                         refined_off(read_off(scene.name, original_off(scene)), refinement));
     if (const auto* gltf = dynamic_cast<const GltfAsset*>(asset))
-        return read_gltf(gltf->path, refined_gltf(scene, refinement));
+        return read_gltf(gltf->path, refined_gltf(scene, refinement), gltf->moment);
     return plain_refined(scene, refinement);
 }
 

@@ -37,6 +37,8 @@ Scene read_any(const fs::path& path, const ReadOptions& options)
     const std::string name = path.string();
     require(options.columns.empty() || type_of(path) == FileType::xyz,
             name + ": columns are told of .xyz .pts .txt .asc only");
+    const bool is_gltf = type_of(path) == FileType::gltf || type_of(path) == FileType::glb;
+    require(!options.moment || is_gltf, name + ": only .gltf and .glb have animations");
     switch (type_of(path)) {
         case FileType::pcd:
             return read_pcd(name, read_contents(path, name));
@@ -52,7 +54,7 @@ Scene read_any(const fs::path& path, const ReadOptions& options)
             return read_stl(name, read_contents(path, name));
         case FileType::gltf:
         case FileType::glb:
-            return read_gltf(path, read_contents(path, name));
+            return read_gltf(path, read_contents(path, name), options.moment);
         default:
             throw InputError(
                 name + ": " +

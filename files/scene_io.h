@@ -21,10 +21,19 @@
 
 namespace surfelao {
 
+/// A moment of an animation of a file.
+struct Moment {
+    double seconds = 0.0;        ///< of the animation's own time
+    std::string animation = {};  ///< its name, or its number from 0; empty: the first
+    bool operator==(const Moment&) const = default;
+};
+
 struct ReadOptions {
     /// What the columns of a text cloud are, "x y z intensity r g b nx ny nz"; `-` and any other
     /// word: kept and not used (xyz_io.h). Empty: as they are found.
     std::string columns = {};
+    /// glTF: as it is at this moment; empty: its default pose.
+    std::optional<Moment> moment = {};
 };
 
 /// Throws SettingsError for columns that do not name x, y and z once each; empty is right.
@@ -32,8 +41,8 @@ void check_columns(const std::string& columns);
 
 /// Reads a file. A file without faces is a cloud: a scene without triangles. Throws InputError with
 /// one sentence that names file, element and fault for anything that is not a complete, finite,
-/// consistent mesh or cloud; SettingsError for columns that make no point and for columns of a file
-/// that is no text cloud. Time and memory stay in proportion to the file's size, whatever its
+/// consistent mesh or cloud; SettingsError for columns that make no point, for columns of a file
+/// that is no text cloud, and for a moment of a file that is no glTF. Time and memory stay in proportion to the file's size, whatever its
 /// counts claim.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 

@@ -47,7 +47,7 @@ float openness(vec3 offset, vec3 position, float radius, vec2 pixels)
                                                     : place_of(sampled)));
     if (sampled.z <= 0.0 && u_is_orthographic == 0 || is_outside(pixel))
         return kOutside;
-    float z = texelFetch(u_surface, pixel, 0).w;
+    float z = distance_at(pixel);
     float nearer = position.z - z;
     float validity = u_is_by_ratio == 1 ? 1.0 - clamp(nearer / z, 0.0, 1.0)
                                         : (nearer <= u_reach * radius ? 1.0 : 0.0);
@@ -69,8 +69,10 @@ void main()
         return;
     vec3 position = position_at(pixel, here);
     vec2 noise = noise_at(pixel);
+    // the z axis is mirrored to any direction, each as often: so does a disk stand for the ball
     float height = 2.0 * noise.x - 1.0, turn = 6.28318531 * noise.y;
-    vec3 mirror = vec3(sqrt(1.0 - height * height) * vec2(cos(turn), sin(turn)), height);
+    vec3 axis = vec3(sqrt(1.0 - height * height) * vec2(cos(turn), sin(turn)), height);
+    vec3 mirror = normalize(axis - vec3(0.0, 0.0, 1.0));
     float open = 0.0, count = 0.0;
     for (int i = 0; i < u_pairs; ++i) {
         vec3 one = mirrored(texelFetch(u_samples, 2 * i).xyz, mirror), other = -one;

@@ -19,6 +19,9 @@ if [ $# -gt 0 ]; then
         echo
         "$build/bin/surfelao" compare "$model" --engines masks --devices cpu,gpu \
             --qualities good --rounds 1 --sample 4000
+        "$build/bin/surfelao" compare "$model" --at pixels --max-distance 10% --views 1 \
+            --engines masks,ssao-disc,ssao-sphere,vo,hbao,gtao,bitmask --devices cpu,gpu \
+            --qualities good --taps 8,24
     done
 fi
 echo

@@ -3,7 +3,7 @@
 
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
                                     readers stated demo viewers atlas maps map_frontier
-                                    clouds clouds_pcv subdivide pixels;
+                                    clouds clouds_pcv subdivide pixels origin;
                                     default: all, about an hour on two quiet cores
 
 Every part is one file that says what command made it, of which version and commit, on what
@@ -25,6 +25,9 @@ import subprocess
 import sys
 import tempfile
 import time
+
+sys.dont_write_bytecode = True
+import pixel_origin  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 TRIAL = bool(os.environ.get("SURFELAO_TRIAL"))
@@ -463,13 +466,30 @@ def part_pixels(build):
             "rows": rows}
 
 
+def part_origin(build):
+    """Screen-space methods and ours at the pixels of five views."""
+    needed = [SHARED / file for _, file, *_ in pixel_origin.VIEWS if not file.startswith("data/")]
+    absent = [path.name for path in needed if not path.exists()]
+    if absent and not TRIAL:
+        raise Absent(f"no {', '.join(absent)} (SURFELAO_MODELS)")
+
+    def told(path, *options):
+        words = [str(word) for word in options]
+        shown = f"surfelao compare MODEL {' '.join(words)}"
+        return json.loads(run(build / "bin/surfelao", "compare", path, *words, "--json", "-",
+                              shown=shown)), shown
+
+    command, figures = pixel_origin.measure(told, ROOT, SHARED, TRIAL)
+    return {**provenance(build, command), **figures}
+
+
 PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scaling": part_scaling,
          "stability": part_stability, "gpu": part_gpu, "drawing": part_drawing,
          "readers": part_readers, "stated": part_stated, "demo": part_demo,
          "viewers": part_viewers, "atlas": part_atlas, "maps": part_maps,
          "map_frontier": part_map_frontier, "clouds": part_clouds,
          "clouds_pcv": part_clouds_pcv,
-         "pixels": part_pixels,
+         "pixels": part_pixels, "origin": part_origin,
          "subdivide": part_subdivide}
 
 

@@ -1,0 +1,97 @@
+// Frames of an animation, each a file.
+#include "files/scene_io.h"
+#include "program.h"
+#include "temporary_folder.h"
+#include "tests/files/gltf_maker.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace surfelao {
+namespace {
+
+namespace fs = std::filesystem;
+using Strings = std::vector<std::string>;
+
+/// A square, and another that comes down upon it, from 4 to .25 above it within a second.
+std::string falling_lid()
+{
+    test::GltfMaker maker = test::square();
+    maker.add("nodes", {{"mesh", 0}});
+    maker.document["scenes"][0]["nodes"] = {0, 1};
+    const int times =
+        maker.add_accessor(maker.add_view(test::bytes_of<float>({0, 1})), 5126, "SCALAR", 2);
+    const int places = maker.add_vectors<float>({0, 0, 4, 0, 0, 0.25f});
+    maker.document["animations"] = {
+        {{"name", "fall"},
+         {"samplers", {{{"input", times}, {"output", places}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}}};
+    return maker.glb();
+}
+
+class FramesCommand : public testing::Test {
+protected:
+    void SetUp() override { std::ofstream(folder_ / "lid.glb", std::ios::binary) << falling_lid(); }
+    Outcome bake(const std::string& output, const Strings& more) const
+    {
+        Strings arguments = {"bake", folder_ / "lid.glb", "-o", folder_ / output};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run(folder_.path(), arguments);
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(FramesCommand, EachIsAFileOfItsMoment)
+{
+    const Outcome outcome = bake("f.%03d.ply", {"--frames", "0:2", "--fps", "2", "--check", "0",
+                                                "--json", folder_ / "report.json"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const double heights[] = {4.0, 2.125, 0.25};
+    for (int frame = 0; frame < 3; ++frame) {
+        const Scene scene = read_scene(folder_ / ("f.00" + std::to_string(frame) + ".ply"));
+        EXPECT_EQ(scene.positions.back().z, heights[frame]);
+    }
+    const auto report = nlohmann::json::parse(std::ifstream(folder_ / "report.json"));
+    ASSERT_EQ(report.size(), 3u);
+    EXPECT_LT(report[0]["mean_occlusion"], 0.05);
+    EXPECT_GT(report[2]["mean_occlusion"], 0.2);
+}
+
+// A distance in percent is the same length in all frames.
+TEST_F(FramesCommand, HaveOneFrameOfReference)
+{
+    const Strings measure = {"--check", "0", "--engine", "rays", "--max-distance", "10%"};
+    const auto mean = [&](const std::string& output, Strings more) {
+        more.insert(more.end(), measure.begin(), measure.end());
+        more.insert(more.end(), {"--json", folder_ / "report.json"});
+        EXPECT_EQ(bake(output, more).code, 0);
+        const auto report = nlohmann::json::parse(std::ifstream(folder_ / "report.json"));
+        return (report.is_array() ? report.back() : report)["mean_occlusion"].get<double>();
+    };
+    // alone the last frame's box is 1.4 wide, and 10 % of it do not reach the lid at .25; of all
+    // frames together it is 4.2, and they do
+    EXPECT_EQ(mean("one.ply", {"--time", "1"}), 0.0);
+    EXPECT_GT(mean("all.%d.ply", {"--frames", "0:1", "--fps", "1"}), 0.1);
+}
+
+TEST_F(FramesCommand, RefusesWhatItCannotMean)
+{
+    EXPECT_EQ(bake("f.ply", {"--frames", "0:2"}).code, 2);
+    EXPECT_EQ(bake("f.%d.ply", {"--frames", "2:1"}).code, 2);
+    EXPECT_EQ(bake("f.%d.ply", {"--frames", "0:1", "--time", "3"}).code, 2);
+    EXPECT_EQ(bake("f.%d.ply", {"--fps", "3"}).code, 2);
+    const Outcome other = bake("f.%d.ply", {"--frames", "0:1", "--animation", "rise"});
+    EXPECT_EQ(other.code, 1);
+    EXPECT_NE(other.err.find("has no animation \"rise\", but \"fall\""), std::string::npos);
+    std::size_t files = 0;
+    for (const auto& entry : fs::directory_iterator(folder_.path()))
+        files += entry.path().extension() == ".ply" ? 1 : 0;
+    EXPECT_EQ(files, 0u);
+}
+
+}  // namespace
+}  // namespace surfelao
