@@ -228,8 +228,8 @@ TwinCount compare_with_twin(const PixelView& view, CubeProjector& projector,
         const glm::vec3 point = to_world(from, ray.origin + surface[pixel].w * ray.direction);
         const glm::vec3 normal = to_world(from, glm::vec3(surface[pixel])) - from.eye;
         const TwinAnswer twin = twin_answer(projector.maps(), used, point, normal, tests);
-        count.answered += twin.weight > 0.0f ? 1 : 0;
-        count.other += (twin.weight > 0.0f) == (shader.hole[i] != 0) ||
+        count.answered += twin.share > 0.0f ? 1 : 0;
+        count.other += (twin.share > 0.0f) == (shader.hole[i] != 0) ||
                                std::abs(twin.occlusion - shader.occlusion[i]) > 1e-3f
                            ? 1
                            : 0;
