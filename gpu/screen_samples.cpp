@@ -128,7 +128,7 @@ std::vector<glm::vec2> noise_pairs()
         pairs.emplace_back(static_cast<float>(bits >> 40) * 0x1p-24f,
                            static_cast<float>(bits >> 8 & 0xffffffu) * 0x1p-24f);
     }
-    pairs[0] = glm::vec2(0.5f);
+    pairs[0] = {0.37f, 0.62f};
     return pairs;
 }
 

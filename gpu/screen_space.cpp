@@ -24,6 +24,9 @@ constexpr float kEndless = 1e6f;
 /// How far beside the plane of a pixel another one is still the same surface, in radii.
 constexpr float kSameSurface = 0.1f;
 
+/// The power of the steps that has shaders of its own: powers are slow on software.
+constexpr float kSquare = 2.0f;
+
 float radius_of(const Definition& definition)
 {
     return std::isfinite(definition.max_distance) ? definition.max_distance : 1.0f;
@@ -57,6 +60,16 @@ const char* file_of(ScreenMethod method)
             return "bitmask.frag";
     }
     SURFELAO_CHECK(false);
+}
+
+/// shaders/steps.glsl
+std::vector<std::string> definitions_of(const ScreenSettings& settings)
+{
+    const bool has_steps =
+        settings.method == ScreenMethod::gtao || settings.method == ScreenMethod::bitmask;
+    if (!has_steps || settings.power == kSquare)
+        return {};
+    return {"ANY_POWER 1"};
 }
 
 /// Of a frame: steps of a sequence of pairs that fills the square evenly (Roberts, 2018).
@@ -156,9 +169,11 @@ void ScreenSpace::set_slices(Program& program, const ScreenSettings& settings,
 {
     const bool is_hbao = settings.method == ScreenMethod::hbao;
     const int slices = settings.directions / 2;
+    const float radius = radius_of(definition);
     program.set("u_steps", settings.samples / settings.directions);
     program.set("u_turn", cosine_and_sine(is_hbao ? 2.0 * std::numbers::pi / settings.directions
                                                   : std::numbers::pi / slices));
+    program.set("u_per_square", 1.0f / (radius * radius));
     program.set("u_is_faded", definition.falloff == Falloff::smooth ? 1 : 0);
     if (is_hbao) {
         program.set("u_directions", settings.directions);
@@ -169,9 +184,10 @@ void ScreenSpace::set_slices(Program& program, const ScreenSettings& settings,
         return;
     }
     program.set("u_slices", slices);
-    program.set("u_power", settings.power);
+    if (settings.power != kSquare)
+        program.set("u_power", settings.power);
     if (settings.method == ScreenMethod::bitmask)
-        program.set("u_thickness", std::min(kEndless, settings.thickness * radius_of(definition)));
+        program.set("u_thickness", std::min(kEndless, settings.thickness * radius));
 }
 
 void ScreenSpace::set_dynamic_radius(Program& program, const ScreenSettings& settings, float radius)
@@ -189,13 +205,15 @@ Program& ScreenSpace::method_program(const GBuffer& seen, const ScreenSettings& 
     check_settings(settings);
     check_definition(definition);
     const float radius = radius_of(definition);
-    Program& program = context_.program("fullscreen.vert", file_of(settings.method));
+    Program& program =
+        context_.program("fullscreen.vert", file_of(settings.method), definitions_of(settings));
     set_seen(program, seen);
     program.set("u_radius", radius);
     set_noise(program, settings);
     if (is_ssao(settings.method)) {
         program.set("u_samples", samples_of(settings));
-        program.set("u_sample_count", settings.samples);
+        program.set("u_pairs", settings.samples / 2);
+        program.set("u_is_paired", settings.pairs ? 1 : 0);
         program.set("u_disc_distance",
                     settings.method == ScreenMethod::ssao_disc ? disc_distance(seen.view()) : 0.0f);
         program.set("u_reach", settings.reach);

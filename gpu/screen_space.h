@@ -53,7 +53,7 @@ enum class DualRadii { none, product, minimum };
 /// Settings of one method; those that it does not know do not count.
 struct ScreenSettings {
     ScreenMethod method = ScreenMethod::gtao;
-    int samples = 24;         ///< 1 to 4096, reads of the picture a pixel; in pairs: even
+    int samples = 24;         ///< 1 to 4096, reads of the picture a pixel; ssao vo: even
     int directions = 6;       ///< hbao gtao bitmask: divides `samples`; gtao, bitmask: even, two
                               ///< a slice
     float bias = 10.0f;       ///< hbao: degrees, 0 to 90: horizons below it do not count

@@ -28,24 +28,15 @@ float footprint_at(const View& view, int height, glm::vec3 position)
 
 PixelSamples::PixelSamples(const Mesh& mesh, std::span<const std::uint32_t> parts,
                            const SeenPixels& middles, const BaseColorAt& base)
-    : mesh_(mesh),
-      parts_(parts),
-      seen_(middles),
-      base_(base),
-      chosen_(kPlaces * static_cast<std::size_t>(middles.width) *
-                  static_cast<std::size_t>(middles.height),
-              kNone),
-      middle_shares_(middles.pixels.size())
+    : mesh_(mesh), parts_(parts), seen_(middles), base_(base), middle_shares_(middles.pixels.size())
 {
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, middles.pixels.size(), kChunk),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                const std::uint32_t pixel = middles.pixels[i];
-                chosen_[kPlaces * pixel] = static_cast<std::uint32_t>(i);
-                middle_shares_[i] = {pixel, 1, base_ ? base_(middles.points[i]) : glm::vec3(1.0f)};
-            }
-        });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, middles.pixels.size(), kChunk),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i)
+                              middle_shares_[i] = {
+                                  middles.pixels[i], 1,
+                                  base_ ? base_(middles.points[i]) : glm::vec3(1.0f)};
+                      });
 }
 
 PixelSamples::Place PixelSamples::place_of(const View& view, const SurfacePoint& point) const
@@ -111,6 +102,11 @@ std::size_t PixelSamples::add(const View& view, std::span<const std::uint32_t> t
         Share share;
         SurfacePoint point;
     };
+    if (chosen_.empty()) {
+        chosen_.assign(kPlaces * triangles.size(), kNone);
+        for (std::size_t i = 0; i < seen_.pixels.size(); ++i)
+            chosen_[kPlaces * seen_.pixels[i]] = static_cast<std::uint32_t>(i);
+    }
     const auto columns = static_cast<std::size_t>(seen_.width);
     std::vector<std::vector<Extra>> added((triangles.size() + kChunk - 1) / kChunk);
     const auto add_pixel = [&](std::size_t pixel, std::vector<Extra>& extras) {

@@ -88,7 +88,7 @@ private:
     const SeenPixels& seen_;
     BaseColorAt base_;
     /// Those of a pixel: kMostExtra + 1 numbers each, of the middles first, then the extras, kNone
-    /// behind the last.
+    /// behind the last. Empty before the first add().
     std::vector<std::uint32_t> chosen_;
     std::vector<Share> middle_shares_, extra_shares_;
     std::vector<SurfacePoint> extra_points_;

@@ -107,6 +107,8 @@ SeenPixels seen_pixels(const Mesh& mesh, const View& view, int width, int height
     seen.height = height;
     SURFELAO_CHECK(triangles.size() ==
                    static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    seen.pixels.reserve(triangles.size() -
+                        static_cast<std::size_t>(std::ranges::count(triangles, 0u)));
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         if (triangles[i] != 0)
             seen.pixels.push_back(static_cast<std::uint32_t>(i));

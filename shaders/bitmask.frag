@@ -1,5 +1,6 @@
 #version 330 core
 #include "slices.glsl"
+#include "steps.glsl"
 
 // bitmask.frag: ambient occlusion of slices whose directions are 32 bits: each sample hides those
 // between its own angle and that of the point a thickness behind it, and light passes behind.
@@ -11,17 +12,17 @@
 // Based on   Therrien, Levesque, Gilet. Screen Space Indirect Lighting with Visibility Bitmask. 2023
 // Departs    the bits are not of equal angles but of equal weight, that of the cosine over the
 //            normal (gtao.frag's integral): counting them is the answer, and with an endless
-//            thickness it is gtao's, rounded to bits; a sample's fade lowers its front
+//            thickness it is gtao's; ends are rounded to bits up or down, from slice to slice, so
+//            that the mean is not; a sample's fade lowers both its ends
 //
 // Vertices   fullscreen.vert
-// Reads      slices.glsl
+// Definitions  ANY_POWER: 0 or 1. 0: u_power is 2 (steps.glsl)
+// Reads      slices.glsl, steps.glsl
 //            u_slices     how many
-//            u_power      of the steps
 //            u_thickness  of what is seen, away from the eye, in units of view space
 // Writes     out_occlusion
 // CPU twin   tests/screen_twin.cpp
 uniform int u_slices;
-uniform float u_power;
 uniform float u_thickness;
 
 out float out_occlusion;
@@ -46,6 +47,29 @@ vec2 back_of(vec3 seen, vec2 front, vec3 position, Slice slice)
     return front + u_thickness * inversesqrt(dot(seen, seen)) * from_eye;
 }
 
+// the bits between the front and the back of what is seen at t on that side
+// left: integral of the other half of the slice; dither: in [0, 1), where in a bit ends are rounded
+uint bits_at(float t, float side, float left, float bits_per_arc, float dither, Slice slice,
+             vec3 position)
+{
+    vec3 seen;
+    if (!sample_at(t, side, slice, seen))
+        return 0u;
+    vec2 front = vec2(dot(seen - position, slice.across), dot(seen - position, slice.up));
+    float square = dot(front, front);
+    float weight = weight_at(square);
+    if (weight == 0.0)
+        return 0u;
+    vec2 back = back_of(seen, front, position, slice);
+    float g = side * slice.sin_gamma;
+    float high = mix(-g, front.y * inversesqrt(max(square, 1e-30)), weight);
+    float low = mix(-g, back.y * inversesqrt(max(dot(back, back), 1e-30)), weight);
+    vec2 ends = left + side * vec2(arc(clamp(high, -g, 1.0), g, slice.cos_gamma),
+                                   arc(clamp(low, -g, 1.0), g, slice.cos_gamma));
+    ivec2 at = ivec2(clamp(ends * bits_per_arc, 0.0, 32.0) + dither);
+    return lowest_bits(max(at.x, at.y)) & ~lowest_bits(min(at.x, at.y));
+}
+
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -65,25 +89,12 @@ void main()
         float whole = left + arc(-slice.sin_gamma, slice.sin_gamma, slice.cos_gamma);
         float bits_per_arc = 32.0 / max(whole, 1e-6);
         uint bits = 0u;
-        for (int k = 0; k < 2 * u_steps; ++k) {
-            float side = (k & 1) == 0 ? 1.0 : -1.0;
-            float t = u_radius * pow((float(k >> 1) + noise.y) / float(u_steps), u_power);
-            vec3 seen;
-            if (!sample_at(side * t, slice, seen))
-                continue;
-            vec2 front = vec2(dot(seen - position, slice.across), dot(seen - position, slice.up));
-            float square = dot(front, front);
-            float weight = weight_at(square);
-            if (weight == 0.0)
-                continue;
-            vec2 back = back_of(seen, front, position, slice);
-            float g = side * slice.sin_gamma;
-            float high = mix(-g, front.y * inversesqrt(max(square, 1e-30)), weight);
-            float low = back.y * inversesqrt(max(dot(back, back), 1e-30));
-            vec2 ends = left + side * vec2(arc(clamp(high, -g, 1.0), g, slice.cos_gamma),
-                                           arc(clamp(low, -g, 1.0), g, slice.cos_gamma));
-            ivec2 at = ivec2(floor(clamp(ends * bits_per_arc, 0.0, 32.0) + 0.5));
-            bits |= lowest_bits(max(at.x, at.y)) & ~lowest_bits(min(at.x, at.y));
+        // short of a whole bit: rounding does not lift what lies in the tangent plane
+        float dither = 0.001 + 0.998 * fract(noise.x + float(s) * 0.618033989);
+        for (int k = 0; k < u_steps; ++k) {
+            float t = distance_of_step(k, noise.y);
+            bits |= bits_at(t, 1.0, left, bits_per_arc, dither, slice, position) |
+                    bits_at(t, -1.0, left, bits_per_arc, dither, slice, position);
         }
         hidden += slice.share * whole * float(count_bits(bits)) / 32.0;
         all += slice.share * whole;

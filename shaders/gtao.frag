@@ -1,5 +1,6 @@
 #version 330 core
 #include "slices.glsl"
+#include "steps.glsl"
 
 // gtao.frag: ambient occlusion of slices: in each the two highest angles at which the picture stands
 // over the pixel's point, and between them the integral of the cosine, in closed form.
@@ -16,32 +17,26 @@
 //            sample's fade lowers its cosine towards the tangent plane's
 //
 // Vertices   fullscreen.vert
-// Reads      slices.glsl
+// Definitions  ANY_POWER: 0 or 1. 0: u_power is 2 (steps.glsl)
+// Reads      slices.glsl, steps.glsl
 //            u_slices  how many
-//            u_power   of the steps
 // Writes     out_occlusion
 // CPU twin   tests/screen_twin.cpp
 uniform int u_slices;
-uniform float u_power;
 
 out float out_occlusion;
 
-// the highest cosine on one side, not below `low`
-float horizon(Slice slice, float side, float low, vec3 position, float jitter)
+// the higher one of `best` and the cosine of what is seen at t on that side; `low`: the tangent's
+float higher(float best, float low, float t, float side, Slice slice, vec3 position)
 {
-    float best = low;
-    for (int k = 0; k < u_steps; ++k) {
-        float t = u_radius * pow((float(k) + jitter) / float(u_steps), u_power);
-        vec3 seen;
-        if (!sample_at(side * t, slice, seen))
-            continue;
-        vec2 d = vec2(dot(seen - position, slice.across), dot(seen - position, slice.up));
-        float square = dot(d, d);
-        float weight = weight_at(square);
-        float c = d.y * inversesqrt(max(square, 1e-30));
-        best = max(best, weight > 0.0 ? mix(low, c, weight) : low);
-    }
-    return min(best, 1.0);
+    vec3 seen;
+    if (!sample_at(t, side, slice, seen))
+        return best;
+    vec2 d = vec2(dot(seen - position, slice.across), dot(seen - position, slice.up));
+    float square = dot(d, d);
+    float weight = weight_at(square);
+    float c = d.y * inversesqrt(max(square, 1e-30));
+    return max(best, weight > 0.0 ? mix(low, c, weight) : low);
 }
 
 void main()
@@ -60,9 +55,15 @@ void main()
     for (int s = 0; s < u_slices; ++s) {
         Slice slice = slice_of(here.xyz, eye, direction, pixels_per_unit);
         float g = slice.sin_gamma;
+        vec2 best = vec2(-g, g);
+        for (int k = 0; k < u_steps; ++k) {
+            float t = distance_of_step(k, noise.y);
+            best.x = higher(best.x, -g, t, 1.0, slice, position);
+            best.y = higher(best.y, g, t, -1.0, slice, position);
+        }
+        best = min(best, 1.0);
         float whole = arc(-g, g, slice.cos_gamma) + arc(g, -g, slice.cos_gamma);
-        float open = arc(horizon(slice, 1.0, -g, position, noise.y), g, slice.cos_gamma) +
-                     arc(horizon(slice, -1.0, g, position, noise.y), -g, slice.cos_gamma);
+        float open = arc(best.x, g, slice.cos_gamma) + arc(best.y, -g, slice.cos_gamma);
         hidden += slice.share * (whole - open);
         all += slice.share * whole;
         direction = turned(direction);

@@ -86,12 +86,12 @@ void main()
                          : 1.0;
         for (int k = 0; k < u_steps; ++k) {
             vec3 seen;
-            if (!sample_at(u_radius * (float(k) + noise.y) / float(u_steps), slice, seen))
+            if (!sample_at(u_radius * (float(k) + noise.y) / float(u_steps), 1.0, slice, seen))
                 continue;
             vec2 d = vec2(dot(seen - position, slice.across), dot(seen - position, slice.up));
             float square = dot(d, d);
             float c = d.y * inversesqrt(max(square, 1e-30));
-            float fade = max(0.0, 1.0 - square / (u_radius * u_radius));
+            float fade = max(0.0, 1.0 - square * u_per_square);
             float weight = u_has_own_fade == 1 ? fade : weight_at(square);
             if (weight > 0.0 && c > best) {
                 occlusion += weight * (c - best);

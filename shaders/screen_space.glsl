@@ -13,7 +13,4 @@ vec2 pixels_at(float z)
     return u_is_orthographic == 1 ? scale : scale / z;
 }
 
-bool is_outside(ivec2 pixel)
-{
-    return any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, u_size));
-}
+bool is_outside(ivec2 pixel) { return any(greaterThanEqual(uvec2(pixel), uvec2(u_size))); }

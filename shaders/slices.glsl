@@ -12,11 +12,13 @@
 //                                 in it, and a plane is open at every tilt.
 //
 // Host side  gpu/screen_space.h
-//   u_steps     samples on either side
-//   u_turn      cosine and sine of the angle between directions
-//   u_is_faded  1: what a sample counts falls smoothly to 0 at R; 0: it counts 1 up to R
+//   u_steps       samples on either side
+//   u_turn        cosine and sine of the angle between directions
+//   u_per_square  1 / R^2
+//   u_is_faded    1: what a sample counts falls smoothly to 0 at R; 0: it counts 1 up to R
 uniform int u_steps;
 uniform vec2 u_turn;
+uniform float u_per_square;
 uniform int u_is_faded;
 
 // A surface seen so flatly spans more than 20 times its width in depth per pixel: what moves
@@ -25,6 +27,7 @@ const float kFlattest = 0.05;
 
 struct Slice {
     vec2 pixels;      // seen per unit of length along `across`
+    float nearest;    // length that is seen as one pixel
     vec3 across;      // unit length, at right angles to V
     vec3 up;          // d.up is the height y of a sample
     float share;      // length of the normal's part in the slice
@@ -37,6 +40,7 @@ Slice slice_of(vec3 normal, vec3 eye, vec2 direction, vec2 pixels_per_unit)
 {
     Slice slice;
     slice.pixels = direction * pixels_per_unit;
+    slice.nearest = inversesqrt(dot(slice.pixels, slice.pixels));
     vec3 along = vec3(direction, 0.0);
     slice.across = normalize(along - dot(along, eye) * eye);
     vec3 axis = cross(eye, slice.across);
@@ -54,14 +58,12 @@ vec2 turned(vec2 direction)
                 direction.x * u_turn.y + direction.y * u_turn.x);
 }
 
-// What the picture shows at the distance t along `across`, t of either sign; at least a pixel away.
-// False where that is nothing: outside of the picture, background.
-bool sample_at(float t, Slice slice, out vec3 position)
+// What the picture shows at the distance t along `across`, on the side 1 or -1; at least a pixel
+// away. False where that is nothing: outside of the picture, background.
+bool sample_at(float t, float side, Slice slice, out vec3 position)
 {
-    vec2 offset = t * slice.pixels;
-    float away = dot(offset, offset);
-    offset *= away < 1.0 ? inversesqrt(max(away, 1e-20)) : 1.0;
-    ivec2 pixel = ivec2(floor(gl_FragCoord.xy + offset));
+    ivec2 pixel =
+        ivec2(floor(gl_FragCoord.xy + side * max(t, slice.nearest) * slice.pixels));
     if (is_outside(pixel))
         return false;
     vec4 texel = texelFetch(u_surface, pixel, 0);
@@ -70,26 +72,24 @@ bool sample_at(float t, Slice slice, out vec3 position)
 }
 
 // what a sample at the distance of this square counts
-float weight_at(float distance_squared)
+float weight_at(float square)
 {
-    float rest = max(0.0, 1.0 - distance_squared / (u_radius * u_radius));
+    float rest = max(0.0, 1.0 - square * u_per_square);
     return u_is_faded == 1 ? rest * rest : (rest > 0.0 ? 1.0 : 0.0);
 }
 
-// within 7e-5 for x in [-1, 1]: Abramowitz, Stegun, "Handbook of Mathematical Functions", 4.4.45
-float angle_of(float x)
-{
-    float y = abs(x);
-    float angle = sqrt(max(0.0, 1.0 - y)) *
-                  (1.5707288 + y * (-0.2121144 + y * (0.0742610 - y * 0.0187293)));
-    return x < 0.0 ? 3.14159265 - angle : angle;
-}
-
 // Integral of cos(a - gamma) |sin a| over the angles a from V down to the cosine c, on the side
-// where the normal leans by gamma: g = sin(gamma) there, -sin(gamma) on the other. (GTAO, equation
-// 7, in terms of the cosine.)
+// where the normal leans by gamma: g = sin(gamma) there, -sin(gamma) on the other. GTAO's equation
+// 7 in terms of the cosine:
+//
+//     (cos gamma sin^2 a + g (a - sin a cos a)) / 2
+//
+// a - sin a cos a for c >= 0 as (1 - c)^(3/2) times a fitted polynomial, within 7e-5; below, it is
+// pi less that of -c.
 float arc(float c, float g, float cos_gamma)
 {
-    float square = max(0.0, 1.0 - c * c);
-    return 0.5 * (cos_gamma * square + g * (angle_of(c) - c * sqrt(square)));
+    float x = abs(c), rest = max(0.0, 1.0 - x);
+    float sector = rest * sqrt(rest) * (1.57086152 + x * (0.35365866 - x * 0.04142777));
+    sector = c < 0.0 ? 3.14159265 - sector : sector;
+    return 0.5 * (cos_gamma * rest * (1.0 + x) + g * sector);
 }

@@ -14,33 +14,54 @@
 // Departs    the ball is filled evenly (its radius by the cube root); samples come in pairs of
 //            opposite ones unless they are asked not to: of each one is in front of a plane, so that
 //            a wall is open with few of them, too; what is open beyond a half is cut off; samples
-//            outside of the picture are left out. Disk: its size on the picture is that of R at
+//            outside of the picture are left out, with their partners. Disk: its size on the picture is that of R at
 //            the distance u_disc_distance, for near and far pixels alike, as in depth
 //
 // Vertices   fullscreen.vert
 // Reads      screen_space.glsl, screen_noise.glsl
-//            u_samples        RGBA32F: offsets in the unit ball, 0
-//            u_sample_count
+//            u_samples        RGBA32F: offsets in the unit ball, 0; partners behind each other
+//            u_pairs          how many
+//            u_is_paired      1: partners lie opposite of each other
 //            u_disc_distance  0: a ball of view space
 //            u_reach          radii: what is nearer to the eye by more says nothing, and counts half
 //            u_is_by_ratio    1: in its place, the share of (z_p - z) / z counts half
 // Writes     out_occlusion
 // CPU twin   tests/screen_twin.cpp
 uniform samplerBuffer u_samples;
-uniform int u_sample_count;
+uniform int u_pairs;
+uniform int u_is_paired;
 uniform float u_disc_distance;
 uniform float u_reach;
 uniform int u_is_by_ratio;
 
 out float out_occlusion;
 
+const float kOutside = -1.0;
+
+// Whether the place that so much of the radius leads to is in front of what is seen there: 1, 0, or
+// between where what is seen there does not tell; or kOutside. pixels: the radius.
+float openness(vec3 offset, vec3 position, float radius, vec2 pixels)
+{
+    vec3 sampled = position + radius * offset;
+    ivec2 pixel = ivec2(floor(u_disc_distance > 0.0 ? gl_FragCoord.xy + offset.xy * pixels
+                                                    : place_of(sampled)));
+    if (sampled.z <= 0.0 && u_is_orthographic == 0 || is_outside(pixel))
+        return kOutside;
+    float z = texelFetch(u_surface, pixel, 0).w;
+    float nearer = position.z - z;
+    float validity = u_is_by_ratio == 1 ? 1.0 - clamp(nearer / z, 0.0, 1.0)
+                                        : (nearer <= u_reach * radius ? 1.0 : 0.0);
+    return mix(0.5, z > sampled.z ? 1.0 : 0.0, validity);
+}
+
+vec3 mirrored(vec3 offset, vec3 mirror) { return offset - 2.0 * dot(offset, mirror) * mirror; }
+
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 here = texelFetch(u_surface, pixel, 0);
-    bool is_disc = u_disc_distance > 0.0;
     float radius = u_radius;
-    if (is_disc && u_is_orthographic == 0)
+    if (u_disc_distance > 0.0 && u_is_orthographic == 0)
         radius *= here.w / u_disc_distance;
     vec2 pixels = radius * pixels_at(here.w);
     out_occlusion = 0.0;
@@ -48,23 +69,22 @@ void main()
         return;
     vec3 position = position_at(pixel, here);
     vec2 noise = noise_at(pixel);
+    // the z axis is mirrored to any direction, each as often: so does a disk stand for the ball
     float height = 2.0 * noise.x - 1.0, turn = 6.28318531 * noise.y;
-    vec3 mirror = vec3(sqrt(1.0 - height * height) * vec2(cos(turn), sin(turn)), height);
+    vec3 axis = vec3(sqrt(1.0 - height * height) * vec2(cos(turn), sin(turn)), height);
+    vec3 mirror = normalize(axis - vec3(0.0, 0.0, 1.0));
     float open = 0.0, count = 0.0;
-    for (int i = 0; i < u_sample_count; ++i) {
-        vec3 offset = texelFetch(u_samples, i).xyz;
-        offset -= 2.0 * dot(offset, mirror) * mirror;
-        vec3 sampled = position + radius * offset;
-        ivec2 place = ivec2(floor(is_disc ? gl_FragCoord.xy + offset.xy * pixels
-                                          : place_of(sampled)));
-        if (sampled.z <= 0.0 && u_is_orthographic == 0 || is_outside(place))
-            continue;
-        float z = texelFetch(u_surface, place, 0).w;
-        float is_valid = u_is_by_ratio == 1
-                             ? 1.0 - clamp((position.z - z) / z, 0.0, 1.0)
-                             : (position.z - z <= u_reach * radius ? 1.0 : 0.0);
-        open += mix(0.5, z > sampled.z ? 1.0 : 0.0, is_valid);
-        count += 1.0;
+    for (int i = 0; i < u_pairs; ++i) {
+        vec3 one = mirrored(texelFetch(u_samples, 2 * i).xyz, mirror), other = -one;
+        if (u_is_paired == 0)
+            other = mirrored(texelFetch(u_samples, 2 * i + 1).xyz, mirror);
+        float a = openness(one, position, radius, pixels);
+        float b = openness(other, position, radius, pixels);
+        vec2 counts = vec2(a == kOutside ? 0.0 : 1.0, b == kOutside ? 0.0 : 1.0);
+        if (u_is_paired == 1)
+            counts = vec2(counts.x * counts.y);
+        open += dot(counts, vec2(a, b));
+        count += counts.x + counts.y;
     }
     out_occlusion = count > 0.0 ? 1.0 - min(1.0, 2.0 * open / count) : 0.0;
 }

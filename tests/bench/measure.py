@@ -3,7 +3,7 @@
 
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
                                     readers stated demo viewers atlas maps map_frontier
-                                    clouds clouds_pcv subdivide;
+                                    clouds clouds_pcv subdivide pixels;
                                     default: all, about an hour on two quiet cores
 
 Every part is one file that says what command made it, of which version and commit, on what
@@ -447,12 +447,29 @@ def part_clouds_pcv(build):
     return {**provenance(build, "tests/bench/clouds/pcv.py"), "rows": rows}
 
 
+PIXEL_MODELS = ("bunny", "FlightHelmet", "stanford_dragon_res2", "pine", "data/room.obj")
+
+
+def part_pixels(build):
+    """The exact pass at the pixels of two views of each."""
+    paths = {name: path for path, name, _ in models()}
+    names = list(paths) if TRIAL else PIXEL_MODELS
+    size = (64, 36) if TRIAL else (1280, 720)
+    rows = json.loads(run(build / "bin/pixel_tables", "exact", 100 if TRIAL else 4000, *size,
+                          *[paths[name] for name in names], shown="pixel_tables exact"))
+    for row, name in zip(rows, [name for name in names for _ in range(8)]):
+        row["model"] = name
+    return {**provenance(build, "pixel_tables exact"), "width": size[0], "height": size[1],
+            "rows": rows}
+
+
 PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scaling": part_scaling,
          "stability": part_stability, "gpu": part_gpu, "drawing": part_drawing,
          "readers": part_readers, "stated": part_stated, "demo": part_demo,
          "viewers": part_viewers, "atlas": part_atlas, "maps": part_maps,
          "map_frontier": part_map_frontier, "clouds": part_clouds,
          "clouds_pcv": part_clouds_pcv,
+         "pixels": part_pixels,
          "subdivide": part_subdivide}
 
 
