@@ -65,9 +65,11 @@ void add_cube_options(CLI::App& command, CubeOptions& options)
         ->type_name("X:Y:Z")
         ->group(kGroup);
     command
-        .add_option("--cubemaps", options.placement,
-                    "Where maps are put: auto = so that few see most of the surface, N at most; "
-                    "camera = one at the camera where less than 75 % of the picture is covered")
+        .add_option(
+            "--cubemaps", options.placement,
+            "Where maps are put: auto = so that few see most of the surface, N at most, and "
+            "one at the camera where less than 98 % of the picture is covered; camera = "
+            "that one alone, where it is less than 75 %")
         ->type_name("auto[:N]|camera")
         ->default_str("auto")
         ->group(kGroup);
@@ -100,9 +102,12 @@ CubePlan cube_plan_of(const CubeOptions& options, const Frame& frame)
     CubePlan plan;
     for (const std::string& text : options.places)
         plan.centres.push_back((cube_place_of(text) - frame.centre) / frame.diagonal);
-    plan.at_camera = options.placement == "camera";
-    if (!plan.at_camera && (options.placement || options.places.empty()))
+    if (options.placement == "camera") {
+        plan.covered = kCoveredEnough;
+    } else if (options.placement || options.places.empty()) {
         plan.automatic = most_of(options.placement.value_or("auto"));
+        plan.covered = kCoveredWell;
+    }
     return plan;
 }
 

@@ -32,7 +32,7 @@ void check_cube_options(const CubeOptions& options, bool at_cube_maps);
 struct CubePlan {
     std::vector<glm::vec3> centres;  ///< given; unit frame
     std::optional<int> automatic;    ///< place at most so many
-    bool at_camera = false;          ///< one at the camera where too little is covered
+    double covered = 0.0;            ///< one more at the camera where less of the picture is
 };
 
 /// Automatic unless places are given or another placement is named. Throws UsageError.

@@ -45,7 +45,8 @@ PlacedMaps place_maps(const GlContext& context, const Mesh& mesh, const DrawnMes
                       options.size.value_or(kCubeSize), settings.offset};
     for (const glm::vec3 centre : plan.centres)
         maps.projector.add(make_cube_map(world, centre, cube, maps.seconds, stage("cube maps")));
-    if (plan.at_camera && coverage_of(world, maps.projector, view, settings.size) < kCoveredEnough)
+    if (plan.covered > 0.0 &&
+        coverage_of(world, maps.projector, view, settings.size) < plan.covered)
         maps.projector.add(make_cube_map(world, view.eye, cube, maps.seconds, stage("cube maps")));
     return maps;
 }
@@ -62,7 +63,8 @@ std::string text_of(const PlacedMaps& maps, const PixelPicture& picture)
                                                 : 1.0 - static_cast<double>(picture.holes) /
                                                             static_cast<double>(picture.middles);
     return text + fixed(100.0 * covered, 2) + " % of the pixels covered, " +
-           std::to_string(picture.holes) + " holes\n  placement " + time(maps.placement_s) +
+           std::to_string(picture.holes) + " holes, " + std::to_string(picture.faded) +
+           " seen by fading maps alone\n  placement " + time(maps.placement_s) +
            ", maps' G-buffers " + time(maps.seconds.draw) + ", maps' texels " +
            time(maps.seconds.solve);
 }

@@ -106,7 +106,9 @@ void GBuffer::draw_triangles(const DrawnMesh& mesh, const View& view)
     set_view(program, view);
     const float distance = glm::length(view.eye);
     const float far = 1.01f * (distance + mesh.radius_);
-    program.set("u_near", std::max(0.99f * (distance - mesh.radius_), kNearest * far));
+    // along the view, not to the ball's nearest point: it may lie aside
+    const float forward = -glm::dot(view.eye, view.forward);
+    program.set("u_near", std::max(0.99f * (forward - mesh.radius_), kNearest * far));
     program.set("u_far", far);
     program.set("u_positions", mesh.positions_);
     triangles_.clear_color(glm::uvec4(0));

@@ -2,6 +2,8 @@
 
 #include "surfels/stopwatch.h"
 
+#include <glm/common.hpp>
+
 namespace surfelao {
 
 double CubeAnswer::coverage() const
@@ -25,6 +27,7 @@ CubeAnswer answer_from_maps(const PixelView& view, CubeProjector& projector, int
     CubeAnswer answer;
     answer.occlusion = view.at_seen(occlusion);
     for (const float share : view.at_seen(weight)) {
+        answer.share.push_back(share);
         answer.hole.push_back(share > 0.0f ? 0 : 1);
         answer.holes += answer.hole.back();
     }
@@ -35,30 +38,30 @@ CubeAnswer answer_from_maps(const PixelView& view, CubeProjector& projector, int
 void solve_holes(CubeAnswer& answer, const PixelView& view, const CubeWorld& world,
                  const CubeSettings& settings, const Progress& progress)
 {
-    if (answer.holes == 0)
-        return;
     Stopwatch watch;
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < answer.share.size(); ++i) {
+        if (answer.share[i] < 1.0f)
+            open.push_back(i);
+    }
+    if (open.empty())
+        return;
+    std::vector<Occlusion> values;
     if (const auto* engine = std::get_if<EngineSettings>(&settings.engine)) {
         std::vector<Receiver> receivers;
-        for (std::size_t i = 0; i < answer.hole.size(); ++i) {
-            if (answer.hole[i] != 0)
-                receivers.push_back(view.seen().receivers[i]);
-        }
+        for (const std::size_t i : open)
+            receivers.push_back(view.seen().receivers[i]);
         const EngineSettings here = engine_of(world, *engine, settings.definition);
-        const Solution solution =
-            solve(world.occluders.prepared_for(here), receivers, here, progress);
-        std::size_t next = 0;
-        for (std::size_t i = 0; i < answer.hole.size(); ++i) {
-            if (answer.hole[i] != 0)
-                answer.occlusion[i] = solution.occlusion[next++].occlusion;
-        }
+        values = solve(world.occluders.prepared_for(here), receivers, here, progress).occlusion;
     } else {
         const PixelAnswer pixels = surfelao::answer(view, world.occluders, world.screen,
                                                     settings.engine, settings.definition, progress);
-        for (std::size_t i = 0; i < answer.hole.size(); ++i) {
-            if (answer.hole[i] != 0)
-                answer.occlusion[i] = pixels.values[i].occlusion;
-        }
+        for (const std::size_t i : open)
+            values.push_back(pixels.values[i]);
+    }
+    for (std::size_t k = 0; k < open.size(); ++k) {
+        float& occlusion = answer.occlusion[open[k]];
+        occlusion = glm::mix(values[k].occlusion, occlusion, answer.share[open[k]]);
     }
     answer.holes_s = watch.lap();
 }

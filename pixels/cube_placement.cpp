@@ -23,6 +23,7 @@ constexpr int kProbes = 64;              // rays that tell whether a cell is fre
 constexpr float kLeastDistance = 0.01f;  // diagonals, of a candidate from the surface
 constexpr float kLeastCosine = 0.15f;    // 81 degrees
 constexpr float kNearEnough = 0.25f;     // diagonals: nearer maps count no more
+constexpr double kOftenEnough = 0.05;    // of all cells, or of the sphere
 constexpr double kEnough = 0.98;         // of the targets that can be seen
 constexpr float kEndShare = 1e-4f;       // of a ray: where it ends before its target
 
@@ -159,6 +160,8 @@ CubePlacement place_cube_maps(const Mesh& mesh, int most, const Progress& progre
         }
         meter.add(1);
     }
+    for (double& eyes : seen)
+        eyes = std::min(eyes, kOftenEnough);
     const double all = std::accumulate(seen.begin(), seen.end(), 0.0);
     CubePlacement placement;
     placement.candidates = static_cast<std::uint32_t>(candidates.size());

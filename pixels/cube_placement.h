@@ -5,10 +5,10 @@
 /// statue. *Targets* are surface points, uniform by area, each side for itself. A candidate sees a
 /// target where a ray reaches it at less than 81 degrees from its normal.
 ///
-/// A target counts as often as it is seen: from all free cells together as much as from all of the
-/// sphere. What shows through a crack alone is worth no map. The cover is chosen greedily: always
-/// the candidate that adds most, each target weighed by what a map is worth there, the facing, the
-/// nearness to a face's middle and to the centre of cube_projector.h.
+/// A target counts as often as it is seen, from the free cells as much as from the sphere, and
+/// fully from a twentieth of either: what shows through a crack alone is worth no map. The cover is
+/// chosen greedily: always the candidate that adds most, each target weighed by what a map is worth
+/// there, the facing, the nearness to a face's middle and to the centre of cube_projector.h.
 ///
 /// Based on:
 ///   Chvatal. A Greedy Heuristic for the Set-Covering Problem. Mathematics of Operations Research
@@ -41,5 +41,7 @@ inline constexpr int kMostPlacedMaps = 16;
 
 /// The thesis puts a map at the camera where less of the seen pixels is covered than this.
 inline constexpr double kCoveredEnough = 0.75;
+/// For a picture whose maps were placed, more.
+inline constexpr double kCoveredWell = 0.98;
 
 }  // namespace surfelao

@@ -8,13 +8,14 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 namespace surfelao {
 namespace {
 
 /// A map within this share of the distance of the first that is left out fades.
-constexpr float kFadingShare = 0.2f;
+constexpr float kFadingShare = 0.5f;
 
 std::vector<std::uint32_t> values_of(const CubeMap& map)
 {
@@ -53,14 +54,15 @@ std::vector<ProjectedMap> nearest_maps(std::span<const glm::vec3> centres,
     };
     std::ranges::stable_sort(chosen, {}, distance);
     const auto count = static_cast<std::size_t>(most);
-    if (chosen.size() <= count)
-        return chosen;
-    const float left_out = distance(chosen[count]);
-    chosen.resize(count);
-    for (ProjectedMap& map : chosen)
-        map.weight *=
-            glm::clamp((left_out - distance(map)) / (kFadingShare * left_out), 0.0f, 1.0f);
-    std::erase_if(chosen, [](const ProjectedMap& map) { return !(map.weight > 0.0f); });
+    if (chosen.size() > count) {
+        const float left_out = distance(chosen[count]);
+        chosen.resize(count);
+        for (ProjectedMap& map : chosen)
+            map.weight *=
+                glm::clamp((left_out - distance(map)) / (kFadingShare * left_out), 0.0f, 1.0f);
+        std::erase_if(chosen, [](const ProjectedMap& map) { return !(map.weight > 0.0f); });
+    }
+    std::ranges::stable_sort(chosen, std::greater{}, &ProjectedMap::weight);
     return chosen;
 }
 
@@ -127,19 +129,21 @@ void CubeProjector::project(const GBuffer& seen, const Framebuffer& target, int 
     for (const CubeMap& map : maps_)
         centres.push_back(map.centre);
     std::vector<glm::vec4> records;
-    for (const ProjectedMap& map : nearest_maps(centres, weights_, seen.view().eye, most)) {
-        records.emplace_back(centres[map.index], static_cast<float>(map.index));
-        records.emplace_back(map.weight, 0.0f, 0.0f, 0.0f);
+    const std::vector<ProjectedMap> used = nearest_maps(centres, weights_, seen.view().eye, most);
+    for (std::size_t k = 0; k < used.size(); ++k) {
+        const float next = k + 1 < used.size() ? used[k + 1].weight : 0.0f;
+        records.emplace_back(centres[used[k].index], static_cast<float>(used[k].index));
+        records.emplace_back(used[k].weight - next, 0.0f, 0.0f, 0.0f);
     }
     if (records.empty())
         return;
-    const TextureBuffer used(context_, TexelFormat::rgba32f, std::span<const glm::vec4>(records));
+    const TextureBuffer table(context_, TexelFormat::rgba32f, std::span<const glm::vec4>(records));
     Program& program = context_.program("fullscreen.vert", "cube_project.frag");
     set_eye(program, seen.view(), seen.width(), seen.height());
     program.set("u_surface", seen.surface());
     program.set("u_distances", *distances_);
     program.set("u_values", *values_);
-    program.set("u_maps", used);
+    program.set("u_maps", table);
     program.set("u_map_count", static_cast<int>(records.size() / 2));
     program.set("u_face_size", maps_.front().size);
     draw_fullscreen(target, program, nothing_);

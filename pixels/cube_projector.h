@@ -14,7 +14,12 @@
 ///     Q = cos * (largest |d_i| / |d|) * (1 / |d|),   d = p - c
 ///
 /// facing, nearness to the face's middle, nearness to the centre. The thesis takes the best map
-/// alone, whose change shows.
+/// alone, whose change shows. Maps that fade, w_1 >= w_2 >= ... their weights, w = 0 behind the
+/// last, enter linearly however good they are:
+///
+///     shown = sum over k of (w_k - w_k+1) * blend of the maps 1 to k
+///
+/// Where all that answer weigh less than a quarter, the pixel's own answer has the rest.
 #pragma once
 
 #include "pixels/cube_map.h"
@@ -59,9 +64,9 @@ public:
     /// As large as the picture: RG32F.
     [[nodiscard]] Framebuffer make_target(int width, int height) const;
 
-    /// Occlusion of every pixel in red; in green 1 where a map answers, less where only maps do
-    /// that fade, 0 where none does and on the background. seen must be drawn and as large as the
-    /// target.
+    /// Occlusion of every pixel in red; in green its share in what should be shown: 1 where a map
+    /// answers, less where only fading maps do, 0 where none does and on the background. seen must
+    /// be drawn and as large as the target.
     void project(const GBuffer& seen, const Framebuffer& target, int most = kNearestMaps);
 
 private:

@@ -5,6 +5,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <string>
@@ -216,23 +217,27 @@ private:
 
         if (on_screen() && !settings_.white_holes)
             put_screen(drawing, size, pixels, answers.values);
+        std::vector<std::size_t> open;
         std::vector<Receiver> asked;
         for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
-            const glm::vec4 texel = told[seen.pixels[i]];
-            answers.holes.push_back(texel.y > 0.0f ? 0 : 1);
-            if (texel.y > 0.0f)
-                answers.values[i].occlusion = texel.x;
-            else if (!settings_.white_holes)
-                asked.push_back(seen.receivers[i]);
+            const float share = told[seen.pixels[i]].y;
+            answers.holes.push_back(share > 0.0f ? 0 : 1);
             picture_.holes += answers.holes.back();
-        }
-        if (!on_screen() && !asked.empty()) {
-            const std::vector<Occlusion> filled = solved(asked, stage("solve"));
-            std::size_t next = 0;
-            for (std::size_t i = 0; i < answers.holes.size(); ++i) {
-                if (answers.holes[i] != 0)
-                    answers.values[i] = filled[next++];
+            picture_.faded += share > 0.0f && share < 1.0f ? 1 : 0;
+            if (share < 1.0f && !on_screen() && !settings_.white_holes) {
+                open.push_back(i);
+                asked.push_back(seen.receivers[i]);
             }
+        }
+        if (!asked.empty()) {
+            const std::vector<Occlusion> filled = solved(asked, stage("solve"));
+            for (std::size_t k = 0; k < open.size(); ++k)
+                answers.values[open[k]].occlusion = filled[k].occlusion;
+        }
+        for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
+            const glm::vec4 texel = told[seen.pixels[i]];
+            float& occlusion = answers.values[i].occlusion;
+            occlusion = glm::mix(occlusion, texel.x, settings_.white_holes ? 1.0f : texel.y);
         }
         picture_.solve_s += watch.lap();
         return answers;

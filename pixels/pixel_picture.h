@@ -63,6 +63,7 @@ struct PixelPicture {
     std::uint64_t extras = 0;   ///< at other samples
     std::uint64_t edge_pixels = 0;  ///< that have such
     std::uint64_t holes = 0;        ///< middles that no cube map answered
+    std::uint64_t faded = 0;        ///< middles that only fading cube maps answered
     int bands = 1;
     double prepare_s = 0.0;    ///< the engine's tree
     double see_s = 0.0;        ///< drawing the middles, and their receivers

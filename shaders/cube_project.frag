@@ -9,10 +9,11 @@
 //            u_eye u_right u_up u_forward  View of the G-buffer
 //            u_distances  R32F, all texels of all maps: x + size (y + size (face + 6 map))
 //            u_values     R32UI, likewise: occlusion | normal.x << 8 | normal.y << 16, bytes
-//            u_maps       RGBA32F, two texels per map in use: its centre, its index; its weight
+//            u_maps       RGBA32F, two texels per map in use, falling by weight: its centre, its
+//                         index; how much more it weighs than the next one
 //            u_map_count  in use
 //            u_face_size  texels along the edge of a face
-// Writes     out_answer   occlusion | the largest weight of a map that answers, 0 where none does
+// Writes     out_answer   occlusion | share: 0 = none answers, 1 = needs no help
 // CPU twin   tests/pixels/cube_twin.h
 
 uniform vec3 u_eye;
@@ -31,6 +32,7 @@ const float kPlane = 1.0;         // footprints
 const float kReach = 3.0;         // footprints over the cosine
 const float kSameNormal = 0.8;    // cosine
 const float kLeastWeight = 0.02;  // of the bilinear weights
+const float kWhole = 0.25;        // weight of maps that need no help
 
 vec3 in_world(vec3 v) { return v.x * u_right + v.y * u_up + v.z * u_forward; }
 
@@ -94,23 +96,21 @@ void main()
     vec3 normal = in_world(seen.xyz);
 
     vec2 blend = vec2(0.0);
-    float most = 0.0;
+    vec2 sum = vec2(0.0);
     for (int k = 0; k < u_map_count; ++k) {
         vec4 map = texelFetch(u_maps, 2 * k);
-        float weight = texelFetch(u_maps, 2 * k + 1).x;
         vec3 d = point - map.xyz;
         float distance = length(d);
         float cosine = -dot(normal, d) / distance;
-        if (!(cosine > 0.0))
-            continue;
-        vec2 answer = read_map(int(map.w), d, normal, cosine);
-        if (answer.y < kLeastWeight)
-            continue;
-        vec3 size = abs(d);
-        float quality = cosine * max(size.x, max(size.y, size.z)) / (distance * distance);
-        blend += weight * pow(quality, 4.0) * vec2(answer.x / answer.y, 1.0);
-        most = max(most, weight);
+        vec2 answer = cosine > 0.0 ? read_map(int(map.w), d, normal, cosine) : vec2(0.0);
+        if (answer.y >= kLeastWeight) {
+            vec3 size = abs(d);
+            float quality = cosine * max(size.x, max(size.y, size.z)) / (distance * distance);
+            blend += pow(quality, 4.0) * vec2(answer.x / answer.y, 1.0);
+        }
+        if (blend.y > 0.0)
+            sum += texelFetch(u_maps, 2 * k + 1).x * vec2(blend.x / blend.y, 1.0);
     }
-    if (blend.y > 0.0)
-        out_answer = vec2(blend.x / blend.y, most);
+    if (sum.y > 0.0)
+        out_answer = vec2(sum.x / sum.y, min(1.0, sum.y / kWhole));
 }

@@ -3,7 +3,7 @@
 
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
                                     readers stated demo viewers atlas maps map_frontier
-                                    clouds clouds_pcv subdivide pixels origin;
+                                    clouds clouds_pcv subdivide pixels origin cubes;
                                     default: all, about an hour on two quiet cores
 
 Every part is one file that says what command made it, of which version and commit, on what
@@ -453,6 +453,18 @@ def part_clouds_pcv(build):
 PIXEL_MODELS = ("bunny", "FlightHelmet", "stanford_dragon_res2", "pine", "data/room.obj")
 
 
+def part_cubes(build):
+    """Cube maps round a body and in a room, and the pixels themselves."""
+    tables = build / "bin/cube_tables"
+    body = ROOT / "data/blob.off" if TRIAL else SHARED / "stanford_bunny.obj"
+    if not body.exists():
+        raise Absent(f"no {body.name} (SURFELAO_MODELS)")
+    counts = (300, 64) if TRIAL else ()
+    scenes = [json.loads(run(tables, path, kind, *counts))
+              for path, kind in ((body, "ring"), (ROOT / "data/room.obj", "inside"))]
+    return {**provenance(build, "cube_tables"), "scenes": scenes}
+
+
 def part_pixels(build):
     """The exact pass at the pixels of two views of each."""
     paths = {name: path for path, name, _ in models()}
@@ -489,7 +501,7 @@ PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scalin
          "viewers": part_viewers, "atlas": part_atlas, "maps": part_maps,
          "map_frontier": part_map_frontier, "clouds": part_clouds,
          "clouds_pcv": part_clouds_pcv,
-         "pixels": part_pixels, "origin": part_origin,
+         "pixels": part_pixels, "origin": part_origin, "cubes": part_cubes,
          "subdivide": part_subdivide}
 
 

@@ -20,9 +20,9 @@ struct TwinTests {
     float least_cosine = 0.0f;  ///< of the point's normal and the way to the centre
 };
 
-/// Occlusion and its weight; weight 0 where no map answers.
+/// Occlusion and its share in what is shown; 0 where no map answers.
 struct TwinAnswer {
-    float occlusion = 0.0f, weight = 0.0f;
+    float occlusion = 0.0f, share = 0.0f;
 };
 
 /// What one map's texels round the point tell: sums of occlusion and weights.
@@ -67,25 +67,28 @@ inline glm::vec2 twin_texels(const CubeMap& map, glm::vec3 point, glm::vec3 norm
 inline TwinAnswer twin_answer(std::span<const CubeMap> maps, std::span<const ProjectedMap> used,
                               glm::vec3 point, glm::vec3 normal, const TwinTests& tests = {})
 {
-    double sum = 0.0, weights = 0.0;
-    float most = 0.0f;
-    for (const ProjectedMap& use : used) {
-        const glm::vec3 d = point - maps[use.index].centre;
+    double sum = 0.0, qualities = 0.0, shown = 0.0, share = 0.0;
+    for (std::size_t k = 0; k < used.size(); ++k) {
+        const glm::vec3 d = point - maps[used[k].index].centre;
         const float distance = glm::length(d);
         const float cosine = -glm::dot(normal, d) / distance;
-        if (!(cosine > tests.least_cosine))
-            continue;
-        const glm::vec2 read = twin_texels(maps[use.index], point, normal, cosine, tests);
-        if (read.y < 0.02f)
-            continue;
-        const glm::vec3 size = glm::abs(d);
-        const double quality =
-            std::pow(cosine * std::max({size.x, size.y, size.z}) / (distance * distance), 4.0);
-        sum += use.weight * quality * read.x / read.y;
-        weights += use.weight * quality;
-        most = std::max(most, use.weight);
+        if (cosine > tests.least_cosine) {
+            const glm::vec2 read = twin_texels(maps[used[k].index], point, normal, cosine, tests);
+            const glm::vec3 size = glm::abs(d);
+            const double quality =
+                std::pow(cosine * std::max({size.x, size.y, size.z}) / (distance * distance), 4.0);
+            sum += read.y < 0.02f ? 0.0 : quality * read.x / read.y;
+            qualities += read.y < 0.02f ? 0.0 : quality;
+        }
+        const float next = k + 1 < used.size() ? used[k + 1].weight : 0.0f;
+        if (qualities > 0.0) {
+            shown += (used[k].weight - next) * sum / qualities;
+            share += used[k].weight - next;
+        }
     }
-    return weights > 0.0 ? TwinAnswer{static_cast<float>(sum / weights), most} : TwinAnswer{};
+    return share > 0.0 ? TwinAnswer{static_cast<float>(shown / share),
+                                    static_cast<float>(std::min(1.0, share / 0.25))}
+                       : TwinAnswer{};
 }
 
 }  // namespace surfelao

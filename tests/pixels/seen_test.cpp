@@ -33,7 +33,7 @@ std::optional<float> nearest_hit(const Geometry& geometry, glm::vec3 from, glm::
     return nearest;
 }
 
-/// Cameras of both kinds, one of them inside of the scene.
+/// Cameras of both kinds, one of them inside of the scene, one that looks past it.
 std::vector<View> views()
 {
     const Mesh mesh = make_mesh(scenes::bumpy_sphere(12));
@@ -42,7 +42,11 @@ std::vector<View> views()
     orthographic.lens = {{-0.6f, -0.4f}, {0.6f, 0.4f}, true};
     View inside = outside;
     inside.eye = glm::vec3(0.02f, 0.01f, -0.03f);
-    return {outside, orthographic, inside};
+    View aside = outside;  // the scene is at the edge of a wide picture
+    aside.forward = glm::normalize(outside.forward + outside.right);
+    aside.right = glm::normalize(outside.right - outside.forward);
+    aside.lens = {{-1.5f, -1.0f}, {1.5f, 1.0f}, false};
+    return {outside, orthographic, inside, aside};
 }
 
 TEST(Seen, IsTheNearestTriangleOnEachPixelsRay)
