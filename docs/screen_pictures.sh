@@ -4,7 +4,7 @@
 #   screen_pictures.sh BUILD MODELS OUT.png
 #
 # BUILD holds bin/surfelao; MODELS stanford_bunny.obj and FlightHelmet/FlightHelmet.gltf
-# (docs/measurements.md names where they come from). Needs ImageMagick's montage.
+# (docs/measurements.md names where they come from). Needs ImageMagick.
 set -euo pipefail
 build=$1 models=$2 out=$3
 here=$(cd "$(dirname "$0")/.." && pwd)
@@ -26,4 +26,5 @@ row room "$here/data/room.obj" --up z --max-distance 15% \
     --camera eye=7.3:0.7:1.9,target=3.4:4.2:0.9,fov=70
 row helmet "$models/FlightHelmet/FlightHelmet.gltf" --max-distance 10% \
     --camera azimuth=25,elevation=10,distance=0.6
-montage "${tiles[@]}" -tile 7x3 -background "#7b8694" -geometry 220x191+2+2 -colors 64 "$out"
+montage "${tiles[@]}" -tile 7x3 -background "#7b8694" -geometry 220x191+2+2 miff:- |
+    convert - -dither None -colors 32 -depth 8 -type Palette "$out"
