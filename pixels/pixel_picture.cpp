@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 
 namespace surfelao {
@@ -20,10 +21,19 @@ struct Band {
     View view;  ///< of the part
 };
 
-/// From the bottom, rows of as many parts as the device's pictures are narrower.
+/// From the bottom, rows of as many parts as the device's pictures are narrower. Methods that know
+/// the picture alone must see it whole, or there were borders in its middle.
 std::vector<Band> bands_of(const View& view, const PixelPictureSettings& settings, int largest)
 {
     const PictureSize size = settings.size;
+    if (settings.engine && std::holds_alternative<ScreenSettings>(*settings.engine)) {
+        const int widest = std::max(size.width, size.height) + 2 * settings.guard;
+        if (widest > largest)
+            throw InputError("a method that knows the picture alone needs it whole: " +
+                             std::to_string(widest) + " pixels with the guard, " +
+                             std::to_string(largest) + " each way can be drawn here");
+        return {{{0, 0, size.width, size.height}, view}};
+    }
     const int most = std::max(1, largest - 2 * settings.guard);
     const int width = std::min(size.width, most);
     const int height =

@@ -7,7 +7,7 @@
 /// two bands answers differ by as much as any two lists make them.
 ///
 /// A method that knows the picture alone answers at the middles of the samples' pictures: each
-/// sample that another receiver comes from is a pass of its own.
+/// sample that another receiver comes from is a pass of its own. Its picture is one band.
 #pragma once
 
 #include "bake/error_search.h"
@@ -67,7 +67,8 @@ struct PixelPicture {
 
 /// view: of the whole picture. drawn: of the mesh, on this context. occluders: of mesh.occluding().
 /// Throws as solve(), ScreenSpace::draw() and std::runtime_error where the device refuses;
-/// Cancelled. progress: "solve", "edges", "reference", band by band.
+/// InputError where a screen-space method's picture is larger than the device draws; Cancelled.
+/// progress: "solve", "edges", "reference", band by band.
 [[nodiscard]] PixelPicture pixel_picture(const GlContext& context, const Mesh& mesh,
                                          const DrawnMesh& drawn, Occluders& occluders,
                                          const View& view, const PixelPictureSettings& settings,

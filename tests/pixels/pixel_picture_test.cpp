@@ -237,6 +237,19 @@ TEST(PixelPicture, BandsMakeUpTheSamePicture)
     EXPECT_LE(others, 20);
 }
 
+TEST(PixelPicture, MethodsOfThePictureSeeItWhole)
+{
+    PixelPictureSettings settings{.size = {60, 40},
+                                  .samples = 2,
+                                  .engine = screen_settings(ScreenMethod::gtao, 16),
+                                  .band_pixels = 600};
+    EXPECT_EQ(picture_of(bumpy(), framed(bumpy(), settings.size), settings).bands, 1);
+    settings.size.width = test_context().info().max_texture_size;
+    settings.guard = 1;
+    EXPECT_THROW(static_cast<void>(picture_of(bumpy(), framed(bumpy(), settings.size), settings)),
+                 InputError);
+}
+
 TEST(PixelPicture, ScreenMethodsStandAtTheirPixels)
 {
     const PictureSize size{48, 40};
