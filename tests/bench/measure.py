@@ -3,7 +3,7 @@
 
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
                                     readers stated demo viewers atlas maps map_frontier
-                                    clouds clouds_pcv subdivide pixels origin;
+                                    clouds clouds_pcv subdivide pixels screen origin;
                                     default: all, about an hour on two quiet cores
 
 Every part is one file that says what command made it, of which version and commit, on what
@@ -466,6 +466,12 @@ def part_pixels(build):
             "rows": rows}
 
 
+def part_screen(build):
+    """The screen-space passes alone; egl: a GPU where there is one."""
+    return {**provenance(build, "screen_tables egl"),
+            **json.loads(run(build / "bin/screen_tables", "egl"))}
+
+
 def part_origin(build):
     """Screen-space methods and ours at the pixels of five views."""
     needed = [SHARED / file for _, file, *_ in pixel_origin.VIEWS if not file.startswith("data/")]
@@ -489,7 +495,7 @@ PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scalin
          "viewers": part_viewers, "atlas": part_atlas, "maps": part_maps,
          "map_frontier": part_map_frontier, "clouds": part_clouds,
          "clouds_pcv": part_clouds_pcv,
-         "pixels": part_pixels, "origin": part_origin,
+         "pixels": part_pixels, "screen": part_screen, "origin": part_origin,
          "subdivide": part_subdivide}
 
 
