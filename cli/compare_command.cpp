@@ -205,6 +205,8 @@ int run(const CompareOptions& options)
 /// Contradictions, before any work.
 void check(const CompareOptions& options)
 {
+    if (options.inputs.size() > 1 && is_at_pixels(options.texels))
+        throw UsageError("--at pixels is for one file.");
     if (options.inputs.size() > 1 && !options.frontier)
         throw UsageError("several files need --frontier.");
     if (options.frontier && options.qualities)

@@ -72,7 +72,7 @@ def origin_again(figures, key="rmse_whole"):
                            for samples in SAMPLES]])
         for setting in ("good", "draft"):
             rows.append([shown, f"masks, {setting}",
-                         fixed(rows_of(figures, "near", "masks", setting)[shown][key], 1), "", ""])
+                         fixed(rows_of(figures, "near", "masks", setting)[shown][key], 2), "", ""])
     return table(["view", "method", "24", "16", "8 samples"], rows)
 
 
@@ -87,8 +87,8 @@ def origin_means(figures):
                      *[fixed(mean_of(found[samples], "ms"), 0) for samples in SAMPLES]])
     for setting in ("good", "draft"):
         found = rows_of(figures, "near", "masks", setting)
-        rows.append([f"masks, {setting}", fixed(mean_of(found, "rmse"), 1), "", "",
-                     f"{mean_of(found, 'bias'):+.1f}", "", "", fixed(mean_of(found, "ms"), 0), "", ""])
+        rows.append([f"masks, {setting}", fixed(mean_of(found, "rmse"), 2), "", "",
+                     f"{mean_of(found, 'bias'):+.2f}", "", "", fixed(mean_of(found, "ms"), 0), "", ""])
     return table(["means, %", "24", "16", "8 samples", "bias: 24", "16", "8", "ms: 24", "16", "8"], rows)
 
 

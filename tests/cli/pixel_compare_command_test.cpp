@@ -105,6 +105,7 @@ TEST_F(PixelCompareCommand, LooksFromTheCamerasThatAreNamed)
 TEST_F(PixelCompareCommand, RefusesWhatDoesNotGoTogether)
 {
     const std::vector<std::vector<std::string>> wrong = {
+        {folder_ / "a.obj"},
         {"--frontier"},
         {"--sample", "100"},
         {"--subdivide"},
