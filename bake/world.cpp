@@ -354,8 +354,8 @@ Mesh mesh_of(Scene scene, const NormalSettings& normals, const PartChoice& choic
             .meshes.front());
 }
 
-Frame frame_of_moments(const std::filesystem::path& input, std::span<const Moment> moments,
-                       const PartChoice& choice, const ReadOptions& reading)
+Box box_of_moments(const std::filesystem::path& input, std::span<const Moment> moments,
+                   const PartChoice& choice, const ReadOptions& reading)
 {
     Box all;
     for (const Moment& moment : moments) {
@@ -367,7 +367,7 @@ Frame frame_of_moments(const std::filesystem::path& input, std::span<const Momen
         all.include(box.low);
         all.include(box.high);
     }
-    return frame_of(all);
+    return all;
 }
 
 Mesh read_mesh(const std::filesystem::path& input, const NormalSettings& normals,

@@ -71,20 +71,7 @@ bool is_folder(const BakeOptions& options)
 /// The frames of an animation.
 std::vector<FrameFile> frames_of(const BakeOptions& options)
 {
-    const Moment& asked = options.reading.moment.value_or(Moment{});
-    return frames_of(options.frames, options.output, asked.animation);
-}
-
-/// Throws UsageError for what frames do not go with.
-void check_frames(const BakeOptions& options)
-{
-    if (frames_of(options).empty())
-        return;
-    const FileType type = type_of(options.inputs.front());
-    if (options.inputs.size() != 1 || (type != FileType::gltf && type != FileType::glb))
-        throw UsageError("--frames is for a single .gltf or .glb.");
-    if (options.part || options.subdivide || !options.texels.high.empty())
-        throw UsageError("--frames goes with neither --part nor --subdivide nor --high.");
+    return frames_of(options.frames, options.inputs, options.output, options.reading);
 }
 
 /// Where every result goes. Two results under one name, or one in the place of an input, are
@@ -218,20 +205,6 @@ void add_written(const BatchEntry& entry, std::vector<fs::path>& written)
                        entry.report->texels->written.end());
 }
 
-/// Of the frames of an animation; empty where there are none.
-std::optional<Frame> common_frame_of(const BakeOptions& options, const std::vector<Job>& jobs)
-{
-    std::vector<Moment> moments;
-    for (const Job& job : jobs) {
-        if (job.moment)
-            moments.push_back(*job.moment);
-    }
-    if (moments.empty())
-        return {};
-    return frame_of_moments(jobs.front().input, moments, part_choice_of(options.parts),
-                            options.reading);
-}
-
 int run(const BakeOptions& options, const std::vector<Job>& jobs)
 {
     check_report(options.json);
@@ -252,13 +225,15 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
         entry.output = job.output;
     }
     std::vector<fs::path> written;
-    const std::optional<Frame> frame = common_frame_of(options, jobs);
+    const std::optional<Box> box = box_of_frames(frames_of(options), options.inputs.front(),
+                                                 part_choice_of(options.parts), options.reading);
     const std::size_t step = options.together ? jobs.size() : 1;
     for (std::size_t first = 0; first < jobs.size(); first += step) {
         std::vector<BakeSettings> settings;
         for (const Job& job : std::span(jobs).subspan(first, step))
             settings.push_back(settings_for(options, job));
-        settings.front().frame = frame;
+        if (box)
+            settings.front().frame = frame_of(*box);
         const std::span<BatchEntry> of_run = std::span(entries).subspan(first, step);
         if (options.resume && std::ranges::all_of(settings, is_finished)) {
             for (const BatchEntry& entry : of_run)
@@ -326,7 +301,9 @@ void check_options(const BakeOptions& options)
     if (options.resume && options.texels.udim)
         throw UsageError("--resume knows no tiles: leave it or --udim out.");
     check_part(options, engine);
-    check_frames(options);
+    if (!frames_of(options).empty() &&
+        (options.part || options.subdivide || !options.texels.high.empty()))
+        throw UsageError("--frames goes with neither --part nor --subdivide nor --high.");
 }
 
 void add_options(CLI::App* command, const std::shared_ptr<BakeOptions>& options)

@@ -1,6 +1,7 @@
 #include "cli/frame_options.h"
 
 #include "cli/commands.h"
+#include "files/file_type.h"
 
 #include <CLI/CLI.hpp>
 
@@ -60,11 +61,15 @@ void add_frame_options(CLI::App& command, FrameOptions& options)
         ->capture_default_str();
 }
 
-std::vector<FrameFile> frames_of(const FrameOptions& options, const std::string& pattern,
-                                 const std::string& animation)
+std::vector<FrameFile> frames_of(const FrameOptions& options, std::span<const std::string> inputs,
+                                 const std::string& pattern, const ReadOptions& reading)
 {
     if (!options.frames)
         return {};
+    const FileType type = type_of(inputs.front());
+    if (inputs.size() != 1 || (type != FileType::gltf && type != FileType::glb))
+        throw UsageError("--frames is for a single .gltf or .glb.");
+    const std::string animation = reading.moment.value_or(Moment{}).animation;
     const char* const end = options.frames->data() + options.frames->size();
     std::uint32_t first = 0, last = 0;
     const auto one = std::from_chars(options.frames->data(), end, first);
@@ -80,6 +85,18 @@ std::vector<FrameFile> frames_of(const FrameOptions& options, const std::string&
         files.push_back(
             {{static_cast<double>(frame) / options.fps, animation}, name_of_frame(name, frame)});
     return files;
+}
+
+std::optional<Box> box_of_frames(std::span<const FrameFile> frames,
+                                 const std::filesystem::path& input, const PartChoice& choice,
+                                 const ReadOptions& reading)
+{
+    if (frames.empty())
+        return {};
+    std::vector<Moment> moments;
+    for (const FrameFile& frame : frames)
+        moments.push_back(frame.moment);
+    return box_of_moments(input, moments, choice, reading);
 }
 
 }  // namespace surfelao

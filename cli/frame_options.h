@@ -1,10 +1,12 @@
 /// frame_options.h: the options of frames of an animation, and the files that they become.
 #pragma once
 
+#include "bake/world.h"
 #include "files/scene_io.h"
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,10 +32,17 @@ struct FrameFile {
 };
 
 /// One per frame; empty where none are asked for. pattern: "f.%04d.png", whose %d becomes the
-/// frame's number. animation: Moment::animation. Throws UsageError for a range that is none, and a
-/// pattern without a place for the number.
+/// frame's number. reading: its moment tells the animation. Throws UsageError for a range that is
+/// none, a pattern without a place for the number, and inputs that are not a single glTF.
 [[nodiscard]] std::vector<FrameFile> frames_of(const FrameOptions& options,
+                                               std::span<const std::string> inputs,
                                                const std::string& pattern,
-                                               const std::string& animation);
+                                               const ReadOptions& reading);
+
+/// Of all frames together; empty where there are none. Throws as box_of_moments().
+[[nodiscard]] std::optional<Box> box_of_frames(std::span<const FrameFile> frames,
+                                               const std::filesystem::path& input,
+                                               const PartChoice& choice,
+                                               const ReadOptions& reading);
 
 }  // namespace surfelao

@@ -25,7 +25,13 @@ namespace {
 constexpr int kMostPixels = 32768;  // each way; the device may draw less
 constexpr int kMostSamples = 4096;
 
-/// Throws UsageError where the picture would replace what is read.
+/// The frames of an animation.
+std::vector<FrameFile> frames_of(const RenderCommandOptions& options)
+{
+    return frames_of(options.frames, {&options.input, 1}, options.output, options.reading);
+}
+
+/// Throws UsageError where a picture would replace what is read.
 void check_files(const RenderCommandOptions& options)
 {
     FilePlan plan;
@@ -34,7 +40,10 @@ void check_files(const RenderCommandOptions& options)
         plan.reads(other);
     if (options.show.environment)
         plan.reads(*options.show.environment);
-    plan.writes(options.output, "the picture");
+    for (const FrameFile& frame : frames_of(options))
+        plan.writes(frame.output, "the picture");
+    if (!options.frames.frames)
+        plan.writes(options.output, "the picture");
 }
 
 /// Throws UsageError for an engine that does not answer there, or not that.
@@ -175,7 +184,8 @@ int run(const RenderCommandOptions& options)
     const Model model = model_of(read_scene(options.input, options.reading), up, target,
                                  {.parts = part_choice_of(options.parts),
                                   .ground = ground_plane_of(options.measure, options.show.up),
-                                  .reading = options.reading});
+                                  .reading = options.reading,
+                                  .frame = common_frame_of(options)});
     const Frame& frame = model.geometry().frame;
     EngineSettings engine = settings_of(options.engine);
     engine.definition =
@@ -184,13 +194,7 @@ int run(const RenderCommandOptions& options)
     const auto texels = shown_texels_of(options.texels);
     if (texels && model.cloud)
         throw UsageError(options.input + ": has points only, no faces: --at points");
-    const Camera camera = parse_camera(
-        options.camera,
-        {.points = model.seen,
-         .frame_centre = frame.centre,
-         .frame_diagonal = frame.diagonal,
-         .up = up,
-         .aspect = static_cast<float>(options.width) / static_cast<float>(options.height)});
+    const Camera camera = camera_of(options, model.seen, frame);
     Shown shown;
     if (picture.view.colors == Colors::textured && !model.cloud)
         shown.paint = base_paint_of(*model.mesh);
@@ -214,14 +218,27 @@ int run(const RenderCommandOptions& options)
     return kDone;
 }
 
-}  // namespace
-
-GlBackend backend_of(const std::string& name)
+/// One picture, or one for each frame, at pixels or not.
+int run_frames(const RenderCommandOptions& options, bool asks_pixels)
 {
-    if (name == "egl")
-        return GlBackend::egl;
-    return name == "osmesa" ? GlBackend::osmesa : GlBackend::automatic;
+    const auto run_one = [&](const RenderCommandOptions& one) {
+        return asks_pixels ? render_pixels(one) : run(one);
+    };
+    const std::vector<FrameFile> frames = frames_of(options);
+    if (frames.empty())
+        return run_one(options);
+    RenderCommandOptions one = options;
+    one.box = box_of_frames(frames, options.input, part_choice_of(options.parts), options.reading);
+    for (const FrameFile& frame : frames) {
+        one.reading.moment = frame.moment;
+        one.output = frame.output.string();
+        if (const int code = run_one(one); code != kDone)
+            return code;
+    }
+    return kDone;
 }
+
+}  // namespace
 
 void add_render_command(CLI::App& app, Work& work)
 {
@@ -237,6 +254,7 @@ void add_render_command(CLI::App& app, Work& work)
         ->required()
         ->type_name("OUT");
     add_read_options(*command, options->reading);
+    add_frame_options(*command, options->frames);
     command->add_option("--width", options->width, "Pixels")
         ->check(CLI::Range(1, kMostPixels))
         ->type_name("N")
@@ -289,9 +307,7 @@ void add_render_command(CLI::App& app, Work& work)
         else
             check_shown_map(view, has_map, options->atlas);
         check_files(*options);
-        work = [options, asks_pixels] {
-            return asks_pixels ? render_pixels(*options) : run(*options);
-        };
+        work = [options, asks_pixels] { return run_frames(*options, asks_pixels); };
     });
 }
 

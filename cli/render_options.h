@@ -3,14 +3,17 @@
 
 #include "cli/cube_options.h"
 #include "cli/engine_options.h"
+#include "cli/frame_options.h"
 #include "cli/part_options.h"
 #include "cli/pixel_options.h"
 #include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "cli/view_options.h"
 #include "gpu/context.h"
+#include "pixels/camera.h"
 
 #include <optional>
+#include <span>
 #include <string>
 
 namespace surfelao {
@@ -19,6 +22,8 @@ struct RenderCommandOptions {
     std::string input;
     std::string output;
     ReadOptions reading;
+    FrameOptions frames;
+    std::optional<Box> box = {};  ///< of all frames, for each of them
     int width = 1280, height = 720;
     int samples = 16;
     std::string camera;
@@ -37,6 +42,13 @@ struct RenderCommandOptions {
 
 /// "egl", "osmesa", "auto"
 [[nodiscard]] GlBackend backend_of(const std::string& name);
+
+/// seen: by default framed, in the unit frame; of frames of an animation their common box is.
+[[nodiscard]] Camera camera_of(const RenderCommandOptions& options, std::span<const glm::vec3> seen,
+                               const Frame& frame);
+
+/// What is measured in, where it is not the scene's own.
+[[nodiscard]] std::optional<Frame> common_frame_of(const RenderCommandOptions& options);
 
 /// --at pixels and cubemaps. Returns the exit code.
 int render_pixels(const RenderCommandOptions& options);

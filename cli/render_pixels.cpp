@@ -59,16 +59,12 @@ PixelJob read_job(const RenderCommandOptions& options)
         throw UsageError(options.input + ": has points only, no faces: --at points.");
     check_target(scene, target, parts);
 
-    PixelJob job{mesh_of(std::move(scene), target.normals, parts, options.reading)};
+    PixelJob job{mesh_of(std::move(scene), target.normals, parts, options.reading,
+                         common_frame_of(options))};
     const Geometry& geometry = job.mesh.geometry;
     const Frame& frame = geometry.frame;
     const PictureSize size{options.width, options.height};
-    job.camera = parse_camera(options.camera, {.points = framed_points(geometry),
-                                               .frame_centre = frame.centre,
-                                               .frame_diagonal = frame.diagonal,
-                                               .up = up_axis_of(options.show),
-                                               .aspect = static_cast<float>(size.width) /
-                                                         static_cast<float>(size.height)});
+    job.camera = camera_of(options, framed_points(geometry), frame);
     job.view = view_of(job.camera, size.width, size.height);
     job.shown = view_options_of(options.show);
     if (options.show.environment)

@@ -282,8 +282,9 @@ Model model_of(Scene scene, UpAxis up, const TargetSettings& settings, const Mod
     check_target(scene, settings, choice.parts);
     if (scene.triangles.empty())
         return make_cloud_model(std::move(scene), up, settings, choice.ground);
-    return make_model(mesh_of(std::move(scene), settings.normals, choice.parts, choice.reading), up,
-                      settings, kLargestSplat, choice.ground);
+    return make_model(
+        mesh_of(std::move(scene), settings.normals, choice.parts, choice.reading, choice.frame), up,
+        settings, kLargestSplat, choice.ground);
 }
 
 }  // namespace surfelao

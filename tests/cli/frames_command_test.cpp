@@ -1,5 +1,6 @@
 // Frames of an animation, each a file.
 #include "files/scene_io.h"
+#include "image/image_file.h"
 #include "program.h"
 #include "temporary_folder.h"
 #include "tests/files/gltf_maker.h"
@@ -76,6 +77,49 @@ TEST_F(FramesCommand, HaveOneFrameOfReference)
     // frames together it is 4.2, and they do
     EXPECT_EQ(mean("one.ply", {"--time", "1"}), 0.0);
     EXPECT_GT(mean("all.%d.ply", {"--frames", "0:1", "--fps", "1"}), 0.1);
+}
+
+// The lower square stays where it is in the picture while the lid comes down.
+TEST_F(FramesCommand, PicturesKeepTheCamera)
+{
+    for (const char* at : {"vertices", "pixels"}) {
+        const Outcome outcome = run(folder_.path(), {"render",
+                                                     folder_ / "lid.glb",
+                                                     "-o",
+                                                     folder_ / "f.%d.png",
+                                                     "--frames",
+                                                     "0:2",
+                                                     "--fps",
+                                                     "2",
+                                                     "--at",
+                                                     at,
+                                                     "--mode",
+                                                     "normals",
+                                                     "--width",
+                                                     "64",
+                                                     "--height",
+                                                     "64",
+                                                     "--context",
+                                                     "osmesa",
+                                                     "--no-ground",
+                                                     "--up",
+                                                     "z"});
+        ASSERT_EQ(outcome.code, 0) << outcome.err;
+        const Image first = read_image(folder_ / "f.0.png"), last = read_image(folder_ / "f.2.png");
+        int covered = 0, lower_first = 0, lower_last = 0;
+        for (int y = 32; y < 64; ++y) {
+            for (int x = 0; x < 64; ++x) {
+                const bool is_first = first.at(x, y) != first.at(0, 0);
+                const bool is_last = last.at(x, y) != last.at(0, 0);
+                covered += is_first && is_last ? 1 : 0;
+                lower_first += is_first ? 1 : 0;
+                lower_last += is_last ? 1 : 0;
+            }
+        }
+        EXPECT_GT(lower_first, 50);
+        EXPECT_EQ(covered, lower_first);  // where the square was seen it is seen, or the lid is
+        EXPECT_GE(lower_last, lower_first);
+    }
 }
 
 TEST_F(FramesCommand, RefusesWhatItCannotMean)

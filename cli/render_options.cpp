@@ -1,0 +1,41 @@
+#include "cli/render_options.h"
+
+#include <glm/common.hpp>
+
+#include <array>
+
+namespace surfelao {
+
+GlBackend backend_of(const std::string& name)
+{
+    if (name == "egl")
+        return GlBackend::egl;
+    return name == "osmesa" ? GlBackend::osmesa : GlBackend::automatic;
+}
+
+Camera camera_of(const RenderCommandOptions& options, std::span<const glm::vec3> seen,
+                 const Frame& frame)
+{
+    std::array<glm::vec3, 8> corners;
+    if (options.box) {
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const glm::dvec3 share(i & 1, i >> 1 & 1, i >> 2);
+            const glm::dvec3 corner = glm::mix(options.box->low, options.box->high, share);
+            corners[i] = (corner - frame.centre) / frame.diagonal;
+        }
+        seen = corners;
+    }
+    return parse_camera(options.camera, {.points = seen,
+                                         .frame_centre = frame.centre,
+                                         .frame_diagonal = frame.diagonal,
+                                         .up = up_axis_of(options.show),
+                                         .aspect = static_cast<float>(options.width) /
+                                                   static_cast<float>(options.height)});
+}
+
+std::optional<Frame> common_frame_of(const RenderCommandOptions& options)
+{
+    return options.box ? std::optional(frame_of(*options.box)) : std::nullopt;
+}
+
+}  // namespace surfelao
