@@ -102,6 +102,7 @@ public:
           settings_(settings),
           paint_(paint),
           progress_(progress),
+          rims_(mesh.geometry),
           parts_(parts_of(mesh)),
           screen_(context)
     {
@@ -206,7 +207,7 @@ private:
             return inner(drawing.read_triangles(), size, settings_.guard);
         };
         Stopwatch watch;
-        const SeenPixels seen = seen_pixels(mesh_, band.view, size.width, size.height,
+        const SeenPixels seen = seen_pixels(mesh_, rims_, band.view, size.width, size.height,
                                             see(band.view), settings_.offset);
         picture_.middles += seen.pixels.size();
         picture_.see_s += watch.lap();
@@ -217,7 +218,7 @@ private:
                 drawing, size, [&](std::size_t i) { return seen.pixels[i]; }, middles.values);
         picture_.solve_s += watch.lap();
 
-        PixelSamples samples(mesh_, parts_, seen, paint_.base);
+        PixelSamples samples(mesh_, rims_, parts_, seen, paint_.base);
         Answers extras;
         ProgressMeter meter(stage("edges"), static_cast<std::uint64_t>(settings_.samples) - 1);
         for (int i = 1; i < settings_.samples; ++i) {
@@ -273,6 +274,7 @@ private:
     const PixelPictureSettings& settings_;
     const PixelPaint& paint_;
     const StageProgress& progress_;
+    Rims rims_;
     std::vector<std::uint32_t> parts_;
     ScreenSpace screen_;
     PixelPicture picture_;
