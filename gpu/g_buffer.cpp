@@ -92,7 +92,9 @@ GBuffer::GBuffer(const GlContext& context, int width, int height)
     : context_(context),
       triangles_(context,
                  {.width = width, .height = height, .colors = {TexelFormat::r32ui}, .depth = true}),
-      surface_(context, {.width = width, .height = height, .colors = {TexelFormat::rgba32f}}),
+      surface_(
+          context,
+          {.width = width, .height = height, .colors = {TexelFormat::rgba32f, TexelFormat::r32f}}),
       nothing_(context)
 {
 }

@@ -90,6 +90,8 @@ public:
     /// RGBA32F: shading normal in view space, turned to the side of the triangle that is seen, the
     /// triangle's own where the interpolated one faces away from the eye; distance forward.
     const Texture2D& surface() const { return surface_.color(); }
+    /// R32F: the distance alone, which is less to fetch.
+    const Texture2D& distance() const { return surface_.color(1); }
 
     /// 1 + triangle of the geometry, 0 where there is none; row by row from the bottom. Waits.
     [[nodiscard]] std::vector<std::uint32_t> read_triangles() const;

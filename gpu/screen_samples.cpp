@@ -102,9 +102,7 @@ std::vector<glm::vec4> line_samples(int count, bool paired)
     for (std::size_t i = 0; i < samples.size(); ++i) {
         glm::vec4& sample = samples[i];
         sample.z = std::sqrt(1.0f - sample.x * sample.x - sample.y * sample.y);
-        // partners' cells mirror each other but for the grid's squares at their borders
-        const std::size_t other = paired ? i ^ 1 : i;
-        sample.w = static_cast<float>(0.5 * (volumes[i] + volumes[other]));
+        sample.w = static_cast<float>(volumes[i]);
     }
     return samples;
 }

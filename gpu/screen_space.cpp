@@ -208,6 +208,7 @@ Program& ScreenSpace::method_program(const GBuffer& seen, const ScreenSettings& 
     Program& program =
         context_.program("fullscreen.vert", file_of(settings.method), definitions_of(settings));
     set_seen(program, seen);
+    program.set("u_distance", seen.distance());
     program.set("u_radius", radius);
     set_noise(program, settings);
     if (is_ssao(settings.method)) {
@@ -293,6 +294,7 @@ void ScreenSpace::draw_radius(const GBuffer& seen, const ScreenSettings& setting
     const float radius = radius_of(definition);
     Program& program = context_.program("fullscreen.vert", "dynamic_radius.frag");
     set_seen(program, seen);
+    program.set("u_distance", seen.distance());
     program.set("u_radius", radius);
     set_dynamic_radius(program, settings, radius);
     draw_fullscreen(target, program, nothing_);

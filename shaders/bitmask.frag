@@ -27,8 +27,11 @@ uniform float u_thickness;
 
 out float out_occlusion;
 
-// k in [0, 32]
-uint lowest_bits(int k) { return k >= 32 ? 0xffffffffu : (1u << uint(max(k, 0))) - 1u; }
+// from the bit `first` on; first + count <= 32
+uint bits_from(int first, int count)
+{
+    return count == 0 ? 0u : 0xffffffffu >> uint(32 - count) << uint(first);
+}
 
 int count_bits(uint bits)
 {
@@ -38,36 +41,37 @@ int count_bits(uint bits)
     return int(bits * 0x01010101u >> 24u);
 }
 
-// where a point a thickness behind `seen` lies in the slice
-vec2 back_of(vec3 seen, vec2 front, vec3 position, Slice slice)
+// Where a point a thickness behind `seen` lies in the slice. ray: there, from the eye to p;
+// orthographic: of unit length.
+vec2 back_of(vec3 seen, vec2 front, vec2 ray)
 {
-    if (u_is_orthographic == 1)
-        return front + u_thickness * vec2(slice.across.z, slice.up.z);
-    vec2 from_eye = front + vec2(dot(position, slice.across), dot(position, slice.up));
-    return front + u_thickness * inversesqrt(dot(seen, seen)) * from_eye;
+    return u_is_orthographic == 1
+               ? front + u_thickness * ray
+               : front + u_thickness * inversesqrt(dot(seen, seen)) * (front + ray);
 }
 
-// the bits between the front and the back of what is seen at t on that side
+// The bits between the front and the back of what is seen at t on that side.
 // left: integral of the other half of the slice; dither: in [0, 1), where in a bit ends are rounded
 uint bits_at(float t, float side, float left, float bits_per_arc, float dither, Slice slice,
-             vec3 position)
+             vec3 position, vec2 ray)
 {
     vec3 seen;
     if (!sample_at(t, side, slice, seen))
         return 0u;
-    vec2 front = vec2(dot(seen - position, slice.across), dot(seen - position, slice.up));
+    vec3 d = seen - position;
+    vec2 front = vec2(dot(d, slice.across), dot(d, slice.up));
     float square = dot(front, front);
     float weight = weight_at(square);
     if (weight == 0.0)
         return 0u;
-    vec2 back = back_of(seen, front, position, slice);
+    vec2 back = back_of(seen, front, ray);
     float g = side * slice.sin_gamma;
     float high = mix(-g, front.y * inversesqrt(max(square, 1e-30)), weight);
     float low = mix(-g, back.y * inversesqrt(max(dot(back, back), 1e-30)), weight);
     vec2 ends = left + side * vec2(arc(clamp(high, -g, 1.0), g, slice.cos_gamma),
                                    arc(clamp(low, -g, 1.0), g, slice.cos_gamma));
     ivec2 at = ivec2(clamp(ends * bits_per_arc, 0.0, 32.0) + dither);
-    return lowest_bits(max(at.x, at.y)) & ~lowest_bits(min(at.x, at.y));
+    return bits_from(min(at.x, at.y), abs(at.x - at.y));
 }
 
 void main()
@@ -88,13 +92,15 @@ void main()
         float left = arc(slice.sin_gamma, -slice.sin_gamma, slice.cos_gamma);
         float whole = left + arc(-slice.sin_gamma, slice.sin_gamma, slice.cos_gamma);
         float bits_per_arc = 32.0 / max(whole, 1e-6);
+        vec3 away = u_is_orthographic == 1 ? -eye : position;
+        vec2 ray = vec2(dot(away, slice.across), dot(away, slice.up));
         uint bits = 0u;
         // short of a whole bit: rounding does not lift what lies in the tangent plane
         float dither = 0.001 + 0.998 * fract(noise.x + float(s) * 0.618033989);
         for (int k = 0; k < u_steps; ++k) {
             float t = distance_of_step(k, noise.y);
-            bits |= bits_at(t, 1.0, left, bits_per_arc, dither, slice, position) |
-                    bits_at(t, -1.0, left, bits_per_arc, dither, slice, position);
+            bits |= bits_at(t, 1.0, left, bits_per_arc, dither, slice, position, ray) |
+                    bits_at(t, -1.0, left, bits_per_arc, dither, slice, position, ray);
         }
         hidden += slice.share * whole * float(count_bits(bits)) / 32.0;
         all += slice.share * whole;

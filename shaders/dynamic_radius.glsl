@@ -42,19 +42,19 @@ float chosen_radius(vec3 position)
             ivec2(floor(gl_FragCoord.xy + texelFetch(u_probes, i).xy * pixels));
         if (is_outside(pixel))
             continue;
-        vec4 texel = texelFetch(u_surface, pixel, 0);
-        if (is_background(texel))
+        float z = distance_at(pixel);
+        if (z >= kNothingThere)
             continue;
-        float nearer = position.z - texel.w;
+        float nearer = position.z - z;
         count += 1.0;
         square_sum += nearer * nearer;
-        nearest = min(nearest, texel.w);
+        nearest = min(nearest, z);
         nearer_count += nearer > 0.0 ? 1.0 : 0.0;
-        nearer_sum += nearer > 0.0 ? texel.w : 0.0;
-        float away = distance(position, position_at(pixel, texel));
-        bool is_taken = texel.w < found_z &&
+        nearer_sum += nearer > 0.0 ? z : 0.0;
+        float away = distance(position, view_position(vec2(pixel) + 0.5, z));
+        bool is_taken = z < found_z &&
                         (u_rule == 5 ? nearer < u_depth_limit : away < found);
-        found_z = is_taken ? texel.w : found_z;
+        found_z = is_taken ? z : found_z;
         found = is_taken ? away : found;
         is_found = is_found || is_taken;
     }

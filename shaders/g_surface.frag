@@ -11,7 +11,8 @@
 //            u_corners    R32UI, three texels per triangle: its wedges (surfels/surface.h)
 //            u_normals    RGBA32F, one texel per wedge: normal.xyz 0
 //            u_eye u_right u_up u_forward  View
-// Writes     out_surface  see gpu/g_buffer.h
+// Writes     out_surface   see gpu/g_buffer.h
+//            out_distance  its distance alone
 
 uniform usampler2D u_seen;
 uniform samplerBuffer u_positions;
@@ -23,7 +24,8 @@ uniform vec3 u_right;
 uniform vec3 u_up;
 uniform vec3 u_forward;
 
-out vec4 out_surface;
+layout(location = 0) out vec4 out_surface;
+layout(location = 1) out float out_distance;
 
 vec3 in_view(vec3 v) { return vec3(dot(v, u_right), dot(v, u_up), dot(v, u_forward)); }
 
@@ -32,6 +34,7 @@ void main()
     uint seen = texelFetch(u_seen, ivec2(gl_FragCoord.xy), 0).r;
     if (seen == 0u) {
         out_surface = vec4(0.0, 0.0, 0.0, 1e30);
+        out_distance = 1e30;
         return;
     }
     int first = 3 * int(seen - 1u);
@@ -63,4 +66,5 @@ void main()
     if (dot(normal, direction) >= 0.0)
         normal = flat_normal;
     out_surface = vec4(normal, z);
+    out_distance = z;
 }

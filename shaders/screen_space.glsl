@@ -3,8 +3,12 @@
 // screen_space.glsl: what the screen-space methods share.
 //
 // Host side  gpu/screen_space.h
-//   u_radius  R, in units of view space
+//   u_radius    R, in units of view space
+//   u_distance  R32F: the distances of u_surface alone; software fetches them in half the time
 uniform float u_radius;
+uniform sampler2D u_distance;
+
+float distance_at(ivec2 pixel) { return texelFetch(u_distance, pixel, 0).r; }
 
 // pixels that a unit of length spans at the distance z, each way
 vec2 pixels_at(float z)

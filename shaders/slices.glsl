@@ -66,9 +66,9 @@ bool sample_at(float t, float side, Slice slice, out vec3 position)
         ivec2(floor(gl_FragCoord.xy + side * max(t, slice.nearest) * slice.pixels));
     if (is_outside(pixel))
         return false;
-    vec4 texel = texelFetch(u_surface, pixel, 0);
-    position = position_at(pixel, texel);
-    return !is_background(texel);
+    float z = distance_at(pixel);
+    position = view_position(vec2(pixel) + 0.5, z);
+    return z < kNothingThere;
 }
 
 // what a sample at the distance of this square counts

@@ -47,7 +47,7 @@ float openness(vec3 offset, vec3 position, float radius, vec2 pixels)
                                                     : place_of(sampled)));
     if (sampled.z <= 0.0 && u_is_orthographic == 0 || is_outside(pixel))
         return kOutside;
-    float z = texelFetch(u_surface, pixel, 0).w;
+    float z = distance_at(pixel);
     float nearer = position.z - z;
     float validity = u_is_by_ratio == 1 ? 1.0 - clamp(nearer / z, 0.0, 1.0)
                                         : (nearer <= u_reach * radius ? 1.0 : 0.0);

@@ -46,7 +46,7 @@ float free_length(vec2 offset, float half_length, float z, float radius)
     ivec2 pixel = ivec2(floor(gl_FragCoord.xy + offset));
     if (is_outside(pixel))
         return kOutside;
-    float depth = (texelFetch(u_surface, pixel, 0).w - z) / radius;
+    float depth = (distance_at(pixel) - z) / radius;
     return depth < -u_reach ? kTooNear : max(min(half_length, depth) + half_length, 0.0);
 }
 

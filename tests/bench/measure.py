@@ -3,7 +3,7 @@
 
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
                                     readers stated demo viewers atlas maps map_frontier
-                                    clouds clouds_pcv subdivide pixels;
+                                    clouds clouds_pcv subdivide pixels screen;
                                     default: all, about an hour on two quiet cores
 
 Every part is one file that says what command made it, of which version and commit, on what
@@ -463,6 +463,12 @@ def part_pixels(build):
             "rows": rows}
 
 
+def part_screen(build):
+    """The screen-space passes alone; egl: a GPU where there is one."""
+    return {**provenance(build, "screen_tables egl"),
+            **json.loads(run(build / "bin/screen_tables", "egl"))}
+
+
 PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scaling": part_scaling,
          "stability": part_stability, "gpu": part_gpu, "drawing": part_drawing,
          "readers": part_readers, "stated": part_stated, "demo": part_demo,
@@ -470,6 +476,7 @@ PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scalin
          "map_frontier": part_map_frontier, "clouds": part_clouds,
          "clouds_pcv": part_clouds_pcv,
          "pixels": part_pixels,
+         "screen": part_screen,
          "subdivide": part_subdivide}
 
 

@@ -351,6 +351,10 @@ TEST(ScreenSpace, NoiseIsFair)
         many.directions = 384;  // of 4 steps, as those of the few
         const std::vector<float> mean = mean_picture(few, 64), limit = mean_picture(many, 16);
         EXPECT_NEAR(mean_of(mean), mean_of(limit), 0.01) << told(few);
+        // what ssao cuts off at a half is less with many: near it few are darker
+        const bool is_ssao =
+            method == ScreenMethod::ssao_disc || method == ScreenMethod::ssao_sphere;
+        EXPECT_LE(rms(mean, limit), is_ssao ? 0.02 : 0.005) << told(few);
     }
 }
 
@@ -421,7 +425,7 @@ TEST(ScreenSamples, LinesShareTheBall)
     for (std::size_t i = 0; i < many.size(); ++i) {
         volume += static_cast<double>(many[i].w);
         EXPECT_NEAR(glm::length(glm::vec3(many[i])), 1.0f, 1e-6f);
-        EXPECT_EQ(many[i].w, many[i ^ 1].w);
+        EXPECT_NEAR(many[i].w, many[i ^ 1].w, 1e-5f);
     }
     EXPECT_NEAR(volume, 1.0, 1e-6);
 }
