@@ -25,9 +25,9 @@ namespace surfelao {
 /// Offsets in the unit disk, from the rim inwards.
 [[nodiscard]] std::vector<glm::vec2> probe_offsets(int count);
 
-/// Random pairs in [0, 1), row by row. The first, which all pixels share where there is no noise, is
-/// chosen: no direction of 4 or 6 is along the pixels' rows, columns or 30 degrees off them, where
-/// samples lie on the border of two pixels and devices differ.
+/// Random pairs in [0, 1), row by row. The first, which all pixels share where there is no noise,
+/// is chosen: no direction of 4 or 6 is along the pixels' rows, columns or 30 degrees off them,
+/// where samples lie on the border of two pixels and devices differ.
 inline constexpr int kNoiseSide = 64;  // texels, as the origin's table of turns
 [[nodiscard]] std::vector<glm::vec2> noise_pairs();
 

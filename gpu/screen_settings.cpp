@@ -333,8 +333,7 @@ void check_settings(const ScreenSettings& settings)
             !knows(settings.method, row) || std::visit(InRange{settings}, row.field),
             std::string(row.shown.name) + " of " + method + " must be " + std::string(row.range));
     if (!has_directions(settings.method)) {
-        require(settings.samples % 2 == 0,
-                "the samples of " + method + " must be even");
+        require(settings.samples % 2 == 0, "the samples of " + method + " must be even");
         return;
     }
     require(settings.samples % settings.directions == 0,
