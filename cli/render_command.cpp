@@ -229,7 +229,11 @@ void add_render_command(CLI::App& app, Work& work)
     CLI::App* command =
         app.add_subcommand("render", "A picture of a mesh with its occlusion, without a window");
     command->add_option("IN", options->input, kMeshOrCloud)->required()->type_name("");
-    command->add_option("-o,--output", options->output, "Picture: .png .jpg .exr")
+    command
+        ->add_option(
+            "-o,--output", options->output,
+            "Picture: .png .jpg .exr; at pixels what sees nothing is transparent (.jpg: stands "
+            "before the background)")
         ->required()
         ->type_name("OUT");
     add_read_options(*command, options->reading);

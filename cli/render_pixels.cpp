@@ -147,7 +147,7 @@ int render_pixels(const RenderCommandOptions& options)
     ProgressBar bar;
     Stopwatch watch;
     PixelJob job = read_job(options);
-    double read_s = watch.lap();
+    const double read_s = watch.lap();
 
     const GlContext context = GlContext::create(backend_of(options.backend));
     const DrawnMesh drawn(context, job.mesh.geometry, job.mesh.surface);
@@ -168,7 +168,7 @@ int render_pixels(const RenderCommandOptions& options)
                       pixel_paint(job.shown, up_axis_of(options.show), job.sky(),
                                   job.paint ? &*job.paint : nullptr),
                       update);
-    picture.see_s += upload_s;
+    picture.prepare_s += upload_s;
     watch.lap();
     finish(context, options, job, picture.image);
     write_image(options.output, picture.image);

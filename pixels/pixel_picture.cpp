@@ -104,6 +104,7 @@ public:
           settings_(settings),
           paint_(paint),
           progress_(progress),
+          rims_(mesh.geometry),
           parts_(parts_of(mesh)),
           screen_(context)
     {
@@ -258,7 +259,7 @@ private:
         };
         Stopwatch watch;
         const SeenPixels seen =
-            seen_pixels(mesh_, band.view, size.width, size.height,
+            seen_pixels(mesh_, rims_, band.view, size.width, size.height,
                         see(band.view, on_screen() || settings_.cube_maps), settings_.offset);
         picture_.middles += seen.pixels.size();
         picture_.see_s += watch.lap();
@@ -266,7 +267,7 @@ private:
         Answers middles = answers_at(drawing, size, seen);
         watch.lap();
 
-        PixelSamples samples(mesh_, parts_, seen, paint_.base);
+        PixelSamples samples(mesh_, rims_, parts_, seen, paint_.base);
         Answers extras;
         ProgressMeter meter(stage("edges"), static_cast<std::uint64_t>(settings_.samples) - 1);
         for (int i = 1; i < settings_.samples; ++i) {
@@ -323,6 +324,7 @@ private:
     const PixelPictureSettings& settings_;
     const PixelPaint& paint_;
     const StageProgress& progress_;
+    Rims rims_;
     std::vector<std::uint32_t> parts_;
     ScreenSpace screen_;
     PixelPicture picture_;

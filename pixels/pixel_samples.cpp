@@ -26,9 +26,14 @@ float footprint_at(const View& view, int height, glm::vec3 position)
 
 }  // namespace
 
-PixelSamples::PixelSamples(const Mesh& mesh, std::span<const std::uint32_t> parts,
+PixelSamples::PixelSamples(const Mesh& mesh, const Rims& rims, std::span<const std::uint32_t> parts,
                            const SeenPixels& middles, const BaseColorAt& base)
-    : mesh_(mesh), parts_(parts), seen_(middles), base_(base), middle_shares_(middles.pixels.size())
+    : mesh_(mesh),
+      rims_(rims),
+      parts_(parts),
+      seen_(middles),
+      base_(base),
+      middle_shares_(middles.pixels.size())
 {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, middles.pixels.size(), kChunk),
                       [&](const tbb::blocked_range<std::size_t>& range) {
@@ -124,9 +129,10 @@ std::size_t PixelSamples::add(const View& view, std::span<const std::uint32_t> t
             return;
         }
         const glm::vec2 middle = glm::vec2(pixel % columns, pixel / columns) + 0.5f;
-        const SurfacePoint point =
+        const SurfacePoint point = rims_.nearer(
+            view, seen_.width, seen_.height,
             point_on_ray(mesh_.geometry, view,
-                         pixel_ray(view.lens, seen_.width, seen_.height, middle), triangle);
+                         pixel_ray(view.lens, seen_.width, seen_.height, middle), triangle));
         if (found == kNone)
             found = find(view, chosen, point);
         const glm::vec3 base = base_ ? base_(point) : glm::vec3(1.0f);

@@ -52,10 +52,10 @@ public:
         glm::vec3 base{0.0f};  ///< sum of their base colours; samples * 1 where there are none
     };
 
-    /// middles: what the pixels' middles see, the first sample; it must outlive this. parts:
-    /// parts_of(mesh). base: may be empty; called from many threads.
-    PixelSamples(const Mesh& mesh, std::span<const std::uint32_t> parts, const SeenPixels& middles,
-                 const BaseColorAt& base = {});
+    /// middles: what the pixels' middles see, the first sample; it must outlive this, as mesh and
+    /// rims. parts: parts_of(mesh). base: may be empty; called from many threads.
+    PixelSamples(const Mesh& mesh, const Rims& rims, std::span<const std::uint32_t> parts,
+                 const SeenPixels& middles, const BaseColorAt& base = {});
 
     /// One sample of every pixel. view: with the lens of the sample. triangles: as of
     /// seen_pixels(). Returns the number of receivers that it added. O(pixels).
@@ -84,6 +84,7 @@ private:
                                      const SurfacePoint& point) const;
 
     const Mesh& mesh_;
+    const Rims& rims_;
     std::span<const std::uint32_t> parts_;
     const SeenPixels& seen_;
     BaseColorAt base_;

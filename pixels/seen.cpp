@@ -102,6 +102,12 @@ std::vector<Receiver> receivers_facing(const Mesh& mesh, const View& view,
 SeenPixels seen_pixels(const Mesh& mesh, const View& view, int width, int height,
                        std::span<const std::uint32_t> triangles, const Offset& offset)
 {
+    return seen_pixels(mesh, Rims(mesh.geometry), view, width, height, triangles, offset);
+}
+
+SeenPixels seen_pixels(const Mesh& mesh, const Rims& rims, const View& view, int width, int height,
+                       std::span<const std::uint32_t> triangles, const Offset& offset)
+{
     SeenPixels seen;
     seen.width = width;
     seen.height = height;
@@ -118,8 +124,10 @@ SeenPixels seen_pixels(const Mesh& mesh, const View& view, int width, int height
     for_each(seen.pixels.size(), [&](std::size_t i) {
         const std::uint32_t pixel = seen.pixels[i];
         const glm::vec2 middle = glm::vec2(pixel % columns, pixel / columns) + 0.5f;
-        seen.points[i] = point_on_ray(
-            mesh.geometry, view, pixel_ray(view.lens, width, height, middle), triangles[pixel] - 1);
+        seen.points[i] = rims.nearer(
+            view, width, height,
+            point_on_ray(mesh.geometry, view, pixel_ray(view.lens, width, height, middle),
+                         triangles[pixel] - 1));
     });
     seen.receivers = receivers_facing(mesh, view, seen.points, offset);
     return seen;

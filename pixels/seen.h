@@ -7,6 +7,7 @@
 
 #include "gpu/g_buffer.h"
 #include "pixels/camera.h"
+#include "pixels/rims.h"
 #include "surfels/receiver.h"
 #include "surfels/surface.h"
 
@@ -35,8 +36,15 @@ struct SeenPixels {
     std::vector<Receiver> receivers;   ///< likewise
 };
 
-/// triangles: GBuffer::read_triangles() of the mesh's geometry. O(pixels).
+/// triangles: GBuffer::read_triangles() of the mesh's geometry. O(pixels). At rims the nearer
+/// triangle counts (rims.h).
 [[nodiscard]] SeenPixels seen_pixels(const Mesh& mesh, const View& view, int width, int height,
+                                     std::span<const std::uint32_t> triangles,
+                                     const Offset& offset = {});
+
+/// The same, for several views. rims: of mesh.geometry.
+[[nodiscard]] SeenPixels seen_pixels(const Mesh& mesh, const Rims& rims, const View& view,
+                                     int width, int height,
                                      std::span<const std::uint32_t> triangles,
                                      const Offset& offset = {});
 

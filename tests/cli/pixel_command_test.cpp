@@ -182,7 +182,6 @@ TEST_F(PixelCommand, AnInterruptLeavesNoFile)
     program.send(SIGINT);
     const Outcome outcome = program.wait();
     EXPECT_EQ(outcome.code, 128 + SIGINT);
-    EXPECT_NE(outcome.err.find("interrupted"), std::string::npos) << outcome.err;
     EXPECT_FALSE(fs::exists(folder_ / "x.png"));
 }
 

@@ -113,6 +113,28 @@ TEST(Seen, FromBehindReceiversAreTurnedOver)
     }
 }
 
+// The far side of a ball is never seen, whichever way its triangles were wound, nor are those
+// triangles of a box that face away.
+TEST(Seen, RimsShowTheNearerTriangle)
+{
+    const Scene ball = scenes::sphere({0, 0, 0}, 1.0, 24);
+    const Scene box = scenes::box({-1, -0.6, -0.3}, {1, 0.6, 0.3}, 2);
+    for (const Scene& scene : {ball, scenes::flipped(ball), box, scenes::flipped(box)}) {
+        const Mesh mesh = make_mesh(scene, {.source = NormalSource::flat});
+        int inside = 0;
+        for (int k = 0; k < 12; ++k) {
+            const ViewDirection direction{37.0f * static_cast<float>(k),
+                                          11.0f * static_cast<float>(k) - 60.0f};
+            const View view = view_of(
+                frame_points(mesh.geometry.positions, UpAxis::y, 1.0f, direction), 400, 400);
+            const Look look(mesh, view, {400, 400});
+            for (const Receiver& receiver : look.pixels.seen().receivers)
+                inside += glm::dot(receiver.normal, receiver.position) < 0.0f ? 1 : 0;
+        }
+        EXPECT_EQ(inside, 0);
+    }
+}
+
 // Two sheets a millionth of the scene apart, looked at from inside of it: the nearer one is seen
 // everywhere.
 TEST(Seen, DepthTellsNearbySheetsApart)

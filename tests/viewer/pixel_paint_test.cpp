@@ -1,0 +1,60 @@
+// Colours at pixels are those of the shaders: an open ball looks as it does with values at
+// vertices.
+
+#include "viewer/pixel_paint.h"
+
+#include "scenes.h"
+#include "viewer/render.h"
+
+#include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <vector>
+
+namespace surfelao {
+namespace {
+
+TEST(PixelPaint, LightIsThatOfTheShaders)
+{
+    const Model model = make_model(make_mesh(scenes::sphere({0, 0, 0}, 1.0, 24)), UpAxis::z);
+    const Mesh& mesh = *model.mesh;
+    const Camera camera = frame_points(model.seen, UpAxis::z, 1.5f);
+    const GlContext context = GlContext::create(GlBackend::osmesa);
+    const DrawnMesh drawn(context, mesh.geometry, mesh.surface);
+    Occluders occluders(mesh.geometry);
+    std::vector<Occlusion> open;
+    for (const glm::vec3& normal : mesh.surface.normals)
+        open.push_back({0.0f, normal});
+    open.resize(model.answer_count());
+    const PixelPictureSettings settings{.size = {60, 40}, .engine = EngineSettings{}};
+    for (const Colors colors : {Colors::environment, Colors::normals}) {
+        RenderOptions options;
+        options.width = 60;
+        options.height = 40;
+        options.view.colors = colors;
+        options.view.ground = false;
+        options.view.exposure = 0.7f;
+        options.backend = GlBackend::osmesa;
+        const Image at_vertices = render(model, open, {}, camera, options);
+        context.make_current();
+        Image image =
+            pixel_picture(context, mesh, drawn, occluders, view_of(camera, 60, 40), settings,
+                          pixel_paint(options.view, UpAxis::z, nullptr, nullptr))
+                .image;
+        if (shows_numbers(colors))
+            show_numbers(image);
+        put_on_background(context, image, camera, options.view, nullptr);
+        std::vector<float> differences;
+        for (std::size_t i = 0; i < image.pixels.size(); ++i)
+            differences.push_back(glm::distance(image.pixels[i], at_vertices.pixels[i]));
+        std::ranges::sort(differences);
+        // but for the rim, where samples of one pixel see normals far apart
+        EXPECT_LT(differences[differences.size() * 85 / 100], 2.0f / 255.0f)
+            << static_cast<int>(colors);
+        EXPECT_LT(differences.back(), 0.3f) << static_cast<int>(colors);
+    }
+}
+
+}  // namespace
+}  // namespace surfelao
