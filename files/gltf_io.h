@@ -14,7 +14,8 @@
 ///   hidden nodes     (KHR_node_visibility) are left out with all below them
 ///   instances        (EXT_mesh_gpu_instancing) are uses of the mesh like those of nodes
 ///   CESIUM_RTC       is left out: it moves everything alike
-/// Scene::notes says what is not honoured: animations that are not played, see-through materials, points and lines.
+/// Scene::notes says what is not honoured: animations that are not played, see-through materials,
+/// points and lines.
 ///
 /// Normals are those of NORMAL at unit length, moved along with morph targets, joints and nodes (by
 /// the inverse transpose); zero where a part has none or what it has is no number. Tangents are

@@ -42,8 +42,8 @@ void check_columns(const std::string& columns);
 /// Reads a file. A file without faces is a cloud: a scene without triangles. Throws InputError with
 /// one sentence that names file, element and fault for anything that is not a complete, finite,
 /// consistent mesh or cloud; SettingsError for columns that make no point, for columns of a file
-/// that is no text cloud, and for a moment of a file that is no glTF. Time and memory stay in proportion to the file's size, whatever its
-/// counts claim.
+/// that is no text cloud, and for a moment of a file that is no glTF. Time and memory stay in
+/// proportion to the file's size, whatever its counts claim.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 struct WriteOptions {

@@ -188,20 +188,20 @@ TEST_F(RenderCommand, WithoutADriverItSaysSoInOneSentenceAndAutoDrawsBySoftware)
 TEST(ViewCommand, RefusesWhatTheWindowCannotShow)
 {
     const TemporaryFolder folder;
-    for (const std::vector<std::string>& options :
-         std::vector<std::vector<std::string>>{{"--normals", "mean"},
-                                               {"--crease", "-1"},
-                                               {"--values", "both"},
-                                               {"--offset", "0"},
-                                               {"--max-distance", "5"},
-                                               {"--kernel", "bunnell"},
-                                               {"--engine", "gtao"},
-                                               {"--engine", "vo", "--at", "cubemaps"},
-                                               {"--taps", "8"},
-                                               {"--guard", "5%", "--at", "pixels", "--engine", "vo"},
-                                               {"--ground", "y", "--at", "pixels", "--engine", "vo"},
-                                               {"--mode", "coverage"},
-                                               {"--mode", "levels", "--at", "pixels"}}) {
+    for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
+             {"--normals", "mean"},
+             {"--crease", "-1"},
+             {"--values", "both"},
+             {"--offset", "0"},
+             {"--max-distance", "5"},
+             {"--kernel", "bunnell"},
+             {"--engine", "gtao"},
+             {"--engine", "vo", "--at", "cubemaps"},
+             {"--taps", "8"},
+             {"--guard", "5%", "--at", "pixels", "--engine", "vo"},
+             {"--ground", "y", "--at", "pixels", "--engine", "vo"},
+             {"--mode", "coverage"},
+             {"--mode", "levels", "--at", "pixels"}}) {
         std::vector<std::string> arguments = {"view"};
         arguments.insert(arguments.end(), options.begin(), options.end());
         const Outcome outcome = run(folder.path(), arguments);
