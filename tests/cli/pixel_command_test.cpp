@@ -136,7 +136,7 @@ TEST_F(PixelCommand, RefusesWhatDoesNotGoTogetherInOneSentence)
     refused("has points only, no faces: --at points.", {}, "cloud.xyz");
     refused("--mode charts and density are for --at texels.", {"--mode", "charts"});
     refused("--mode levels is for --at vertices.", {"--mode", "levels"});
-    refused("--at pixels is for --surface triangles.", {"--surface", "splats"});
+    refused("--at pixels and cubemaps are for --surface triangles.", {"--surface", "splats"});
     refused("--atlas is for --at texels.", {"--atlas"});
     refused("are for --at texels.", {"--size", "64"});
     refused("--taps, --set and --guard are for --engine ssao-disc", {"--taps", "8"});
@@ -161,7 +161,8 @@ TEST_F(PixelCommand, ScreenMethodsAndPixelsAreForThoseWhoKnowThem)
         EXPECT_NE(outcome.err.find(sentence), std::string::npos) << outcome.err;
     };
     const std::string in = folder_ / "a.obj", out = folder_ / "x.png", mesh = folder_ / "x.ply";
-    refused("--engine gtao is for --at pixels.", {"render", in, "-o", out, "--engine", "gtao"});
+    refused("--engine gtao is for --at pixels or cubemaps.",
+            {"render", in, "-o", out, "--engine", "gtao"});
     refused("--taps, --set and --guard are for --at pixels.",
             {"render", in, "-o", out, "--taps", "8"});
     refused("--at pixels is for render, compare and view.",
