@@ -47,6 +47,10 @@ CellView::Changes CellView::update()
         picture_.emplace(upload(pixels_.answers()));
         changes.pixels = true;
     }
+    if (holes_.update() && !holes_.answers().picture.empty()) {
+        fill_holes();
+        changes.pixels = true;
+    }
     const bool has_rays = rays_.update();
     if (has_rays && !rays_.answers().picture.empty()) {
         rays_picture_.emplace(upload(rays_.answers()));
@@ -116,6 +120,9 @@ bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, co
     if (where == Where::cube_maps) {
         ask_maps(cell.settings.engine);
         has_changed |= project(rests);
+        shows_holes_ = colors == Colors::coverage;
+        if (rests && !shows_holes_)
+            ask_holes(cell.settings.engine);
     } else if (where == Where::pixels && cell.screen) {
         has_changed |= draw_screen(*cell.screen, shows_radius);
     } else if (where == Where::pixels && rests) {
@@ -169,8 +176,19 @@ bool CellView::forget_screen()
 
 bool CellView::forget_projection()
 {
-    coverage_.reset();
+    forget_coverage();
     return std::exchange(is_projected_, false);
+}
+
+/// And what came of its holes.
+void CellView::forget_coverage()
+{
+    coverage_.reset();
+    projected_.clear();
+    if (holes_asked_)
+        holes_.forget();
+    holes_asked_.reset();
+    filled_.reset();
 }
 
 const GBuffer& CellView::drawn()
@@ -294,7 +312,7 @@ bool CellView::project(bool rests)
         map_picture_.emplace(projector_->make_target(seen.width(), seen.height()));
     projector_->project(seen, *map_picture_);
     is_projected_ = true;
-    coverage_.reset();
+    forget_coverage();
     return true;
 }
 
@@ -302,13 +320,41 @@ void CellView::measure_coverage()
 {
     if (triangles_.empty())
         triangles_ = drawn().read_triangles();
-    const std::vector<glm::vec4> found = map_picture_->read_color(map_picture_->rect());
+    projected_ = map_picture_->read_color(map_picture_->rect());
     std::size_t seen = 0, covered = 0;
-    for (std::size_t i = 0; i < found.size(); ++i) {
+    for (std::size_t i = 0; i < projected_.size(); ++i) {
         seen += triangles_[i] != 0;
-        covered += triangles_[i] != 0 && found[i].g > 0.0f;
+        covered += triangles_[i] != 0 && projected_[i].g > 0.0f;
     }
     coverage_ = seen > 0 ? static_cast<double>(covered) / static_cast<double>(seen) : 1.0;
+}
+
+/// The pixels that maps do not tell all of are solved themselves, once the maps have come.
+void CellView::ask_holes(EngineSettings engine)
+{
+    engine.definition = session_.definition();
+    if (!coverage_ || holes_asked_ == engine || !is_prepared(engine))
+        return;
+    holes_asked_ = engine;
+    PixelQuestion question = question_for(engine);
+    for (std::size_t i = 0; i < projected_.size(); ++i) {
+        if (projected_[i].g >= 1.0f)
+            question.triangles[i] = 0;
+    }
+    if (std::ranges::all_of(question.triangles, [](std::uint32_t seen) { return seen == 0; }))
+        return;
+    question.prepared = engine.device == Device::gpu ? nullptr : session_.state().prepared;
+    holes_.solve(std::move(question));
+}
+
+void CellView::fill_holes()
+{
+    const PixelAnswers& found = holes_.answers();
+    std::vector<glm::vec2> filled(projected_.size());
+    for (std::size_t i = 0; i < filled.size(); ++i)
+        filled[i] = {glm::mix(found.picture[i].w, projected_[i].r, projected_[i].g), 1.0f};
+    filled_.emplace(context_, found.width, found.height, TexelFormat::rg32f,
+                    std::span<const glm::vec2>(filled));
 }
 
 void CellView::ask_rays(const PixelRays& rays)
@@ -338,7 +384,7 @@ PixelValues CellView::pixel_values() const
         values.own = &screen_picture_->color();
         values.form = PixelForm::occlusion;
     } else if (is_projected_) {
-        values.own = &map_picture_->color();
+        values.own = filled_ && !shows_holes_ ? &*filled_ : &map_picture_->color();
         values.form = PixelForm::covered;
     } else if (picture_) {
         values.own = &*picture_;
@@ -378,13 +424,15 @@ void CellView::measure()
 bool CellView::is_busy() const
 {
     return session_.solving() || session_.tracing() || pixels_.solving() || rays_.solving() ||
-           cubes_.solving();
+           holes_.solving() || cubes_.solving();
 }
 
 std::optional<double> CellView::pixel_progress() const
 {
     if (cubes_.solving())
         return cubes_.progress();
+    if (holes_.solving())
+        return holes_.progress();
     return progress_of(pixels_);
 }
 
@@ -395,7 +443,8 @@ std::optional<double> CellView::ray_progress() const
 
 const std::string& CellView::pixel_message() const
 {
-    for (const std::string* message : {&pixels_.answers().message, &rays_.answers().message}) {
+    for (const std::string* message :
+         {&pixels_.answers().message, &holes_.answers().message, &rays_.answers().message}) {
         if (!message->empty())
             return *message;
     }
@@ -408,6 +457,7 @@ void CellView::cancel()
     was_cancelled_ = pixels_.solving();
     pixels_.cancel();
     rays_.cancel();
+    holes_.cancel();
     cubes_.cancel();
 }
 
@@ -415,6 +465,7 @@ void CellView::solve_again()
 {
     session_.solve_again();
     asked_.reset();
+    holes_asked_.reset();
     rays_asked_.reset();
 }
 

@@ -110,10 +110,13 @@ private:
     bool forget_picture();
     bool forget_screen();
     bool forget_projection();
+    void forget_coverage();
     [[nodiscard]] bool project(bool rests);
     void ask_maps(EngineSettings engine);
     [[nodiscard]] bool is_prepared(const EngineSettings& engine) const;
     void measure_coverage();
+    void ask_holes(EngineSettings engine);
+    void fill_holes();
     [[nodiscard]] bool draw_screen(const ScreenSettings& settings, bool shows_radius);
     void ask_pixels(EngineSettings engine);
     void ask_rays(const PixelRays& rays);
@@ -150,10 +153,14 @@ private:
     std::optional<Framebuffer> map_picture_;
     bool is_projected_ = false;  ///< it shows the shot
     std::optional<double> coverage_;
+    std::vector<glm::vec4> projected_;  ///< CubeProjector::project() of the shot, with coverage_
+    std::optional<EngineSettings> holes_asked_;
+    std::optional<Texture2D> filled_;  ///< map_picture_ with its holes solved
+    bool shows_holes_ = false;
     bool is_measured_ = false;  ///< error_ is of what is shown
     std::optional<PixelError> error_;
     bool was_cancelled_ = false;  ///< the pixels, before their end
-    PixelSession pixels_, rays_;
+    PixelSession pixels_, holes_, rays_;
     CubeSession cubes_;
 };
 

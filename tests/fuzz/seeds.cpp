@@ -109,6 +109,32 @@ std::string lapses()
            number(maker.bin.size()) + std::string("BIN\0", 4) + maker.bin + "behind";
 }
 
+/// Two squares of one mesh: one slides, turns in a cubic spline and jumps in size.
+std::string moving()
+{
+    GltfMaker maker = square();
+    maker.add("nodes", {{"mesh", 0}});
+    maker.document["scenes"][0]["nodes"] = {0, 1};
+    const auto times =
+        maker.add_accessor(maker.add_view(bytes_of<float>({0, 1})), 5126, "SCALAR", 2);
+    const int places = maker.add_vectors<float>({0, 0, 4, 0, 0, 0.25f});
+    const int turns =
+        maker.add_accessor(maker.add_view(bytes_of<float>({0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0,
+                                                           0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0})),
+                           5126, "VEC4", 6);
+    const auto channel = [](int sampler, const char* path) {
+        return nlohmann::json{{"sampler", sampler}, {"target", {{"node", 1}, {"path", path}}}};
+    };
+    maker.document["animations"] = {
+        {{"name", "fall"},
+         {"samplers",
+          {{{"input", times}, {"output", places}},
+           {{"input", times}, {"output", turns}, {"interpolation", "CUBICSPLINE"}},
+           {{"input", times}, {"output", places}, {"interpolation", "STEP"}}}},
+         {"channels", {channel(0, "translation"), channel(1, "rotation"), channel(2, "scale")}}}};
+    return maker.glb();
+}
+
 void save(const fs::path& path, const std::string& bytes)
 {
     fs::create_directories(path.parent_path());
@@ -122,6 +148,7 @@ void save_gltf_seeds(const fs::path& folder)
     save(folder / "sparse.glb", sparse_square().glb());
     save(folder / "everything.glb", everything().glb());
     save(folder / "posed.glb", posed().glb());
+    save(folder / "moving.glb", moving());
     save(folder / "triangle.gltf", one_triangle().gltf(kTriangleUri));
     save(folder / "lapses.glb", lapses());
     save(folder / "as_it_is.gltf", one_triangle().gltf("data:text/plain," + std::string(36, 'A')));
