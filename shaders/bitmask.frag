@@ -19,7 +19,7 @@
 // Definitions  ANY_POWER: 0 or 1. 0: u_power is 2 (steps.glsl)
 // Reads      slices.glsl, steps.glsl
 //            u_slices     how many
-//            u_thickness  of what is seen, away from the eye, in units of view space
+//            u_thickness  of what is seen, along V, in units of view space
 // Writes     out_occlusion
 // CPU twin   tests/screen_twin.cpp
 uniform int u_slices;
@@ -41,19 +41,10 @@ int count_bits(uint bits)
     return int(bits * 0x01010101u >> 24u);
 }
 
-// Where a point a thickness behind `seen` lies in the slice. ray: there, from the eye to p;
-// orthographic: of unit length.
-vec2 back_of(vec3 seen, vec2 front, vec2 ray)
-{
-    return u_is_orthographic == 1
-               ? front + u_thickness * ray
-               : front + u_thickness * inversesqrt(dot(seen, seen)) * (front + ray);
-}
-
 // The bits between the front and the back of what is seen at t on that side.
 // left: integral of the other half of the slice; dither: in [0, 1), where in a bit ends are rounded
 uint bits_at(float t, float side, float left, float bits_per_arc, float dither, Slice slice,
-             vec3 position, vec2 ray)
+             vec3 position)
 {
     vec3 seen;
     if (!sample_at(t, side, slice, seen))
@@ -64,7 +55,7 @@ uint bits_at(float t, float side, float left, float bits_per_arc, float dither, 
     float weight = weight_at(square);
     if (weight == 0.0)
         return 0u;
-    vec2 back = back_of(seen, front, ray);
+    vec2 back = front - vec2(0.0, u_thickness);
     float g = side * slice.sin_gamma;
     float high = mix(-g, front.y * inversesqrt(max(square, 1e-30)), weight);
     float low = mix(-g, back.y * inversesqrt(max(dot(back, back), 1e-30)), weight);
@@ -92,15 +83,13 @@ void main()
         float left = arc(slice.sin_gamma, -slice.sin_gamma, slice.cos_gamma);
         float whole = left + arc(-slice.sin_gamma, slice.sin_gamma, slice.cos_gamma);
         float bits_per_arc = 32.0 / max(whole, 1e-6);
-        vec3 away = u_is_orthographic == 1 ? -eye : position;
-        vec2 ray = vec2(dot(away, slice.across), dot(away, slice.up));
         uint bits = 0u;
         // short of a whole bit: rounding does not lift what lies in the tangent plane
         float dither = 0.001 + 0.998 * fract(noise.x + float(s) * 0.618033989);
         for (int k = 0; k < u_steps; ++k) {
             float t = distance_of_step(k, noise.y);
-            bits |= bits_at(t, 1.0, left, bits_per_arc, dither, slice, position, ray) |
-                    bits_at(t, -1.0, left, bits_per_arc, dither, slice, position, ray);
+            bits |= bits_at(t, 1.0, left, bits_per_arc, dither, slice, position) |
+                    bits_at(t, -1.0, left, bits_per_arc, dither, slice, position);
         }
         hidden += slice.share * whole * float(count_bits(bits)) / 32.0;
         all += slice.share * whole;

@@ -292,12 +292,11 @@ struct TwinSlice {
         const dvec3 q = asked.position_of(place);
         const double thickness =
             std::min(1e6, static_cast<double>(asked.settings.thickness) * asked.radius);
-        const dvec3 ray = asked.picture.view.lens.orthographic ? dvec3(0, 0, 1) : glm::normalize(q);
         const double slope = glm::dot(normal, axis) / std::max(glm::dot(normal, eye), 0.05);
         const dvec3 d = q - p;
         const double y = glm::dot(d, eye) + slope * glm::dot(d, axis);
         return InSlice{side * angle_of(d), std::hypot(glm::dot(d, across), y),
-                       side * angle_of(d + thickness * ray)};
+                       side * angle_of(d - thickness * eye)};
     }
 };
 
