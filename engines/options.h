@@ -1,0 +1,23 @@
+/// options.h: what the engines behind the door are asked, said in their own words.
+///
+/// Internal to engines/.
+#pragma once
+
+#include "engines/engine.h"
+#include "tree/disks/disks.h"
+#include "tree/masks/masks.h"
+
+#include <span>
+
+namespace surfelao {
+
+/// Throws std::runtime_error where the processor lacks them.
+[[nodiscard]] MaskKernelSet kernel_set_of(Instructions instructions);
+
+[[nodiscard]] MaskOptions mask_options(const EngineChoice& choice, const SolveSettings& settings);
+[[nodiscard]] DiskOptions disk_options(const SolveSettings& settings);
+
+/// Throws InputError for the first that no engine can answer.
+void check_receivers(std::span<const Receiver> receivers);
+
+}  // namespace surfelao
