@@ -2,6 +2,7 @@
 
 #include "tree/masks/constants.h"
 #include "tree/masks/masks.h"
+#include "tree/masks/winding.h"
 #include "tree/part.h"
 
 #include <glm/common.hpp>
@@ -178,6 +179,9 @@ MaskForest::MaskForest(const Geometry& geometry, std::span<const std::uint32_t> 
     }
     tbb::parallel_for(std::uint32_t{0}, bodies, [&](std::uint32_t k) {
         Body& body = bodies_[k];
+        // once, not for each form that it takes
+        if (k != 0 && is_winding_mixed(body.at_rest))
+            wind_alike(body.at_rest);
         body.rest_nodes = build_mask_tree(body.at_rest)->nodes;
         body.rest_ball = body.ball = ball_of(body.at_rest);
     });
@@ -215,6 +219,22 @@ void MaskForest::hide(std::uint32_t body)
     change(of);
 }
 
+/// Of a form of the body, as it follows from that form alone.
+RawVector<MaskNode> MaskForest::nodes_of(Body& body, const Geometry& form)
+{
+    const auto planned = [&](std::optional<MaskPlan>& plan, MaskPairs pairs) -> const MaskPlan& {
+        if (!plan)
+            static_cast<void>(build_mask_nodes(body.at_rest, pairs, plan.emplace()));
+        return *plan;
+    };
+    if (auto nodes = refit_mask_nodes(planned(body.plan, MaskPairs::found), form))
+        return std::move(*nodes);
+    if (auto nodes = refit_mask_nodes(planned(body.plan_without_pairs, MaskPairs::none), form))
+        return std::move(*nodes);
+    MaskPlan unused;
+    return build_mask_nodes(form, MaskPairs::found, unused);
+}
+
 void MaskForest::deform(std::uint32_t body, std::span<const glm::vec3> positions)
 {
     Body& of = bodies_[body];
@@ -222,7 +242,7 @@ void MaskForest::deform(std::uint32_t body, std::span<const glm::vec3> positions
     Geometry form = of.at_rest;
     for (std::size_t i = 0; i < of.vertices.size(); ++i)
         form.positions[i] = positions[of.vertices[i]];
-    of.form_nodes = build_mask_tree(form)->nodes;
+    of.form_nodes = nodes_of(of, form);
     of.form_ball = ball_of(form);
     change(of);
 }

@@ -8,6 +8,7 @@
 
 #include "surfels/geometry.h"
 #include "surfels/placement.h"
+#include "tree/masks/refit.h"
 #include "tree/masks/tree.h"
 #include "tree/raw_vector.h"
 
@@ -39,8 +40,9 @@ public:
     /// All of these take effect at the next settle().
     void place(std::uint32_t body, const Placement& placement);
     void hide(std::uint32_t body);
-    /// Over other positions, one per vertex of the geometry. O(vertices of the body); a build where
-    /// the form is too far from that at rest.
+    /// Over other positions, one per vertex of the geometry. The tree is refitted from that at
+    /// rest, whatever came between; where that is too far, it is built anew. O(vertices of the
+    /// body), and O(n log n) the first time.
     void deform(std::uint32_t body, std::span<const glm::vec3> positions);
 
     /// Brings the nodes of what has changed to their places, on all cores.
@@ -64,6 +66,9 @@ private:
         std::vector<std::uint32_t> vertices;  ///< of the whole geometry, one per vertex of at_rest
         RawVector<MaskNode> rest_nodes;       ///< links count from 0
         MaskBall rest_ball;
+        /// How its tree was built, once it has been deformed: with flat pairs of triangles as one
+        /// tile, and, once one of them has bent, without.
+        std::optional<MaskPlan> plan, plan_without_pairs;
         RawVector<MaskNode> form_nodes;  ///< as it is deformed; empty: at rest
         MaskBall form_ball;
         std::optional<Placement> placement = Placement{};
@@ -74,7 +79,8 @@ private:
         MaskBall ball;               ///< where it stands
     };
 
-    void change(Body& body);
+    static RawVector<MaskNode> nodes_of(Body& body, const Geometry& form);
+    static void change(Body& body);
     void lay_out();
     void settle(Body& body);
 
