@@ -1,5 +1,5 @@
-#include "engines/engine_options.h"
 #include "engines/moving_engine.h"
+#include "engines/options.h"
 #include "surfels/stopwatch.h"
 #include "surfels/surfel.h"
 #include "surfels/topology.h"
