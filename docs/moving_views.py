@@ -13,6 +13,13 @@ def moving_scene(figures, name):
 
 
 @view
+def moving_rays(figures):
+    """What errors are taken against"""
+    part = figures["moving"]
+    return f"{thousands(part['rays'])} rays at a thousand of them"
+
+
+@view
 def moving_frames(figures):
     """A body that crosses a scene: stages of a frame, rebuilt each frame beside it, receivers answered"""
     rows = []
