@@ -1,7 +1,7 @@
 #include "moving_stage.h"
 
+#include "surfels/surface.h"
 #include "tests/scenes.h"
-#include "tests/vertex_receivers.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -19,6 +19,7 @@
 namespace surfelao {
 namespace {
 
+using scenes::operator+;
 using scenes::operator+=;
 
 /// From places in the world to places in the unit frame.
@@ -50,19 +51,32 @@ Placement turned_about(glm::dvec3 joint, const glm::dmat3& rotation)
     return {rotation, 1.0, joint - rotation * joint};
 }
 
+/// The triangles alone, as one part: no normals, looks or nodes of a file.
+Scene bare(const Scene& scene)
+{
+    Scene result;
+    result.positions = scene.positions;
+    result.triangles = scene.triangles;
+    Part part;
+    part.vertex_count = static_cast<std::uint32_t>(scene.positions.size());
+    part.triangle_count = static_cast<std::uint32_t>(scene.triangles.size());
+    result.parts = {part};
+    return result;
+}
+
 }  // namespace
 
 MovingStage::MovingStage(std::string title, const std::vector<Scene>& parts,
-                         const std::vector<std::vector<Placement>>& world_poses)
+                         const std::vector<std::vector<Placement>>& world_poses, float crease)
     : name(std::move(title))
 {
     Scene scene;
     std::vector<std::uint32_t> body_of_scene_triangle;
     Box box;
     for (std::uint32_t b = 0; b < parts.size(); ++b) {
-        scene = b == 0 ? parts[b] : scene + parts[b];
+        scene = b == 0 ? bare(parts[b]) : scene + bare(parts[b]);
         body_of_scene_triangle.insert(body_of_scene_triangle.end(), parts[b].triangles.size(), b);
-        body_of_receiver.insert(body_of_receiver.end(), parts[b].positions.size(), b);
+        body_of_vertex.insert(body_of_vertex.end(), parts[b].positions.size(), b);
         for (const std::vector<Placement>& pose : world_poses)
             for (const glm::dvec3 p : parts[b].positions)
                 box.include(moved_by(pose[b], p));
@@ -70,7 +84,11 @@ MovingStage::MovingStage(std::string title, const std::vector<Scene>& parts,
     geometry = make_geometry(scene, {.frame = frame_of(box)});
     for (std::size_t t = 0; t < geometry.triangles.size(); ++t)
         body_of_triangle.push_back(body_of_scene_triangle[geometry.scene_triangle(t)]);
-    receivers = vertex_receivers(geometry);
+    const Surface surface = make_surface(scene, geometry, {.crease = crease});
+    receivers = receivers_at_wedges(geometry, surface);
+    corners = surface.corners;
+    for (std::uint32_t wedge = 0; wedge < receivers.size(); ++wedge)
+        body_of_receiver.push_back(body_of_vertex[surface.vertex_of(wedge)]);
     for (const std::vector<Placement>& pose : world_poses) {
         poses.emplace_back();
         for (const Placement& placement : pose)
@@ -79,15 +97,15 @@ MovingStage::MovingStage(std::string title, const std::vector<Scene>& parts,
 
     std::vector<glm::vec3> low(parts.size(), glm::vec3(1.0f)), high(parts.size(), glm::vec3(-1.0f));
     for (std::size_t v = 0; v < geometry.positions.size(); ++v) {
-        const std::uint32_t b = body_of_receiver[v];
+        const std::uint32_t b = body_of_vertex[v];
         low[b] = glm::min(low[b], geometry.positions[v]);
         high[b] = glm::max(high[b], geometry.positions[v]);
     }
     for (std::size_t b = 0; b < parts.size(); ++b)
         balls_.push_back({0.5f * (low[b] + high[b]), 0.5f * glm::distance(low[b], high[b])});
 
-    std::vector<std::set<std::uint32_t>> around(geometry.positions.size());
-    for (const glm::uvec3 t : geometry.triangles) {
+    std::vector<std::set<std::uint32_t>> around(receivers.size());
+    for (const glm::uvec3 t : corners) {
         for (int corner = 0; corner < 3; ++corner) {
             around[t[corner]].insert(t[(corner + 1) % 3]);
             around[t[corner]].insert(t[(corner + 2) % 3]);
@@ -121,7 +139,7 @@ Geometry MovingStage::geometry_at(int frame) const
 {
     Geometry moved = geometry;
     for (std::size_t v = 0; v < moved.positions.size(); ++v) {
-        const std::uint32_t body = body_of_receiver[v];
+        const std::uint32_t body = body_of_vertex[v];
         if (body == 0)
             continue;
         const Receiver vertex =
@@ -132,16 +150,18 @@ Geometry MovingStage::geometry_at(int frame) const
     return moved;
 }
 
-bool MovingStage::is_far(std::size_t receiver, int frame) const
+bool MovingStage::is_untouched(std::size_t receiver, int frame) const
 {
     const float limit = std::sqrt(MovingSettings().tolerance);
-    for (std::uint32_t body = 1; body < bodies(); ++body) {
-        const glm::vec3 centre =
-            placed({balls_[body].centre, {}, 0.0f}, pose(body, frame)).position;
-        if (balls_[body].radius > limit * glm::distance(centre, receivers[receiver].position))
+    const Receiver& at = receivers[receiver];
+    for (std::uint32_t body = 1; is_static(receiver) && body < bodies(); ++body) {
+        const glm::vec3 to =
+            placed({balls_[body].centre, {}, 0.0f}, pose(body, frame)).position - at.position;
+        if (balls_[body].radius > limit * glm::length(to) &&
+            glm::dot(at.normal, to) > -balls_[body].radius)
             return false;
     }
-    return true;
+    return is_static(receiver);
 }
 
 void MovingStage::smooth(std::vector<Occlusion>& answers, int passes) const
@@ -173,19 +193,20 @@ void MovingStage::draw(std::span<const Occlusion> answers, int frame, glm::ivec2
     const glm::vec3 ahead = glm::normalize(glm::vec3(-0.6f, 0.75f, -0.28f));
     const glm::vec3 right = glm::normalize(glm::cross(ahead, glm::vec3(0.0f, 0.0f, 1.0f)));
     const glm::vec3 up = glm::cross(right, ahead);
-    const float scale = 1.3f * static_cast<float>(size.y);  // pixels a diagonal
-    std::vector<glm::vec3> seen(receivers.size());          // x and y in pixels, depth
+    const float scale = 1.22f * static_cast<float>(size.y);  // pixels a diagonal
+    std::vector<glm::vec3> seen(receivers.size());           // x and y in pixels, depth
     for (std::size_t i = 0; i < seen.size(); ++i) {
         const glm::vec3 p = receiver_at(i, frame).position;
         seen[i] = {0.5f * static_cast<float>(size.x) + scale * glm::dot(p, right),
-                   0.5f * static_cast<float>(size.y) - scale * glm::dot(p, up), glm::dot(p, ahead)};
+                   0.55f * static_cast<float>(size.y) - scale * glm::dot(p, up),
+                   glm::dot(p, ahead)};
     }
     std::vector<float> depth(static_cast<std::size_t>(size.x * size.y),
                              std::numeric_limits<float>::max());
     const auto area = [](glm::vec3 a, glm::vec3 b, glm::vec2 p) {
         return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
     };
-    for (const glm::uvec3 t : geometry.triangles) {
+    for (const glm::uvec3 t : corners) {
         const glm::vec3 a = seen[t.x], b = seen[t.y], c = seen[t.z];
         const float whole = area(a, b, {c.x, c.y});
         const glm::ivec2 low(glm::max(glm::floor(glm::min(glm::min(a, b), c)), glm::vec3(0.0f)));
@@ -199,9 +220,11 @@ void MovingStage::draw(std::span<const Occlusion> answers, int frame, glm::ivec2
                 if (glm::any(glm::lessThan(w, glm::vec3(0.0f))) || z >= nearest)
                     continue;
                 nearest = z;
-                const float open = 1.0f - w.x * answers[t.x].occlusion -
-                                   w.y * answers[t.y].occlusion - w.z * answers[t.z].occlusion;
-                image.at(corner.x + x, corner.y + y) = {open, open, open, 1.0f};
+                const glm::vec3 occlusion(answers[t.x].occlusion, answers[t.y].occlusion,
+                                          answers[t.z].occlusion);
+                const float grey =
+                    srgb_decode(std::clamp(1.0f - glm::dot(w, occlusion), 0.0f, 1.0f));
+                image.at(corner.x + x, corner.y + y) = {grey, grey, grey, 1.0f};
             }
         }
     }
@@ -222,7 +245,7 @@ MovingStage crossing_stage(const std::string& name, const Scene& world, Scene bo
         pose.translation += size * glm::dvec3(0.002 * k, 0.0, 0.001 * k);
         poses.push_back({{}, pose});
     }
-    return MovingStage(name, {world, body}, poses);
+    return MovingStage(name, {world, body}, poses, 180.0f);
 }
 
 namespace {
@@ -283,7 +306,7 @@ MovingStage robot_stage()
         }
         poses.push_back(std::move(pose));
     }
-    return MovingStage("robot", parts, poses);
+    return MovingStage("robot", parts, poses, NormalSettings().crease);
 }
 
 MovingStage small_stage()

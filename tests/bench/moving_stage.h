@@ -18,8 +18,10 @@ struct MovingStage {
     std::string name;
     Geometry geometry;  ///< at rest
     std::vector<std::uint32_t> body_of_triangle;
-    std::vector<Receiver> receivers;  ///< at rest, one per vertex
+    std::vector<std::uint32_t> body_of_vertex;
+    std::vector<Receiver> receivers;  ///< at rest, one per wedge (surface.h)
     std::vector<std::uint32_t> body_of_receiver;
+    std::vector<glm::uvec3> corners;            ///< receivers at those of each triangle
     std::vector<std::vector<Placement>> poses;  ///< per frame, per body; the first one's stays
 
     [[nodiscard]] std::size_t bodies() const { return poses.front().size(); }
@@ -33,8 +35,9 @@ struct MovingStage {
     [[nodiscard]] Receiver receiver_at(std::size_t receiver, int frame) const;
     /// For engines that look at triangles alone, and for disks.
     [[nodiscard]] Geometry geometry_at(int frame) const;
-    /// No body covers more than MovingSettings::tolerance of its hemisphere.
-    [[nodiscard]] bool is_far(std::size_t receiver, int frame) const;
+    /// It stands still, and all that moves is below its horizon, or so far off that it covers less
+    /// than MovingSettings::tolerance.
+    [[nodiscard]] bool is_untouched(std::size_t receiver, int frame) const;
 
     /// Each value becomes the mean of itself and of its neighbours' mean, `passes` times.
     void smooth(std::vector<Occlusion>& answers, int passes) const;
@@ -43,9 +46,9 @@ struct MovingStage {
               Image& image) const;
 
     /// Fills what follows from the bodies: one scene each, and per frame where each of them is in
-    /// the world. The frame of reference holds all poses.
+    /// the world. The frame of reference holds all poses. crease: in degrees, of the normals.
     MovingStage(std::string title, const std::vector<Scene>& parts,
-                const std::vector<std::vector<Placement>>& world_poses);
+                const std::vector<std::vector<Placement>>& world_poses, float crease);
 
 private:
     struct Ball {
@@ -56,10 +59,11 @@ private:
     std::vector<std::uint32_t> first_neighbour_, neighbours_;
 };
 
-/// A body of a seventh of the world's size that moves through its middle by 1/450 of its diagonal a
-/// frame.
+/// One receiver a vertex, smooth over hard edges. A body of a seventh of the world's size that
+/// moves through its middle by 1/450 of its diagonal a frame.
 [[nodiscard]] MovingStage crossing_stage(const std::string& name, const Scene& world, Scene body);
-/// Eleven parts that walk on a floor: boxes, a ball and capsules of 53,000 triangles.
+/// Eleven parts that walk on a floor: boxes, a ball and capsules of 53,000 triangles. Hard edges
+/// have a receiver on each side.
 [[nodiscard]] MovingStage robot_stage();
 [[nodiscard]] MovingStage small_stage();
 

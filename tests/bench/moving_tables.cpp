@@ -2,8 +2,9 @@
 //
 //   moving_tables MODELS             JSON. MODELS: a folder with mountain.obj, FlightHelmet/ and
 //                                    spot.obj; where one is missing, a generated scene stands in
-//   moving_tables strip OUT.png      the robot: a row of frames each by masks, by rays that are
-//                                    smoothed, in the same time, and by rays in plenty
+//   moving_tables strip OUT.png      the robot: a row of frames each by masks at draft, by 16 rays
+//                                    that are smoothed, by rays in plenty, and of what the first
+//                                    two err, ten times over
 //
 // Per scene: a static world and one body that moves through it. Then a robot of eleven parts beside
 // rays, raw and smoothed; disks with and without what they remember; the memory of many frames.
@@ -89,6 +90,10 @@ public:
             errors.push_back(double{answers[truth_.places[k]].occlusion} - truth_.frames[frame][k]);
             squares_ += errors.back() * errors.back();
             ++count_;
+            if (stage_.is_static(truth_.places[k])) {
+                static_squares_ += errors.back() * errors.back();
+                ++static_count_;
+            }
         }
         for (std::size_t k = 0; k < before_.size(); ++k) {
             if (!stage_.is_static(truth_.places[k]))
@@ -101,6 +106,10 @@ public:
         before_ = std::move(errors);
     }
 
+    double rmse_static() const
+    {
+        return std::sqrt(static_squares_ / static_cast<double>(std::max(1, static_count_)));
+    }
     double rmse() const { return std::sqrt(squares_ / static_cast<double>(std::max(1, count_))); }
     double spurious() const
     {
@@ -113,27 +122,29 @@ private:
     const FrameTruth& truth_;
     std::vector<double> before_;
     double squares_ = 0.0, changes_ = 0.0, largest_ = 0.0;
-    int count_ = 0, changed_ = 0;
+    double static_squares_ = 0.0;
+    int count_ = 0, static_count_ = 0, changed_ = 0;
 };
 
-/// Static receivers that no body nears by more than the tolerance, now or a frame ago, and yet have
-/// other bytes.
-std::size_t changed_untouched(const MovingStage& stage, int frame,
-                              const std::vector<Occlusion>& before,
-                              const std::vector<Occlusion>& now)
-{
-    std::size_t changed = 0;
-    for (std::size_t i = 0; i < now.size(); ++i) {
-        if (stage.is_static(i) && !(now[i] == before[i]) && stage.is_far(i, frame) &&
-            stage.is_far(i, frame - 1))
-            ++changed;
+/// Receivers that nothing touches, now or a frame ago, and those of them with other bytes.
+struct Untouched {
+    std::size_t count = 0, changed = 0;
+
+    void add(const MovingStage& stage, int frame, const std::vector<Occlusion>& before,
+             const std::vector<Occlusion>& now)
+    {
+        for (std::size_t i = 0; i < now.size(); ++i) {
+            if (!stage.is_untouched(i, frame) || !stage.is_untouched(i, frame - 1))
+                continue;
+            ++count;
+            changed += now[i] == before[i] ? 0 : 1;
+        }
     }
-    return changed;
-}
+};
 
 struct FrameRow {
     std::vector<double> place, tree, solve, total, solved;
-    std::size_t untouched = 0;  ///< with other bytes
+    Untouched untouched;  ///< of all frames
 };
 
 void print_frames(const char* name, const FrameRow& row, const FrameErrors& errors)
@@ -141,10 +152,10 @@ void print_frames(const char* name, const FrameRow& row, const FrameErrors& erro
     std::printf(
         "\"%s\": {\"place_ms\": %.3f, \"tree_ms\": %.3f, \"solve_ms\": %.3f, \"frame_ms\": %.3f, "
         "\"solved\": %.0f, \"rmse\": %.6f, \"spurious\": %.6f, \"largest\": %.5f, "
-        "\"untouched_changed\": %zu}",
+        "\"rmse_static\": %.6f, \"untouched\": %zu, \"untouched_changed\": %zu}",
         name, milliseconds(row.place), milliseconds(row.tree), milliseconds(row.solve),
         milliseconds(row.total), milliseconds(row.solved) * 1e-3, errors.rmse(), errors.spurious(),
-        errors.largest(), row.untouched);
+        errors.largest(), errors.rmse_static(), row.untouched.count, row.untouched.changed);
     std::fflush(stdout);
 }
 
@@ -172,7 +183,7 @@ void measure_moving(const char* name, const MovingStage& stage, const FrameTruth
             row.solve.push_back(report.solve);
             row.total.push_back(seconds);
             row.solved.push_back(static_cast<double>(report.solved));
-            row.untouched += changed_untouched(stage, frame, before, answers);
+            row.untouched.add(stage, frame, before, answers);
         }
         before = std::move(answers);
     }
@@ -204,7 +215,7 @@ void measure_rebuilt(const char* name, const MovingStage& stage, const FrameTrut
             row.solve.push_back(solving);
             row.total.push_back(place + tree + solving);
             row.solved.push_back(static_cast<double>(answers.size()));
-            row.untouched += changed_untouched(stage, frame, before, answers);
+            row.untouched.add(stage, frame, before, answers);
         }
         before = std::move(answers);
     }
@@ -352,25 +363,38 @@ void print_tables(const fs::path& models)
     std::printf(",\n\"generated\": %s}\n", generated ? "true" : "false");
 }
 
-/// Rows of frames: masks, smoothed rays, rays in plenty.
+/// Rows of frames: masks, smoothed rays and rays in plenty, then what the first two err, many times
+/// over.
 void draw_strip(const fs::path& file)
 {
     const MovingStage stage = robot_stage();
-    constexpr int kShown = 5, kWidth = 150, kHeight = 220;
-    constexpr std::uint32_t kPlenty = 256;
-    Image image(kShown * kWidth, 3 * kHeight, glm::vec4(1.0f));
+    constexpr int kShown = 5, kWidth = 130, kHeight = 190;
+    constexpr float kTimes = 10.0f;
+    const MovingSettings settings[] = {settings_of(Engine::masks, kDraft),
+                                       settings_of(Engine::rays, 0.0f, 16),
+                                       settings_of(Engine::rays, 0.0f, 1024)};
+    std::vector<std::vector<Occlusion>> frames[3];
     for (int row = 0; row < 3; ++row) {
         const Engine engine = row == 0 ? Engine::masks : Engine::rays;
         MovingScene scene(stage.geometry, stage.body_of_triangle, {.engine = engine});
-        MovingReceivers receivers(scene, stage.receivers, stage.body_of_receiver,
-                                  settings_of(engine, kDraft, row == 1 ? 16 : kPlenty));
+        MovingReceivers receivers(scene, stage.receivers, stage.body_of_receiver, settings[row]);
         for (int frame = 0; frame < kShown; ++frame) {
             stage.place(scene, frame);
             receivers.solve();
-            std::vector<Occlusion> answers = receivers.occlusion();
+            frames[row].push_back(receivers.occlusion());
             if (row == 1)
-                stage.smooth(answers, kSmoothing);
-            stage.draw(answers, frame, {frame * kWidth, row * kHeight}, {kWidth, kHeight}, image);
+                stage.smooth(frames[row].back(), kSmoothing);
+        }
+    }
+    Image image(kShown * kWidth, 5 * kHeight, glm::vec4(1.0f));
+    for (int row = 0; row < 5; ++row) {
+        for (int frame = 0; frame < kShown; ++frame) {
+            std::vector<Occlusion> shown = frames[row % 3][frame];
+            for (std::size_t i = 0; row > 2 && i < shown.size(); ++i) {
+                const float error = shown[i].occlusion - frames[2][frame][i].occlusion;
+                shown[i].occlusion = std::min(1.0f, kTimes * std::abs(error));
+            }
+            stage.draw(shown, frame, {frame * kWidth, row * kHeight}, {kWidth, kHeight}, image);
         }
     }
     write_image(file, image);
