@@ -24,7 +24,7 @@ public:
                std::span<Occlusion> answers, FrameReport& report, const Progress& progress) override
     {
         check_receivers(now);
-        const MaskFrame frame = memory_.solve(now, answers, progress);
+        const MaskFrame frame = memory_.solve(answers, progress);
         report.solved = frame.solved;
         report.bound = frame.bound;
     }
