@@ -10,6 +10,7 @@
 #include <glm/matrix.hpp>
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -264,7 +265,7 @@ MaskForest::MaskForest(const Geometry& geometry, std::span<const std::uint32_t> 
         body.rest_ball = ball_of(body.at_rest);
     });
     lay_out();
-    settle();
+    static_cast<void>(nodes());
     bodies_[0].at_rest = {};
     bodies_[0].vertices = {};
     bodies_[0].rest_nodes = {};
@@ -323,6 +324,8 @@ void MaskForest::deform(std::uint32_t body, std::span<const glm::vec3> positions
     of.form_nodes = bent(of, form);
     of.form_ball = ball_of(form);
     change(of);
+    if (of.form_nodes.size() > of.capacity)
+        lay_out();
 }
 
 /// Places in nodes_ for all bodies, as many as each has needed so far.
@@ -340,21 +343,26 @@ void MaskForest::lay_out()
     nodes_.resize(count);
 }
 
-void MaskForest::settle()
+const MaskNode* MaskForest::nodes() const
 {
-    if (std::ranges::any_of(
-            bodies_, [](const Body& body) { return body.form_nodes.size() > body.capacity; }))
-        lay_out();
-    tbb::parallel_for(std::size_t{0}, bodies_.size(), [&](std::size_t k) {
-        Body& body = bodies_[k];
-        if (std::exchange(body.settled, true) || !body.placement)
-            return;
-        const NodePlacer placer(*body.placement, body.base);
-        const auto& nodes = body.form_nodes.empty() ? body.rest_nodes : body.form_nodes;
-        for_blocks(std::span(nodes), [&](std::span<const MaskNode> block, std::size_t i) {
-            std::transform(block.begin(), block.end(), nodes_.data() + body.base + i * kPartBlock,
-                           placer);
+    const std::lock_guard lock(settling_);
+    // a thread that waits here must not take up work that asks for the nodes
+    tbb::this_task_arena::isolate([&] {
+        tbb::parallel_for(std::size_t{0}, bodies_.size(), [&](std::size_t k) {
+            if (!std::exchange(bodies_[k].settled, true) && bodies_[k].placement)
+                settle(bodies_[k]);
         });
+    });
+    return nodes_.data();
+}
+
+void MaskForest::settle(const Body& body) const
+{
+    const NodePlacer placer(*body.placement, body.base);
+    const auto& nodes = body.form_nodes.empty() ? body.rest_nodes : body.form_nodes;
+    for_blocks(std::span(nodes), [&](std::span<const MaskNode> block, std::size_t i) {
+        std::transform(block.begin(), block.end(), nodes_.data() + body.base + i * kPartBlock,
+                       placer);
     });
 }
 

@@ -15,6 +15,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -37,16 +38,12 @@ public:
 
     [[nodiscard]] std::uint32_t body_count() const;
 
-    /// All of these take effect at the next settle().
     void place(std::uint32_t body, const Placement& placement);
     void hide(std::uint32_t body);
     /// Over other positions, one per vertex of the geometry. The tree is refitted from that at
     /// rest, whatever came between; where that is too far, it is built anew. O(vertices of the
     /// body), and O(n log n) the first time.
     void deform(std::uint32_t body, std::span<const glm::vec3> positions);
-
-    /// Brings the nodes of what has changed to their places, on all cores.
-    void settle();
 
     /// What the receivers of a body see of another one.
     struct View {
@@ -62,8 +59,9 @@ public:
     /// Where a body's ball is in a viewer's own space.
     [[nodiscard]] MaskBall ball_before(std::uint32_t viewer, std::uint32_t body) const;
 
-    /// Of all bodies; their links count from here.
-    [[nodiscard]] const MaskNode* nodes() const { return nodes_.data(); }
+    /// Of all bodies where they stand; their links count from here. What has changed is brought to
+    /// its place by the first who asks.
+    [[nodiscard]] const MaskNode* nodes() const;
     /// Empty where a body is hidden or has no triangle.
     [[nodiscard]] std::optional<std::uint32_t> root(std::uint32_t body) const;
     /// Of the bodies that have one, in their order.
@@ -87,9 +85,9 @@ private:
         MaskBall form_ball;
         std::optional<Placement> placement = Placement{};
         std::uint64_t version = 0;
-        bool settled = false;
-        std::uint32_t base = 0;      ///< its first node in nodes_
-        std::uint32_t capacity = 0;  ///< nodes there
+        mutable bool settled = false;  ///< in nodes_
+        std::uint32_t base = 0;        ///< its first node in nodes_
+        std::uint32_t capacity = 0;    ///< nodes there
 
         [[nodiscard]] const MaskBall& ball() const
         {
@@ -100,11 +98,13 @@ private:
     static RawVector<MaskNode> bent(Body& body, const Geometry& form);
     static void change(Body& body);
     void lay_out();
+    void settle(const Body& body) const;
     /// As it is built or bent, links from 0. Body 0 stands in nodes_ alone.
     [[nodiscard]] std::span<const MaskNode> nodes_of(const Body& body) const;
 
     std::vector<Body> bodies_;
-    RawVector<MaskNode> nodes_;
+    mutable RawVector<MaskNode> nodes_;
+    mutable std::mutex settling_;
 };
 
 }  // namespace surfelao

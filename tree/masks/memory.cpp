@@ -1,5 +1,6 @@
 #include "tree/masks/memory.h"
 
+#include "surfels/stopwatch.h"
 #include "tree/masks/constants.h"
 
 #include <glm/geometric.hpp>
@@ -250,7 +251,7 @@ const MaskNode* MaskMemory::nodes_before(const OfBody& of, bool with_own)
     return before_.data();
 }
 
-void MaskMemory::solve(OfBody& of, ProgressMeter& meter)
+void MaskMemory::solve(OfBody& of, MaskFrame& frame, ProgressMeter& meter)
 {
     const Definition definition = definition_of(of);
     solver_.ask(definition);
@@ -261,13 +262,10 @@ void MaskMemory::solve(OfBody& of, ProgressMeter& meter)
         roots.push_back(*root);
     const MaskSkies skies(definition, of.receivers);
     const MaskLeafRoots leaf_roots = leaf_roots_of(of);
-    MaskQuestion question{nodes_before(of, is_first || !keeps),
-                          roots,
-                          of.receivers,
-                          of.groups,
-                          skies,
-                          of.wanted,
-                          &leaf_roots};
+    Stopwatch watch;
+    const MaskNode* nodes = nodes_before(of, is_first || !keeps);
+    frame.place += watch.lap();
+    MaskQuestion question{nodes, roots, of.receivers, of.groups, skies, of.wanted, &leaf_roots};
     if (!keeps) {
         solver_.solve(question, meter, of.answers);
         return;
@@ -322,7 +320,7 @@ MaskFrame MaskMemory::solve(std::span<Occlusion> answers, const Progress& progre
     ProgressMeter meter(progress, leaves * solver_.limits().size());
     for (OfBody* of : there) {
         if (std::ranges::find(of->wanted, 1) != of->wanted.end())
-            solve(*of, meter);
+            solve(*of, frame, meter);
         frame.solved += write_answers(*of, answers);
         of->is_new = false;
     }

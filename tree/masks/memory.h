@@ -29,6 +29,7 @@
 namespace surfelao {
 
 struct MaskFrame {
+    double place = 0.0;        ///< seconds: the forest to where it stands before the receivers
     std::uint64_t solved = 0;  ///< receivers that were answered anew
     float bound = 0.0f;        ///< what the bodies that are left out cover at most
 };
@@ -50,7 +51,7 @@ public:
     /// Those of a body have changed.
     void deform(std::uint32_t body, std::span<const Receiver> at_rest);
 
-    /// Where the forest stands; it must be settled. Writes the answers that may have changed; those
+    /// Where the forest stands. Writes the answers that may have changed; those
     /// of hidden bodies stay. After an exception the next call answers all. Throws Cancelled.
     MaskFrame solve(std::span<Occlusion> answers, const Progress& progress);
 
@@ -83,7 +84,7 @@ private:
     float find_wanted(OfBody& of);
     [[nodiscard]] MaskLeafRoots leaf_roots_of(const OfBody& of) const;
     const MaskNode* nodes_before(const OfBody& of, bool with_own);
-    void solve(OfBody& of, ProgressMeter& meter);
+    void solve(OfBody& of, MaskFrame& frame, ProgressMeter& meter);
     std::uint64_t write_answers(const OfBody& of, std::span<Occlusion> answers) const;
 
     const MaskForest& forest_;
