@@ -4,6 +4,8 @@
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <mutex>
 #include <utility>
@@ -39,8 +41,9 @@ struct MovingScene::Impl {
     const MovingEngine& now(FrameReport& report)
     {
         const std::lock_guard lock(mutex);
+        // a thread that waits here must not take up work that asks for the same
         if (moved)
-            engine->move(bodies, report);
+            tbb::this_task_arena::isolate([&] { engine->move(bodies, report); });
         moved = false;
         return *engine;
     }
@@ -182,6 +185,7 @@ FrameReport MovingReceivers::solve(const Progress& progress)
                 *placement == Placement{} ? impl.at_rest[i] : placed(impl.at_rest[i], *placement);
     }
     report.place += watch.lap();
+    const double before = report.place + report.tree;
     impl.solved = false;
     if (impl.memory) {
         impl.memory->solve(bodies, impl.now, impl.occlusion, report, progress);
@@ -197,7 +201,7 @@ FrameReport MovingReceivers::solve(const Progress& progress)
     for (std::size_t body = 0; body < bodies.size(); ++body)
         impl.versions[body] = bodies[body].version;
     impl.solved = true;
-    report.solve = watch.lap();
+    report.solve = watch.lap() - (report.place + report.tree - before);
     return report;
 }
 

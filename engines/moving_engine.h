@@ -32,7 +32,8 @@ public:
     virtual void deform(std::uint32_t body, std::span<const Receiver> at_rest) = 0;
     /// now: where the receivers stand, those of hidden bodies anywhere; the engine has been moved
     /// to the bodies. Writes the answers that may have changed, and what is said of them in the
-    /// report. After an exception the next call answers all.
+    /// report; adds what of the time is no solving to `place` and `tree`. After an exception the
+    /// next call answers all.
     virtual void solve(std::span<const MovingBody> bodies, std::span<const Receiver> now,
                        std::span<Occlusion> answers, FrameReport& report,
                        const Progress& progress) = 0;

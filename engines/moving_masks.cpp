@@ -24,7 +24,8 @@ public:
                std::span<Occlusion> answers, FrameReport& report, const Progress& progress) override
     {
         check_receivers(now);
-        const MaskFrame frame = memory_.solve(now, answers, progress);
+        const MaskFrame frame = memory_.solve(answers, progress);
+        report.place += frame.place;
         report.solved = frame.solved;
         report.bound = frame.bound;
     }
@@ -59,8 +60,6 @@ public:
             versions_[k] = body.version;
         }
         report.tree += watch.lap();
-        forest_.settle();
-        report.place += watch.lap();
     }
 
     [[nodiscard]] Solution solve(std::span<const Receiver> receivers, const SolveSettings& settings,

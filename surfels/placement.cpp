@@ -1,6 +1,7 @@
 #include "surfels/placement.h"
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <cmath>
 
@@ -11,6 +12,19 @@ glm::dmat4 matrix_of(const Placement& placement)
     glm::dmat4 matrix(placement.scale * placement.rotation);
     matrix[3] = glm::dvec4(placement.translation, 1.0);
     return matrix;
+}
+
+Placement inverse(const Placement& placement)
+{
+    const glm::dmat3 back = glm::transpose(placement.rotation);
+    const double scale = 1.0 / placement.scale;
+    return {back, scale, -scale * (back * placement.translation)};
+}
+
+Placement operator*(const Placement& after, const Placement& before)
+{
+    return {after.rotation * before.rotation, after.scale * before.scale,
+            after.scale * (after.rotation * before.translation) + after.translation};
 }
 
 std::optional<Placement> placement_of(const glm::dmat4& matrix)

@@ -23,6 +23,11 @@ struct Placement {
 /// The same as one matrix.
 [[nodiscard]] glm::dmat4 matrix_of(const Placement& placement);
 
+/// Back to where it was.
+[[nodiscard]] Placement inverse(const Placement& placement);
+/// First `before`, then `after`.
+[[nodiscard]] Placement operator*(const Placement& after, const Placement& before);
+
 /// Of an affine matrix; empty where it is no similarity to within 1e-6 (sheared, or scaled
 /// unevenly), flat, or not finite. Such bodies are deformed (MovingScene::deform).
 [[nodiscard]] std::optional<Placement> placement_of(const glm::dmat4& matrix);

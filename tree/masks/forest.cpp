@@ -10,10 +10,12 @@
 #include <glm/matrix.hpp>
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -129,40 +131,117 @@ struct MaskPlacement {
 
 MaskBall placed_ball(const MaskBall& ball, const Placement& placement)
 {
+    if (placement == Placement{})
+        return ball;
     const MaskPlacement to(placement);
     return {to.at(ball.center), to.scale * ball.radius};
 }
 
-}  // namespace
+/// Nodes to where a body is placed.
+class NodePlacer {
+public:
+    /// base: what is added to links.
+    NodePlacer(const Placement& placement, std::uint32_t base)
+        : stays_(placement == Placement{}),
+          base_(base),
+          to_(placement),
+          linear_(to_.linear),
+          turn_(to_.mirrors ? -1.0f : 1.0f)
+    {
+    }
 
-void place_nodes(std::span<const MaskNode> at_rest, const Placement& placement, std::uint32_t base,
-                 MaskNode* nodes)
+    MaskNode operator()(const MaskNode& node) const
+    {
+        MaskNode out = node;
+        if ((node.links & kMaskFirstChild) != 0)
+            out.links += base_;
+        if (stays_)
+            return out;
+        out.center = to_.at(node.center);
+        out.radius *= to_.scale;
+        out.skew = linear_ * node.skew;
+        out.thickness *= to_.scale;
+        out.axis_a = turn_ * (linear_ * node.axis_a);
+        out.axis_b = linear_ * node.axis_b;
+        if (node.open_radius > 0.0f)
+            out.open_radius *= to_.scale;
+        return out;
+    }
+
+private:
+    bool stays_;
+    std::uint32_t base_;
+    MaskPlacement to_;
+    glm::mat3 linear_;
+    float turn_;  ///< what is mirrored runs round the other way, but for its first half axis
+};
+
+/// Whether no group in a viewer's ball ever looks at the children of a node. The kernels' walk
+/// opens no node that is smaller than its cluster as seen from the nearest of a group.
+bool is_never_opened(const MaskForest::View& view, const MaskNode& node)
 {
-    const bool stays = placement == Placement{};
-    const MaskPlacement to(placement);
-    const glm::mat3 linear(to.linear);
-    // what is mirrored runs round the other way, but for its first half axis
-    const float turn = to.mirrors ? -1.0f : 1.0f;
-    for_blocks(at_rest, [&](std::span<const MaskNode> block, std::size_t block_index) {
-        MaskNode* out = nodes + block_index * kPartBlock;
-        for (const MaskNode& node : block) {
-            *out = node;
-            if ((node.links & kMaskFirstChild) != 0)
-                out->links += base;
-            if (!stays) {
-                out->center = to.at(node.center);
-                out->radius *= to.scale;
-                out->skew = linear * node.skew;
-                out->thickness *= to.scale;
-                out->axis_a = turn * (linear * node.axis_a);
-                out->axis_b = linear * node.axis_b;
-                if (node.open_radius > 0.0f)
-                    out->open_radius *= to.scale;
-            }
-            ++out;
-        }
-    });
+    constexpr float kRounding = 1.0f - 1e-4f;
+    if ((node.links & kMaskFirstChild) == 0)
+        return true;
+    const float nearest = glm::distance(node.center, view.ball.center) - view.ball.radius;
+    return node.open_radius < view.cluster * nearest * kRounding ||
+           kRounding * (nearest - node.radius) > view.limit;
 }
+
+/// Below each of `open`, a node that is placed and opened, as far as the viewer looks.
+class SubtreePlacer {
+public:
+    SubtreePlacer(const MaskForest::View& view, const NodePlacer& placer,
+                  std::span<const MaskNode> at_rest, MaskNode* nodes)
+        : view_(view), placer_(placer), at_rest_(at_rest), nodes_(nodes)
+    {
+    }
+
+    void run() const
+    {
+        std::vector<std::uint32_t> open;
+        place(0, open);
+        // level by level until there is enough for all threads
+        while (!open.empty() && open.size() < kTasks) {
+            std::vector<std::uint32_t> below;
+            for (const std::uint32_t i : open)
+                place_children(i, below);
+            open = std::move(below);
+        }
+        tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
+            std::vector<std::uint32_t> left{open[i]};
+            while (!left.empty()) {
+                const std::uint32_t node = left.back();
+                left.pop_back();
+                place_children(node, left);
+            }
+        });
+    }
+
+private:
+    static constexpr std::size_t kTasks = 64;
+
+    /// Appends it where it is opened.
+    void place(std::uint32_t i, std::vector<std::uint32_t>& open) const
+    {
+        nodes_[i] = placer_(at_rest_[i]);
+        if (!is_never_opened(view_, nodes_[i]))
+            open.push_back(i);
+    }
+    void place_children(std::uint32_t i, std::vector<std::uint32_t>& open) const
+    {
+        const std::uint32_t child = at_rest_[i].links & kMaskFirstChild;
+        place(child, open);
+        place(child + 1, open);
+    }
+
+    const MaskForest::View& view_;
+    const NodePlacer& placer_;
+    std::span<const MaskNode> at_rest_;
+    MaskNode* nodes_;
+};
+
+}  // namespace
 
 MaskForest::MaskForest(const Geometry& geometry, std::span<const std::uint32_t> body_of_triangle,
                        std::uint32_t bodies)
@@ -183,10 +262,10 @@ MaskForest::MaskForest(const Geometry& geometry, std::span<const std::uint32_t> 
         if (k != 0 && is_winding_mixed(body.at_rest))
             wind_alike(body.at_rest);
         body.rest_nodes = build_mask_tree(body.at_rest)->nodes;
-        body.rest_ball = body.ball = ball_of(body.at_rest);
+        body.rest_ball = ball_of(body.at_rest);
     });
     lay_out();
-    settle();
+    static_cast<void>(nodes());
     bodies_[0].at_rest = {};
     bodies_[0].vertices = {};
     bodies_[0].rest_nodes = {};
@@ -220,7 +299,7 @@ void MaskForest::hide(std::uint32_t body)
 }
 
 /// Of a form of the body, as it follows from that form alone.
-RawVector<MaskNode> MaskForest::nodes_of(Body& body, const Geometry& form)
+RawVector<MaskNode> MaskForest::bent(Body& body, const Geometry& form)
 {
     const auto planned = [&](std::optional<MaskPlan>& plan, MaskPairs pairs) -> const MaskPlan& {
         if (!plan)
@@ -242,9 +321,11 @@ void MaskForest::deform(std::uint32_t body, std::span<const glm::vec3> positions
     Geometry form = of.at_rest;
     for (std::size_t i = 0; i < of.vertices.size(); ++i)
         form.positions[i] = positions[of.vertices[i]];
-    of.form_nodes = nodes_of(of, form);
+    of.form_nodes = bent(of, form);
     of.form_ball = ball_of(form);
     change(of);
+    if (of.form_nodes.size() > of.capacity)
+        lay_out();
 }
 
 /// Places in nodes_ for all bodies, as many as each has needed so far.
@@ -253,41 +334,62 @@ void MaskForest::lay_out()
     std::uint64_t count = 0;
     for (Body& body : bodies_) {
         const std::size_t needed = std::max(body.rest_nodes.size(), body.form_nodes.size());
-        // body 0 gives its nodes at rest away: they stand where they are
         body.capacity = std::max(body.capacity, static_cast<std::uint32_t>(needed));
         body.base = static_cast<std::uint32_t>(count);
         count += body.capacity;
         body.settled = false;
     }
     check_mask_tiles((count + 1) / 2, count / 2);
-    RawVector<MaskNode> nodes;
-    nodes.resize(count);
-    // body 0 comes first, and stays so
-    std::copy_n(nodes_.begin(), nodes_.empty() ? 0 : bodies_[0].capacity, nodes.begin());
-    nodes_ = std::move(nodes);
+    nodes_.resize(count);
 }
 
-void MaskForest::settle()
+const MaskNode* MaskForest::nodes() const
 {
-    if (std::ranges::any_of(
-            bodies_, [](const Body& body) { return body.form_nodes.size() > body.capacity; }))
-        lay_out();
-    tbb::parallel_for(std::size_t{0}, bodies_.size(), [&](std::size_t k) {
-        if (!bodies_[k].settled)
-            settle(bodies_[k]);
+    const std::lock_guard lock(settling_);
+    // a thread that waits here must not take up work that asks for the nodes
+    tbb::this_task_arena::isolate([&] {
+        tbb::parallel_for(std::size_t{0}, bodies_.size(), [&](std::size_t k) {
+            if (!std::exchange(bodies_[k].settled, true) && bodies_[k].placement)
+                settle(bodies_[k]);
+        });
+    });
+    return nodes_.data();
+}
+
+void MaskForest::settle(const Body& body) const
+{
+    const NodePlacer placer(*body.placement, body.base);
+    const auto& nodes = body.form_nodes.empty() ? body.rest_nodes : body.form_nodes;
+    for_blocks(std::span(nodes), [&](std::span<const MaskNode> block, std::size_t i) {
+        std::transform(block.begin(), block.end(), nodes_.data() + body.base + i * kPartBlock,
+                       placer);
     });
 }
 
-void MaskForest::settle(Body& body)
+std::span<const MaskNode> MaskForest::nodes_of(const Body& body) const
 {
-    body.settled = true;
-    if (!body.placement)
-        return;
-    const bool is_formed = !body.form_nodes.empty();
-    place_nodes(is_formed ? body.form_nodes : body.rest_nodes, *body.placement, body.base,
-                nodes_.data() + body.base);
-    const MaskBall& ball = is_formed ? body.form_ball : body.rest_ball;
-    body.ball = *body.placement == Placement{} ? ball : placed_ball(ball, *body.placement);
+    if (&body == bodies_.data())
+        return {nodes_.data(), body.capacity};
+    return body.form_nodes.empty() ? body.rest_nodes : body.form_nodes;
+}
+
+MaskBall MaskForest::ball_before(std::uint32_t viewer, std::uint32_t body) const
+{
+    return placed_ball(bodies_[body].ball(),
+                       inverse(*bodies_[viewer].placement) * *bodies_[body].placement);
+}
+
+void MaskForest::place_before(const View& view, std::span<const std::uint32_t> bodies,
+                              RawVector<MaskNode>& nodes) const
+{
+    nodes.resize(nodes_.size());
+    const Placement back = inverse(*bodies_[view.viewer].placement);
+    tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t k) {
+        const Body& body = bodies_[bodies[k]];
+        const NodePlacer placer(bodies[k] == view.viewer ? Placement{} : back * *body.placement,
+                                body.base);
+        SubtreePlacer(view, placer, nodes_of(body), nodes.data() + body.base).run();
+    });
 }
 
 std::optional<std::uint32_t> MaskForest::root(std::uint32_t body) const
@@ -306,9 +408,9 @@ std::vector<std::uint32_t> MaskForest::roots() const
     return roots;
 }
 
-const MaskBall& MaskForest::ball(std::uint32_t body) const
+bool MaskForest::is_deformed(std::uint32_t body) const
 {
-    return bodies_[body].ball;
+    return !bodies_[body].form_nodes.empty();
 }
 
 std::uint64_t MaskForest::version(std::uint32_t body) const

@@ -15,6 +15,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -37,7 +38,6 @@ public:
 
     [[nodiscard]] std::uint32_t body_count() const;
 
-    /// All of these take effect at the next settle().
     void place(std::uint32_t body, const Placement& placement);
     void hide(std::uint32_t body);
     /// Over other positions, one per vertex of the geometry. The tree is refitted from that at
@@ -45,16 +45,28 @@ public:
     /// body), and O(n log n) the first time.
     void deform(std::uint32_t body, std::span<const glm::vec3> positions);
 
-    /// Brings the nodes of what has changed to their places, on all cores.
-    void settle();
+    /// What the receivers of a body see of another one.
+    struct View {
+        std::uint32_t viewer = 0;
+        MaskBall ball;         ///< about all of its receivers' groups, in its own space
+        float cluster = 0.0f;  ///< MaskSettings::cluster
+        float limit = 0.0f;    ///< nothing beyond counts, in its own space
+    };
+    /// The bodies as they stand in the viewer's own space, each at its place in `nodes`, which is
+    /// made as large as all of them. What the viewer never opens is left out. Both are not hidden.
+    void place_before(const View& view, std::span<const std::uint32_t> bodies,
+                      RawVector<MaskNode>& nodes) const;
+    /// Where a body's ball is in a viewer's own space.
+    [[nodiscard]] MaskBall ball_before(std::uint32_t viewer, std::uint32_t body) const;
 
-    /// Of all bodies; their links count from here.
-    [[nodiscard]] const MaskNode* nodes() const { return nodes_.data(); }
+    /// Of all bodies where they stand; their links count from here. What has changed is brought to
+    /// its place by the first who asks.
+    [[nodiscard]] const MaskNode* nodes() const;
     /// Empty where a body is hidden or has no triangle.
     [[nodiscard]] std::optional<std::uint32_t> root(std::uint32_t body) const;
     /// Of the bodies that have one, in their order.
     [[nodiscard]] std::vector<std::uint32_t> roots() const;
-    [[nodiscard]] const MaskBall& ball(std::uint32_t body) const;
+    [[nodiscard]] bool is_deformed(std::uint32_t body) const;
     /// Another one after each change.
     [[nodiscard]] std::uint64_t version(std::uint32_t body) const;
     /// Empty where it is hidden.
@@ -73,24 +85,26 @@ private:
         MaskBall form_ball;
         std::optional<Placement> placement = Placement{};
         std::uint64_t version = 0;
-        bool settled = false;
-        std::uint32_t base = 0;      ///< its first node in nodes_
-        std::uint32_t capacity = 0;  ///< nodes there
-        MaskBall ball;               ///< where it stands
+        mutable bool settled = false;  ///< in nodes_
+        std::uint32_t base = 0;        ///< its first node in nodes_
+        std::uint32_t capacity = 0;    ///< nodes there
+
+        [[nodiscard]] const MaskBall& ball() const
+        {
+            return form_nodes.empty() ? rest_ball : form_ball;
+        }
     };
 
-    static RawVector<MaskNode> nodes_of(Body& body, const Geometry& form);
+    static RawVector<MaskNode> bent(Body& body, const Geometry& form);
     static void change(Body& body);
     void lay_out();
-    void settle(Body& body);
+    void settle(const Body& body) const;
+    /// As it is built or bent, links from 0. Body 0 stands in nodes_ alone.
+    [[nodiscard]] std::span<const MaskNode> nodes_of(const Body& body) const;
 
     std::vector<Body> bodies_;
-    RawVector<MaskNode> nodes_;
+    mutable RawVector<MaskNode> nodes_;
+    mutable std::mutex settling_;
 };
-
-/// A body's nodes, links from 0, as they are where it is placed; their links then count from
-/// `base`.
-void place_nodes(std::span<const MaskNode> at_rest, const Placement& placement, std::uint32_t base,
-                 MaskNode* nodes);
 
 }  // namespace surfelao

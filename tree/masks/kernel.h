@@ -94,8 +94,8 @@ struct MaskShared {
 /// What a leaf group has found of some of the nodes, to be taken up together with others.
 struct MaskKept {
     MaskShared shared;  ///< as of the group's centre
-    /// Per receiver what is covered of the faces, what is no sky as if it were, and what of it
-    /// sheets cover: kMaskFaces kMaskFaceWords words each.
+    /// Per receiver what is covered of the faces, what lies below the horizon as if it were, and
+    /// what of it sheets cover: kMaskFaces kMaskFaceWords words each.
     alignas(64) std::uint32_t drawn[16][192];
 };
 
@@ -125,7 +125,7 @@ struct MaskKernel {
     void (*solve)(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
                   std::size_t in_count, const MaskShared& from_above,
                   const MaskReceivers& receivers, MaskAnswers& answers, MaskScratch& scratch);
-    /// The same, but for the answers.
+    /// The same, but for the answers, and without a ground.
     void (*keep)(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
                  std::size_t in_count, const MaskShared& from_above, const MaskReceivers& receivers,
                  MaskKept& kept, MaskScratch& scratch);

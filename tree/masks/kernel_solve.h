@@ -184,7 +184,7 @@ struct Masks16 {
                 const Int16 sheets = load(shared.mask + kMaskWords + w);
                 if (kept != nullptr) {
                     const std::uint32_t* before = kept->drawn[i];
-                    store(closed + w, set | load(before + w));
+                    store(closed + w, set | load(before + w) | ~load(above + w));
                     store(closed + kMaskWords + w, sheets | load(before + kFaceWords + w));
                 } else {
                     store(closed + w, set | ~load(above + w));

@@ -1,8 +1,10 @@
 #include "tree/masks/memory.h"
 
+#include "surfels/stopwatch.h"
 #include "tree/masks/constants.h"
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -17,11 +19,6 @@ namespace surfelao {
 namespace {
 
 constexpr std::uint32_t kBodiesAWord = 64;
-
-bool has(const std::uint64_t* bits, std::uint32_t body)
-{
-    return (bits[body / kBodiesAWord] >> (body % kBodiesAWord) & 1u) != 0;
-}
 
 /// work(body) for each bit, in order.
 template <class Work>
@@ -66,7 +63,6 @@ MaskMemory::MaskMemory(const MaskForest& forest, std::span<const Receiver> at_re
     : forest_(forest),
       options_(options),
       tolerance_(tolerance),
-      keep_most_(keep_most),
       solver_(options),
       words_((forest.body_count() + kBodiesAWord - 1) / kBodiesAWord),
       versions_(forest.body_count(), 0)
@@ -81,26 +77,38 @@ MaskMemory::MaskMemory(const MaskForest& forest, std::span<const Receiver> at_re
         of.body = body;
         of.index = std::move(index[body]);
         group(of, at_rest);
+        const std::size_t bytes = of.share.size() * solver_.limits().size() * sizeof(MaskKept);
+        of.may_keep = forest.body_count() > 1 && bytes <= keep_most;
+        keep_most -= of.may_keep ? bytes : 0;
     }
 }
 
-/// The receivers of a body at rest.
 void MaskMemory::group(OfBody& of, std::span<const Receiver> at_rest)
 {
-    of.now.resize(of.index.size());
+    of.receivers.resize(of.index.size());
     for (std::size_t i = 0; i < of.index.size(); ++i)
-        of.now[i] = at_rest[of.index[i]];
-    of.at_rest = group_receivers(of.now, kMaskFrame);
-    of.share = leaves_of(options_.share, of.at_rest);
-    of.seen.assign(words_ * (of.body == 0 ? of.share.size() : 1), 0);
-    of.answers.assign(of.now.size(), {});
-    for (std::size_t leaf = 0; leaf < of.share.size(); ++leaf) {
-        const ReceiverGroup& group = of.at_rest.groups[of.at_rest.leaves[leaf]];
-        for (std::uint32_t i = group.begin; of.share[leaf] == 0 && i < group.end; ++i)
-            of.answers[of.at_rest.order[i]] = kUnsolved;
-    }
-    of.is_kept = false;
+        of.receivers[i] = at_rest[of.index[i]];
+    of.groups = group_receivers(of.receivers, kMaskFrame);
+    of.share = leaves_of(options_.share, of.groups);
+    of.seen.assign(words_ * of.share.size(), 0);
+    of.answers.assign(of.receivers.size(), {});
+    of.kept_limits.clear();
     of.is_new = true;
+    if (of.groups.groups.empty())
+        return;
+    const ReceiverGroup& root = of.groups.groups[0];
+    of.ball = {{root.center[0], root.center[1], root.center[2]}, 0.0f};
+    for (const ReceiverGroup& group : of.groups.groups) {
+        const glm::vec3 center(group.center[0], group.center[1], group.center[2]);
+        if (group.first_child == 0)
+            of.ball.radius =
+                std::max(of.ball.radius, glm::distance(center, of.ball.center) + group.radius);
+    }
+    for (std::size_t leaf = 0; leaf < of.share.size(); ++leaf) {
+        const ReceiverGroup& group = of.groups.groups[of.groups.leaves[leaf]];
+        for (std::uint32_t i = group.begin; of.share[leaf] == 0 && i < group.end; ++i)
+            of.answers[of.groups.order[i]] = kUnsolved;
+    }
 }
 
 void MaskMemory::deform(std::uint32_t body, std::span<const Receiver> at_rest)
@@ -116,30 +124,43 @@ bool MaskMemory::is_moved(std::uint32_t body) const
     return all_ || forest_.version(body) != versions_[body];
 }
 
-/// Groups, receivers and skies to where the body is.
-void MaskMemory::set_place(OfBody& of, std::span<const Receiver> now)
+/// A form that bends has another tree in each frame: to keep its masks would cost and not save.
+bool MaskMemory::is_kept(const OfBody& of) const
 {
-    for (std::size_t i = 0; i < of.index.size(); ++i)
-        of.now[i] = now[of.index[i]];
-    place_groups(of.at_rest, *forest_.placement(of.body), kMaskFrame, of.groups);
-    of.skies.emplace(options_.definition, of.now);
+    return of.may_keep && !forest_.is_deformed(of.body);
 }
 
-/// Sets the bits of the bodies that a group looks at, its own and body 0 apart. Returns what the
-/// others cover at most.
-float MaskMemory::look_around(const ReceiverGroup& group, std::uint32_t own,
+/// As it is in the body's own space.
+Definition MaskMemory::definition_of(const OfBody& of) const
+{
+    const Placement& placement = *forest_.placement(of.body);
+    Definition own = options_.definition;
+    own.max_distance = static_cast<float>(own.max_distance / placement.scale);
+    if (own.ground) {
+        const glm::dvec3 up(own.ground->up);
+        own.ground->height = static_cast<float>(
+            (own.ground->height - glm::dot(up, placement.translation)) / placement.scale);
+        own.ground->up = glm::vec3(glm::transpose(placement.rotation) * up);
+    }
+    return own;
+}
+
+/// Sets the bits of the bodies that a group looks at, its own apart. Returns what the others cover
+/// at most.
+float MaskMemory::look_around(const OfBody& of, const ReceiverGroup& group, float limit,
                               std::uint64_t* seen) const
 {
-    std::fill_n(seen, words_, 0);
+    const auto look_at = [&](std::uint32_t body) {
+        seen[body / kBodiesAWord] |= std::uint64_t{1} << body % kBodiesAWord;
+    };
     std::vector<std::pair<float, std::uint32_t>> little;
     float covered = 0.0f;
-    for (std::uint32_t body = 1; body < forest_.body_count(); ++body) {
-        if (body == own || !forest_.root(body))
+    for (std::uint32_t body = 0; body < forest_.body_count(); ++body) {
+        if (body == of.body || !forest_.root(body))
             continue;
-        const float most =
-            most_covered(group, forest_.ball(body), options_.definition.max_distance);
+        const float most = most_covered(group, of.balls[body], limit);
         if (most > tolerance_) {
-            seen[body / kBodiesAWord] |= std::uint64_t{1} << body % kBodiesAWord;
+            look_at(body);
         } else if (most > 0.0f) {
             little.emplace_back(most, body);
             covered += most;
@@ -153,7 +174,7 @@ float MaskMemory::look_around(const ReceiverGroup& group, std::uint32_t own,
         if (covered + most <= tolerance_)
             covered += most;
         else
-            seen[body / kBodiesAWord] |= std::uint64_t{1} << body % kBodiesAWord;
+            look_at(body);
     }
     return covered;
 }
@@ -162,37 +183,32 @@ float MaskMemory::look_around(const ReceiverGroup& group, std::uint32_t own,
 float MaskMemory::find_wanted(OfBody& of)
 {
     std::vector<std::uint64_t> moved(words_, 0);
-    for (std::uint32_t body = 1; body < forest_.body_count(); ++body) {
+    of.balls.resize(forest_.body_count());
+    for (std::uint32_t body = 0; body < forest_.body_count(); ++body) {
         if (is_moved(body))
             moved[body / kBodiesAWord] |= std::uint64_t{1} << body % kBodiesAWord;
+        if (forest_.root(body))
+            of.balls[body] = forest_.ball_before(of.body, body);
     }
-    const bool own = all_ || of.is_new || has(moved.data(), of.body);
-    const auto is_changed = [&](const ReceiverGroup& group, std::uint64_t* seen, float& bound) {
-        std::vector<std::uint64_t> now(words_);
-        bound = std::max(bound, look_around(group, of.body, now.data()));
-        bool changed = own;
-        for (std::size_t word = 0; word < words_; ++word) {
-            changed |= now[word] != seen[word] || (now[word] & moved[word]) != 0;
-            seen[word] = now[word];
-        }
-        return changed;
-    };
+    const bool own = all_ || of.is_new || is_moved(of.body);
+    const float limit = definition_of(of).max_distance;
     of.wanted = of.share;
-    if (of.groups.groups.empty())
-        return 0.0f;
-    if (of.body != 0) {
-        float bound = 0.0f;
-        if (!is_changed(of.groups.groups[0], of.seen.data(), bound))
-            std::ranges::fill(of.wanted, std::uint8_t{0});
-        return bound;
-    }
     constexpr std::size_t kGrain = 64;
     return tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, of.wanted.size(), kGrain), 0.0f,
         [&](const tbb::blocked_range<std::size_t>& range, float bound) {
+            std::vector<std::uint64_t> now(words_);
             for (std::size_t leaf = range.begin(); leaf < range.end(); ++leaf) {
                 const ReceiverGroup& group = of.groups.groups[of.groups.leaves[leaf]];
-                if (!is_changed(group, &of.seen[leaf * words_], bound))
+                std::ranges::fill(now, std::uint64_t{0});
+                bound = std::max(bound, look_around(of, group, limit, now.data()));
+                bool changed = own;
+                for (std::size_t word = 0; word < words_; ++word) {
+                    std::uint64_t& seen = of.seen[leaf * words_ + word];
+                    changed |= now[word] != seen || (now[word] & moved[word]) != 0;
+                    seen = now[word];
+                }
+                if (!changed)
                     of.wanted[leaf] = 0;
             }
             return bound;
@@ -200,7 +216,6 @@ float MaskMemory::find_wanted(OfBody& of)
         [](float a, float b) { return std::max(a, b); });
 }
 
-/// Of the receivers of body 0.
 MaskLeafRoots MaskMemory::leaf_roots_of(const OfBody& of) const
 {
     MaskLeafRoots roots;
@@ -216,77 +231,99 @@ MaskLeafRoots MaskMemory::leaf_roots_of(const OfBody& of) const
     return roots;
 }
 
-bool MaskMemory::may_keep(const OfBody& of) const
+/// The nodes of all bodies that its leaf groups look at, and its own.
+const MaskNode* MaskMemory::nodes_before(const OfBody& of, bool with_own)
 {
-    const std::size_t count = of.wanted.size() * solver_.limits().size();
-    return forest_.body_count() > 1 && count <= keep_most_ / sizeof(MaskKept);
+    if (of.body == 0)
+        return forest_.nodes();
+    std::vector<std::uint64_t> looked_at(words_, 0);
+    for (std::size_t leaf = 0; leaf < of.wanted.size(); ++leaf) {
+        for (std::size_t word = 0; word < words_ && of.wanted[leaf] != 0; ++word)
+            looked_at[word] |= of.seen[leaf * words_ + word];
+    }
+    std::vector<std::uint32_t> bodies;
+    if (with_own && forest_.root(of.body))
+        bodies.push_back(of.body);
+    for_bits(looked_at.data(), words_, [&](std::uint32_t body) { bodies.push_back(body); });
+    forest_.place_before({of.body, of.ball, solver_.settings().cluster,
+                          solver_.limits().empty() ? 0.0f : std::ranges::max(solver_.limits())},
+                         bodies, before_);
+    return before_.data();
 }
 
-void MaskMemory::solve(OfBody& of, ProgressMeter& meter)
+void MaskMemory::solve(OfBody& of, MaskFrame& frame, ProgressMeter& meter)
 {
+    const Definition definition = definition_of(of);
+    solver_.ask(definition);
+    const bool keeps = is_kept(of);
+    const bool is_first = keeps && of.kept_limits != solver_.limits();
     std::vector<std::uint32_t> roots;
-    const auto add_root = [&](std::uint32_t body) {
-        if (const auto root = forest_.root(body))
-            roots.push_back(*root);
-    };
-    add_root(0);
-    if (of.body != 0) {
-        add_root(of.body);
-        for_bits(of.seen.data(), words_, add_root);
-        solver_.solve({forest_.nodes(), roots, of.now, of.groups, *of.skies, of.wanted}, meter,
-                      of.answers);
-        return;
-    }
+    if (const auto root = forest_.root(of.body))
+        roots.push_back(*root);
+    const MaskSkies skies(definition, of.receivers);
     const MaskLeafRoots leaf_roots = leaf_roots_of(of);
-    const MaskQuestion question{forest_.nodes(), roots,     of.now,     of.groups,
-                                *of.skies,       of.wanted, &leaf_roots};
-    if (!may_keep(of)) {
+    Stopwatch watch;
+    const MaskNode* nodes = nodes_before(of, is_first || !keeps);
+    frame.place += watch.lap();
+    MaskQuestion question{nodes, roots, of.receivers, of.groups, skies, of.wanted, &leaf_roots};
+    if (!keeps) {
         solver_.solve(question, meter, of.answers);
         return;
     }
-    if (!of.is_kept) {
+    if (is_first) {
+        of.kept_limits.clear();
         of.kept.resize(of.wanted.size() * solver_.limits().size());
+        question.wanted = of.share;
         solver_.keep(question, meter, of.kept);
-        of.is_kept = true;
+        question.wanted = of.wanted;
+        of.kept_limits = solver_.limits();
     }
     solver_.solve_kept(question, of.kept, meter, of.answers);
 }
 
-MaskFrame MaskMemory::solve(std::span<const Receiver> now, std::span<Occlusion> answers,
-                            const Progress& progress)
+/// Turned to where the body is. Returns how many are new.
+std::uint64_t MaskMemory::write_answers(const OfBody& of, std::span<Occlusion> answers) const
+{
+    const glm::dmat3& rotation = forest_.placement(of.body)->rotation;
+    const bool is_turned = rotation != glm::dmat3(1.0);
+    std::uint64_t solved = 0;
+    for (std::size_t leaf = 0; leaf < of.wanted.size(); ++leaf) {
+        const ReceiverGroup& group = of.groups.groups[of.groups.leaves[leaf]];
+        if (of.wanted[leaf] == 0 && !of.is_new)
+            continue;
+        solved += of.wanted[leaf] != 0 ? group.end - group.begin : 0;
+        for (std::uint32_t i = group.begin; i < group.end; ++i) {
+            const std::uint32_t receiver = of.groups.order[i];
+            Occlusion& answer = answers[of.index[receiver]];
+            answer = of.answers[receiver];
+            if (is_turned)
+                answer.bent_normal = glm::vec3(rotation * glm::dvec3(answer.bent_normal));
+        }
+    }
+    return solved;
+}
+
+MaskFrame MaskMemory::solve(std::span<Occlusion> answers, const Progress& progress)
 {
     MaskFrame frame;
-    const bool all = all_;
     std::uint64_t leaves = 0;
     std::vector<OfBody*> there;
     for (OfBody& of : of_bodies_) {
-        if (!forest_.placement(of.body))
+        if (!forest_.placement(of.body) || of.groups.groups.empty())
             continue;
         there.push_back(&of);
-        if (is_moved(of.body) || of.is_new)
-            set_place(of, now);
         frame.bound = std::max(frame.bound, find_wanted(of));
-        const auto wanted = static_cast<std::uint64_t>(std::ranges::count(of.wanted, 1));
-        leaves += wanted * (of.body == 0 && !of.is_kept && may_keep(of) ? 2 : 1);
+        leaves += static_cast<std::uint64_t>(std::ranges::count(of.wanted, 1));
+        leaves += is_kept(of) && of.kept_limits.empty() ? of.wanted.size() : 0;
     }
     all_ = true;  // until all is well
     ProgressMeter meter(progress, leaves * solver_.limits().size());
     for (OfBody* of : there) {
-        solve(*of, meter);
-        for (std::size_t leaf = 0; leaf < of->wanted.size(); ++leaf) {
-            const ReceiverGroup& group = of->groups.groups[of->groups.leaves[leaf]];
-            if (!all && !of->is_new && of->wanted[leaf] == 0)
-                continue;
-            if (of->wanted[leaf] != 0)
-                frame.solved += group.end - group.begin;
-            for (std::uint32_t i = group.begin; i < group.end; ++i) {
-                const std::uint32_t receiver = of->groups.order[i];
-                answers[of->index[receiver]] = of->answers[receiver];
-            }
-        }
-    }
-    for (OfBody* of : there)
+        if (std::ranges::find(of->wanted, 1) != of->wanted.end())
+            solve(*of, frame, meter);
+        frame.solved += write_answers(*of, answers);
         of->is_new = false;
+    }
     for (std::uint32_t body = 0; body < forest_.body_count(); ++body)
         versions_[body] = forest_.version(body);
     all_ = false;

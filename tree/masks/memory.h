@@ -1,11 +1,13 @@
 /// memory.h: receivers on bodies of a forest, and what was found for them.
 ///
-/// Each body's receivers are grouped once, in the body's own space. Which bodies a group looks at
-/// depends on where all stand now and on nothing before: those that together cover no more of any
-/// of its receivers' hemispheres than the tolerance are left out. So a group whose bodies have not
-/// moved has the answers of an earlier frame, to the byte, and small errors cannot add up.
+/// Each body's receivers are asked in the body's own space, where they and the body's own tree
+/// never move: they are grouped once, and the masks of what the body covers of its own sky are
+/// kept. In a frame only the other bodies are drawn, as they stand before it.
 ///
-/// Receivers of body 0 keep the masks of body 0: only what moves is drawn anew.
+/// Which bodies a group looks at depends on where all stand now and on nothing before: those that
+/// together cover no more of any of its receivers' hemispheres than the tolerance are left out. So
+/// a group whose bodies have not moved has the answers of an earlier frame, to the byte, and small
+/// errors cannot add up.
 ///
 /// Internal to the mask engine; engines/moving.h is its door.
 #pragma once
@@ -27,6 +29,7 @@
 namespace surfelao {
 
 struct MaskFrame {
+    double place = 0.0;        ///< seconds: the forest to where it stands before the receivers
     std::uint64_t solved = 0;  ///< receivers that were answered anew
     float bound = 0.0f;        ///< what the bodies that are left out cover at most
 };
@@ -39,8 +42,8 @@ struct MaskFrame {
 
 class MaskMemory {
 public:
-    /// forest: must outlive it. keep_most: bytes that kept masks may take; above, nothing is kept.
-    /// Throws as solve_masks.
+    /// forest: must outlive it. keep_most: bytes that kept masks may take; the receivers of bodies
+    /// beyond are answered without. Throws as solve_masks.
     MaskMemory(const MaskForest& forest, std::span<const Receiver> at_rest,
                std::span<const std::uint32_t> body_of_receiver, const MaskOptions& options,
                float tolerance, std::size_t keep_most = kMaskKeepMost);
@@ -48,45 +51,49 @@ public:
     /// Those of a body have changed.
     void deform(std::uint32_t body, std::span<const Receiver> at_rest);
 
-    /// now: where the receivers are, those of hidden bodies anywhere. Writes the answers that may
-    /// have changed; those of hidden bodies stay. After an exception the next call answers all.
-    /// Throws Cancelled.
-    MaskFrame solve(std::span<const Receiver> now, std::span<Occlusion> answers,
-                    const Progress& progress);
+    /// Where the forest stands. Writes the answers that may have changed; those
+    /// of hidden bodies stay. After an exception the next call answers all. Throws Cancelled.
+    MaskFrame solve(std::span<Occlusion> answers, const Progress& progress);
 
 private:
-    /// The receivers of one body.
+    /// The receivers of one body, in its own space.
     struct OfBody {
         std::uint32_t body = 0;
         std::vector<std::uint32_t> index;  ///< of all receivers
-        std::vector<Receiver> now;
-        ReceiverGroups at_rest, groups;
-        std::optional<MaskSkies> skies;
-        std::vector<std::uint8_t> share;   ///< of the leaf groups
-        std::vector<std::uint8_t> wanted;  ///< leaf groups in this frame
-        std::vector<std::uint64_t> seen;   ///< bodies that a leaf group, or all, look at: bits
-        std::vector<Occlusion> answers;
+        std::vector<Receiver> receivers;
+        ReceiverGroups groups;
+        MaskBall ball;                    ///< about all groups
+        std::vector<std::uint8_t> share;  ///< of the leaf groups
+        bool may_keep = false;
         RawVector<MaskKept> kept;
-        bool is_kept = false;
+        std::vector<float> kept_limits;   ///< empty: nothing is kept
+        std::vector<std::uint64_t> seen;  ///< bodies that a leaf group looks at: bits
+        std::vector<Occlusion> answers;
         bool is_new = true;  ///< not answered since it was grouped
+        // of this frame
+        std::vector<MaskBall> balls;       ///< of the bodies, as they stand before it
+        std::vector<std::uint8_t> wanted;  ///< leaf groups
     };
 
     void group(OfBody& of, std::span<const Receiver> at_rest);
-    void set_place(OfBody& of, std::span<const Receiver> now);
     [[nodiscard]] bool is_moved(std::uint32_t body) const;
-    float look_around(const ReceiverGroup& group, std::uint32_t own, std::uint64_t* seen) const;
+    [[nodiscard]] bool is_kept(const OfBody& of) const;
+    [[nodiscard]] Definition definition_of(const OfBody& of) const;
+    float look_around(const OfBody& of, const ReceiverGroup& group, float limit,
+                      std::uint64_t* seen) const;
     float find_wanted(OfBody& of);
     [[nodiscard]] MaskLeafRoots leaf_roots_of(const OfBody& of) const;
-    void solve(OfBody& of, ProgressMeter& meter);
-    [[nodiscard]] bool may_keep(const OfBody& of) const;
+    const MaskNode* nodes_before(const OfBody& of, bool with_own);
+    void solve(OfBody& of, MaskFrame& frame, ProgressMeter& meter);
+    std::uint64_t write_answers(const OfBody& of, std::span<Occlusion> answers) const;
 
     const MaskForest& forest_;
     MaskOptions options_;
     float tolerance_;
-    std::size_t keep_most_;
     MaskSolver solver_;
     std::size_t words_;  ///< of 64 bodies each
     std::vector<OfBody> of_bodies_;
+    RawVector<MaskNode> before_;           ///< the forest before one body
     std::vector<std::uint64_t> versions_;  ///< of the bodies, as they were answered
     bool all_ = true;                      ///< are to be answered
 };

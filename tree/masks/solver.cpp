@@ -147,10 +147,18 @@ private:
 };
 
 MaskSolver::MaskSolver(const MaskOptions& options)
-    : kernel_(*kernel_of(options.kernel)),
+    : options_(options),
+      kernel_(*kernel_of(options.kernel)),
       settings_(mask_settings(options)),
       limits_(distance_limits(options.definition))
 {
+}
+
+void MaskSolver::ask(const Definition& definition)
+{
+    options_.definition = definition;
+    settings_ = mask_settings(options_);
+    limits_ = distance_limits(definition);
 }
 
 MaskWorld MaskSolver::world_at(const MaskQuestion& question, float limit) const
@@ -205,7 +213,8 @@ void MaskSolver::solve(const MaskQuestion& question, ProgressMeter& meter,
 void MaskSolver::keep(const MaskQuestion& question, ProgressMeter& meter, std::span<MaskKept> kept)
 {
     for (std::size_t k = 0; k < limits_.size(); ++k) {
-        const MaskWorld world = world_at(question, limits_[k]);
+        MaskWorld world = world_at(question, limits_[k]);
+        world.settings.has_ground = false;  // it may move about the receivers
         const auto of_limit = kept.subspan(k * question.groups.leaves.size());
         const auto at_leaf = [&](const ReceiverGroup& group, const std::uint32_t* in,
                                  std::size_t in_count, const MaskShared& from_above,

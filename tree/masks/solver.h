@@ -65,13 +65,18 @@ public:
     /// Throws as solve_masks.
     explicit MaskSolver(const MaskOptions& options);
 
+    /// The same options, but for another limit and ground.
+    void ask(const Definition& definition);
+
+    [[nodiscard]] const MaskSettings& settings() const { return settings_; }
     [[nodiscard]] const std::vector<float>& limits() const { return limits_; }
 
     /// Writes the answers of the receivers of the leaf groups that are wanted. meter: counts leaf
     /// groups times limits.
     void solve(const MaskQuestion& question, ProgressMeter& meter, std::span<Occlusion> answers);
 
-    /// The same in two steps: what of the roots that all groups see, and the rest. kept: limits
+    /// The same in two steps: what of the roots that all groups see, without a ground, and the
+    /// rest. kept: limits
     /// times leaf groups, leaf groups of one limit side by side.
     void keep(const MaskQuestion& question, ProgressMeter& meter, std::span<MaskKept> kept);
     void solve_kept(const MaskQuestion& question, std::span<const MaskKept> kept,
@@ -85,6 +90,7 @@ private:
     void finish(const MaskQuestion& question, const ReceiverGroup& leaf,
                 std::span<Occlusion> answers) const;
 
+    MaskOptions options_;
     const MaskKernel& kernel_;
     MaskSettings settings_;
     std::vector<float> limits_;

@@ -1,0 +1,91 @@
+#include "tree/masks/memory.h"
+
+#include "differences.h"
+#include "scenes.h"
+#include "tests/vertex_receivers.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace surfelao {
+namespace {
+
+using scenes::operator+;
+
+struct TwoBalls {
+    Geometry geometry;
+    std::vector<std::uint32_t> body_of_triangle, body_of_receiver;
+    std::vector<Receiver> receivers;
+
+    TwoBalls()
+    {
+        const Scene ball = scenes::bumpy_sphere(10);
+        const Scene other =
+            scenes::moved(ball, [](glm::dvec3 p) { return 0.5 * p + glm::dvec3(1.4, 0.3, 0); });
+        geometry = make_geometry(ball + other);
+        body_of_receiver.assign(ball.positions.size(), 0);
+        body_of_receiver.resize(geometry.positions.size(), 1);
+        for (std::size_t t = 0; t < geometry.triangles.size(); ++t)
+            body_of_triangle.push_back(geometry.triangles[t].x < ball.positions.size() ? 0 : 1);
+        receivers = vertex_receivers(geometry);
+    }
+
+    /// After a move, with masks kept or not.
+    std::vector<Occlusion> answers(const MaskOptions& options, std::size_t keep_most) const
+    {
+        MaskForest forest(geometry, body_of_triangle, 2);
+        MaskMemory memory(forest, receivers, body_of_receiver, options, 0.0f, keep_most);
+        std::vector<Occlusion> answers(receivers.size());
+        memory.solve(answers, {});
+        Placement placement;
+        placement.scale = 1.25;
+        placement.translation = {-0.05, 0.02, 0.0};
+        forest.place(1, placement);
+        memory.solve(answers, {});
+        return answers;
+    }
+};
+
+// Exactly, nothing is left out where it is closed: the bits are the same, and so are the sums.
+TEST(MaskMemory, KeptMasksAreTheSameBits)
+{
+    const TwoBalls balls;
+    for (const MaskKernelSet kernel : available_mask_kernels()) {
+        const MaskOptions options{.exact = true, .kernel = kernel};
+        EXPECT_TRUE(same_bytes(balls.answers(options, kMaskKeepMost), balls.answers(options, 0)))
+            << name_of(kernel);
+    }
+}
+
+TEST(MaskMemory, KeptMasksAreAsGoodWithEarlyEnds)
+{
+    const TwoBalls balls;
+    Definition limited{.max_distance = 0.4f, .falloff = Falloff::smooth};
+    limited.ground = Ground{{0, 1, 0}, -0.3f};
+    for (const Definition& definition : {Definition{}, limited}) {
+        const MaskOptions options{.definition = definition, .quality = MaskOptions::kDraft};
+        const std::vector<Occlusion> kept = balls.answers(options, kMaskKeepMost);
+        EXPECT_LT(rms_difference(balls.answers(options, 0), kept), 0.001);
+        EXPECT_GT(mean_occlusion(kept), 0.1);
+    }
+}
+
+// A ball that is faced covers (b / d)^2; below the horizon nothing.
+TEST(MaskMemory, WhatABallCoversAtMost)
+{
+    ReceiverGroup group{};
+    group.axis[2] = 1.0f;
+    group.cone_cos = 1.0f;
+    EXPECT_FLOAT_EQ(most_covered(group, {{0, 0, 4}, 1.0f}, 100.0f), 1.0f / 16.0f);
+    EXPECT_EQ(most_covered(group, {{4, 0, -1.01f}, 1.0f}, 100.0f), 0.0f);
+    EXPECT_EQ(most_covered(group, {{0, 0, 4}, 1.0f}, 3.0f), 0.0f);
+    EXPECT_EQ(most_covered(group, {{0.5f, 0, 0}, 1.0f}, 100.0f), 1.0f);
+    // half of it above the horizon: 2/3 of sin^3 over pi, by its cap at most so much
+    const float half = most_covered(group, {{10, 0, 0}, 1.0f}, 100.0f);
+    EXPECT_GT(half, 2.0f / 3.0f / 3.14159f * 1e-3f);
+    EXPECT_LT(half, 2e-3f);
+}
+
+}  // namespace
+}  // namespace surfelao
