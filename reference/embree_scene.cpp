@@ -1,5 +1,6 @@
 #include "reference/embree_scene.h"
 
+#include <embree3/rtcore.h>
 #include <tbb/parallel_for.h>
 
 #include <stdexcept>
@@ -29,12 +30,21 @@ void keep_floating_point_mode()
     tbb::parallel_for(0, 2, [](int) {});
 }
 
-RayScene::Impl::Impl(RTCDevice device, RTCSceneFlags flags, RTCBuildQuality quality)
+RayScene::Impl::Impl(RTCDevice device, Build build, bool moves)
     : scene(rtcNewScene(device)),
       wide(rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0)
 {
-    rtcSetSceneFlags(scene, flags);
-    rtcSetSceneBuildQuality(scene, quality);
+    // low quality is how Embree is asked for a hierarchy per mesh
+    const bool low = moves || build == Build::quick;
+    rtcSetSceneBuildQuality(scene, low ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
+    const int robust = build == Build::fast ? RTC_SCENE_FLAG_NONE : RTC_SCENE_FLAG_ROBUST;
+    const int dynamic = moves ? RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_NONE;
+    rtcSetSceneFlags(scene, static_cast<RTCSceneFlags>(robust | dynamic));
+}
+
+RayScene::Impl::~Impl()
+{
+    rtcReleaseScene(scene);
 }
 
 EmbreeMesh new_mesh(RTCDevice device, std::size_t vertices, std::size_t triangles)

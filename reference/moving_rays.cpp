@@ -1,8 +1,8 @@
 #include "reference/moving_rays.h"
 
 #include "reference/embree_scene.h"
-#include "surfels/errors.h"
 
+#include <embree3/rtcore.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <glm/vec4.hpp>
@@ -57,11 +57,8 @@ struct MovingRayScene::Impl {
     std::vector<RayBody> bodies;
     bool changed = true;
 
-    /// Low quality means: a hierarchy for each mesh, and one over them. Without it Embree builds
-    /// one of all triangles at every commit.
     explicit Impl(RTCDevice of)
-        : device(of),
-          scene(std::make_unique<RayScene::Impl>(of, RTC_SCENE_FLAG_DYNAMIC, RTC_BUILD_QUALITY_LOW))
+        : device(of), scene(std::make_unique<RayScene::Impl>(of, RayScene::Build::fast, true))
     {
     }
     ~Impl()

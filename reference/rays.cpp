@@ -5,6 +5,7 @@
 #include "reference/sobol.h"
 #include "surfels/errors.h"
 
+#include <embree3/rtcore.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
@@ -328,16 +329,14 @@ RayScene::RayScene(const Geometry& geometry, Build build, Isa isa)
 {
     keep_floating_point_mode();
     const RTCDevice device = device_for(isa);
-    const RTCBuildQuality quality =
-        build == Build::quick ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
-    impl_ = std::make_unique<Impl>(
-        device, build == Build::fast ? RTC_SCENE_FLAG_NONE : RTC_SCENE_FLAG_ROBUST, quality);
+    impl_ = std::make_unique<Impl>(device, build, false);
     if (!geometry.triangles.empty()) {
         const EmbreeMesh mesh =
             new_mesh(device, geometry.positions.size(), geometry.triangles.size());
         std::ranges::copy(geometry.positions, mesh.vertices);
         std::ranges::copy(geometry.triangles, mesh.triangles);
-        rtcSetGeometryBuildQuality(mesh.geometry, quality);
+        rtcSetGeometryBuildQuality(mesh.geometry, build == Build::quick ? RTC_BUILD_QUALITY_LOW
+                                                                        : RTC_BUILD_QUALITY_MEDIUM);
         rtcCommitGeometry(mesh.geometry);
         rtcAttachGeometry(impl_->scene, mesh.geometry);
         rtcReleaseGeometry(mesh.geometry);

@@ -153,12 +153,10 @@ Geometry MovingStage::geometry_at(int frame) const
 bool MovingStage::is_untouched(std::size_t receiver, int frame) const
 {
     const float limit = std::sqrt(MovingSettings().tolerance);
-    const Receiver& at = receivers[receiver];
     for (std::uint32_t body = 1; is_static(receiver) && body < bodies(); ++body) {
-        const glm::vec3 to =
-            placed({balls_[body].centre, {}, 0.0f}, pose(body, frame)).position - at.position;
-        if (balls_[body].radius > limit * glm::length(to) &&
-            glm::dot(at.normal, to) > -balls_[body].radius)
+        const glm::vec3 centre =
+            placed({balls_[body].centre, {}, 0.0f}, pose(body, frame)).position;
+        if (balls_[body].radius > limit * glm::distance(centre, receivers[receiver].position))
             return false;
     }
     return is_static(receiver);
@@ -230,12 +228,11 @@ void MovingStage::draw(std::span<const Occlusion> answers, int frame, glm::ivec2
     }
 }
 
-MovingStage crossing_stage(const std::string& name, const Scene& world, Scene body)
+MovingStage crossing_stage(const std::string& name, const Scene& world, Scene body, double share)
 {
     constexpr int kPoses = 12;
-    constexpr double kSize = 0.15;
     const Frame of_world = frame_of(box_of(world)), of_body = frame_of(box_of(body));
-    const double size = of_world.diagonal, scale = kSize * size / of_body.diagonal;
+    const double size = of_world.diagonal, scale = share * size / of_body.diagonal;
     const glm::dvec3 middle = of_world.centre - glm::dvec3(0.0, 0.1 * size, 0.0);
     body = scenes::moved(std::move(body),
                          [&](glm::dvec3 p) { return middle + scale * (p - of_body.centre); });

@@ -35,8 +35,8 @@ struct MovingStage {
     [[nodiscard]] Receiver receiver_at(std::size_t receiver, int frame) const;
     /// For engines that look at triangles alone, and for disks.
     [[nodiscard]] Geometry geometry_at(int frame) const;
-    /// It stands still, and all that moves is below its horizon, or so far off that it covers less
-    /// than MovingSettings::tolerance.
+    /// It stands still, and all that moves is so far off that it covers less than
+    /// MovingSettings::tolerance.
     [[nodiscard]] bool is_untouched(std::size_t receiver, int frame) const;
 
     /// Each value becomes the mean of itself and of its neighbours' mean, `passes` times.
@@ -59,9 +59,10 @@ private:
     std::vector<std::uint32_t> first_neighbour_, neighbours_;
 };
 
-/// One receiver a vertex, smooth over hard edges. A body of a seventh of the world's size that
-/// moves through its middle by 1/450 of its diagonal a frame.
-[[nodiscard]] MovingStage crossing_stage(const std::string& name, const Scene& world, Scene body);
+/// One receiver a vertex, smooth over hard edges. A body of that share of the world's size moves
+/// through its middle by 1/450 of the world's diagonal a frame.
+[[nodiscard]] MovingStage crossing_stage(const std::string& name, const Scene& world, Scene body,
+                                         double share = 0.15);
 /// Eleven parts that walk on a floor: boxes, a ball and capsules of 53,000 triangles. Hard edges
 /// have a receiver on each side.
 [[nodiscard]] MovingStage robot_stage();

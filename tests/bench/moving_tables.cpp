@@ -347,8 +347,10 @@ void print_tables(const fs::path& models)
     bool generated = false;
     const Scene body = scene_or(models / "spot.obj", generated_body(), generated);
     std::printf("{\"rays\": %u, \"samples\": %zu,\n\"scenes\": [", kManyRays, kSamples);
-    print_scene(crossing_stage(
-        "mountain", scene_or(models / "mountain.obj", generated_ground(), generated), body));
+    const Scene ground = scene_or(models / "mountain.obj", generated_ground(), generated);
+    print_scene(crossing_stage("mountain", ground, body));
+    std::printf(",");
+    print_scene(crossing_stage("mountain, small", ground, body, 0.02));
     std::printf(",");
     print_scene(crossing_stage(
         "FlightHelmet",
