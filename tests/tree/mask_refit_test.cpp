@@ -59,7 +59,6 @@ TEST(MaskRefit, ARigidFormHasTheNodesOfAPlacement)
     std::ranges::sort(differences);
     // of a patch as long as wide the axes are any: rounding chooses
     EXPECT_LT(differences[differences.size() * 99 / 100], 1e-6f);
-    // neutral: without the cuts a tenth of them differ by more
 }
 
 TEST(MaskRefit, AtRestItIsWhatWasBuilt)
