@@ -12,10 +12,16 @@
 /// what it shows of itself is found once. The unit frame is that of the whole motion: the box of
 /// all that is there in any frame, so that lengths mean the same from first to last.
 ///
-/// The answer of a frame depends on that frame alone, but for receivers that were left as they were
-/// because nothing that moved can change them by more than the tolerance (FrameReport::bound). What
+/// The answer of a frame depends on that frame alone: bodies that together cover no more of a
+/// receiver's hemisphere than the tolerance are not looked at (FrameReport::bound), wherever they
+/// were before, so receivers that nothing nears keep their bytes and errors do not add up. What
 /// moved away and back gives the first frame's bytes. Equal input gives equal bytes, whatever the
 /// number of threads.
+///
+/// Masks ask receivers in the space of their own body, where the body's own tree stands still: its
+/// masks are found once and kept (some 840 bytes a receiver and distance limit, a gigabyte at
+/// most), and in a frame only the other bodies are drawn. Receivers on bodies that are deformed are
+/// answered anew.
 ///
 /// Related work: Bunnell. Dynamic Ambient Occlusion and Indirect Lighting. GPU Gems 2, ch. 14.
 /// 2005.
@@ -75,8 +81,9 @@ private:
 };
 
 struct MovingSettings : SolveSettings {
-    /// What a moved body may change at a receiver that is left as it was: a ball of radius b at a
-    /// distance d covers at most (b / d)^2 of a cosine-weighted hemisphere. >= 0.
+    /// What the other bodies that a receiver does not look at may cover together: a ball of radius
+    /// b at a distance d covers at most (b / d)^2 of a cosine-weighted hemisphere. >= 0; 0: all
+    /// that reach over the horizon are looked at. Masks alone; others answer all receivers.
     float tolerance = 0.002f;
 };
 
@@ -87,7 +94,8 @@ struct FrameReport {
     double solve = 0.0;                   ///< seconds
     std::uint64_t solved = 0;             ///< receivers that were answered anew
     std::optional<double> residual = {};  ///< disks: as in Solution
-    float bound = 0.0f;  ///< no receiver that was left is off by more, besides the engine's error
+    float bound = 0.0f;  ///< what is not looked at covers at most: no receiver is off by more,
+                         ///< besides the engine's error
 };
 
 /// Receivers with a memory.

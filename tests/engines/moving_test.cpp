@@ -378,7 +378,11 @@ TEST(Moving, CancelledInAFrameTheNextIsWhole)
     const Stage stage = ball_over_hills();
     MovingScene scene(stage.geometry, stage.body_of_triangle);
     MovingReceivers receivers = stage.receivers_of(scene, {});
-    EXPECT_THROW(receivers.solve([](double) { return false; }), Cancelled);
+    const auto stop = [](double) { return false; };
+    EXPECT_THROW(receivers.solve(stop), Cancelled);
+    receivers.solve();
+    scene.place(1, turned(0.3, {0, 0, 1}, {0.02, 0.0, 0.0}));
+    EXPECT_THROW(receivers.solve(stop), Cancelled);
     receivers.solve();
     MovingReceivers others = stage.receivers_of(scene, {});
     others.solve();
