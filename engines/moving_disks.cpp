@@ -153,8 +153,8 @@ private:
         forest_.place(body, placement);
     }
 
-    /// Built anew: that takes a twentieth of what solving does, and a refitted tree would not be
-    /// the better one.
+    /// Built anew: that takes a fortieth of the time of solving (2.8 ms of 114 at 22,000 vertices),
+    /// and a refitted tree would be the worse one.
     void deform(std::uint32_t body, const std::vector<glm::vec3>& positions)
     {
         DiskMesh mesh = meshes_[body];
