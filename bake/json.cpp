@@ -216,6 +216,11 @@ Json json_of(const BatchEntry& entry)
     json["texels"] = report.texels ? json_of(report, *report.texels) : Json();
     json["points"] = report.points ? json_of(*report.points) : Json();
     json["subdivision"] = report.subdivision ? json_of(report, *report.subdivision) : Json();
+    if (const auto& motion = report.motion)
+        json["motion"] = {{"pose", motion->pose},     {"place", motion->place},
+                          {"tree", seconds.tree},     {"solve", seconds.solve},
+                          {"fit", seconds.fit},       {"write", seconds.write},
+                          {"solved", motion->solved}, {"bound", motion->bound}};
     if (const auto& part = report.settings.share)
         json["part"] = {{"share", part->share.index + 1},
                         {"shares", part->share.count},
