@@ -15,20 +15,6 @@
 namespace surfelao {
 namespace {
 
-/// The corners of a box, as something that has a lowest point.
-Geometry corners_of(const Box& box, const Frame& frame)
-{
-    Geometry corners;
-    corners.frame = frame;
-    for (std::uint32_t i = 0; i < 8; ++i) {
-        const glm::dvec3 share(i & 1, i >> 1 & 1, i >> 2);
-        corners.positions.emplace_back((glm::mix(box.low, box.high, share) - frame.centre) /
-                                       frame.diagonal);
-        corners.triangles.emplace_back(i, i, i);
-    }
-    return corners;
-}
-
 class FrameBaker {
 public:
     FrameBaker(std::span<const BakeSettings> frames, const StageProgress& progress)
@@ -40,10 +26,8 @@ public:
     {
         settings_.frame = world_.frame();
         settings_.engine.definition =
-            definition_of(settings_.max_distance, settings_.kernel, world_.frame());
-        const Geometry corners = corners_of(world_.box(), world_.frame());
-        settings_.engine.definition.ground = ground_of(
-            settings_.ground, {corners}, largest_offset_of(settings_.target, world_.frame()));
+            world_.definition_for(settings_.max_distance, settings_.kernel, settings_.ground,
+                                  largest_offset_of(settings_.target, world_.frame()));
     }
 
     /// As the mark of a frame's file has them.

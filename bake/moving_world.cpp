@@ -82,6 +82,76 @@ void follow_triangles(const std::vector<glm::vec3>& made_positions,
     }
 }
 
+/// Brings a scene that is `rest` but for its poses to these.
+void move_scene(const Scene& rest, const Motion& motion, const std::vector<PartPose>& poses,
+                Scene& scene)
+{
+    for (std::size_t p = 0; p < poses.size(); ++p) {
+        if (motion.bodies()[p] == 0)
+            continue;
+        const Part& part = rest.parts[p];
+        const PartPose& pose = poses[p];
+        const glm::dmat3 linear(pose.from_rest);
+        for (std::uint32_t i = 0; i < part.vertex_count; ++i) {
+            const std::uint32_t v = part.first_vertex + i;
+            scene.positions[v] = pose.positions.empty() ? moved(pose.from_rest, rest.positions[v])
+                                                        : pose.positions[i];
+            if (!scene.normals.empty())
+                scene.normals.values[v] = pose.normals.empty()
+                                              ? moved_normal(linear, rest.normals.values[v])
+                                              : pose.normals[i];
+        }
+        const bool is_turned = glm::determinant(linear) < 0.0;
+        for (std::uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count;
+             ++t) {
+            scene.triangles[t] = rest.triangles[t];
+            if (is_turned)
+                std::swap(scene.triangles[t].y, scene.triangles[t].z);
+        }
+    }
+}
+
+/// What is there of a scene that stands in these poses.
+void include(const Scene& scene, const std::vector<PartPose>& poses,
+             const std::vector<bool>& left_out, Box& box)
+{
+    for (std::size_t p = 0; p < scene.parts.size(); ++p) {
+        if (poses[p].is_gone)
+            continue;
+        const Part& part = scene.parts[p];
+        for (std::uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count;
+             ++t) {
+            if (!left_out.empty() && left_out[t])
+                continue;
+            for (int corner = 0; corner < 3; ++corner)
+                box.include(scene.positions[scene.triangles[t][corner]]);
+        }
+    }
+}
+
+/// The file, without a word of its animation.
+Scene read_rest(const std::filesystem::path& input, const ReadOptions& reading)
+{
+    ReadOptions at_rest = reading;
+    at_rest.moment.reset();
+    at_rest.is_played = true;
+    return read_scene(input, at_rest);
+}
+
+/// The corners of a box, as something that has a lowest point.
+Geometry corners_of(const Box& box, const Frame& frame)
+{
+    Geometry corners;
+    corners.frame = frame;
+    for (std::uint32_t i = 0; i < 8; ++i) {
+        const glm::dvec3 share(i & 1, i >> 1 & 1, i >> 2);
+        corners.positions.emplace_back((glm::mix(box.low, box.high, share) - frame.centre) /
+                                       frame.diagonal);
+        corners.triangles.emplace_back(i, i, i);
+    }
+    return corners;
+}
+
 glm::dvec3 in_triangle(const std::vector<glm::dvec3>& positions, const glm::uvec3& t,
                        const glm::dvec2& at)
 {
@@ -104,13 +174,12 @@ MovingWorld::MovingWorld(const std::filesystem::path& input, std::span<const dou
                          const ReadOptions& reading)
 {
     require(!seconds.empty(), "a sequence has one moment at least");
-    ReadOptions at_rest = reading;
-    at_rest.moment.reset();
-    rest_ = read_scene(input, at_rest);
+    rest_ = read_rest(input, reading);
+    normals_ = target.normals;
     motion_ = std::make_unique<Motion>(rest_, reading.moment.value_or(Moment{}).animation);
     std::vector<Scene> others;
     for (const std::filesystem::path& other : parts.occluders)
-        others.push_back(read_scene(other, at_rest));
+        others.push_back(read_rest(other, reading));
 
     std::vector<Roles> roles = roles_of({&rest_, 1}, others, parts);
     std::vector<std::string> notes;
@@ -144,6 +213,23 @@ MovingWorld::MovingWorld(const std::filesystem::path& input, std::span<const dou
     poses_ = {};
 }
 
+Box box_of_moments(const std::filesystem::path& input, std::span<const Moment> moments,
+                   const PartChoice& choice, const ReadOptions& reading)
+{
+    const Scene rest = read_rest(input, reading);
+    const Motion motion(rest, reading.moment.value_or(Moment{}).animation);
+    const std::vector<bool> left_out =
+        left_out_of(roles_of({&rest, 1}, {}, choice).front(), rest.triangles.size());
+    Scene scene = rest;
+    Box box;
+    for (const Moment& moment : moments) {
+        const std::vector<PartPose> poses = motion.at(moment.seconds);
+        move_scene(rest, motion, poses, scene);
+        include(scene, poses, left_out, box);
+    }
+    return box;
+}
+
 /// Finds the box, and for each body the pose in which it is made and whether it is deformed.
 void MovingWorld::scan(std::span<const double> seconds, const std::vector<bool>& left_out)
 {
@@ -159,9 +245,9 @@ void MovingWorld::scan(std::span<const double> seconds, const std::vector<bool>&
     std::vector<bool> is_made(rest_.parts.size(), false);
     for (const double moment : seconds) {
         std::vector<PartPose> poses = motion_->at(moment);
-        move_scene(poses);
+        move_scene(rest_, *motion_, poses, scene_);
         poses_ = std::move(poses);
-        add_to_box(left_out);
+        include(scene_, poses_, left_out, box_);
         for (std::size_t p = 0; p < rest_.parts.size(); ++p) {
             const Part& part = rest_.parts[p];
             Body& body = bodies_[motion_->bodies()[p]];
@@ -182,22 +268,6 @@ void MovingWorld::scan(std::span<const double> seconds, const std::vector<bool>&
             copy(scene_.positions, made_);
             if (!made_normals_.empty())
                 copy(scene_.normals.values, made_normals_);
-        }
-    }
-}
-
-void MovingWorld::add_to_box(const std::vector<bool>& left_out)
-{
-    for (std::size_t p = 0; p < rest_.parts.size(); ++p) {
-        if (poses_[p].is_gone)
-            continue;
-        const Part& part = rest_.parts[p];
-        for (std::uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count;
-             ++t) {
-            if (!left_out.empty() && left_out[t])
-                continue;
-            for (int corner = 0; corner < 3; ++corner)
-                box_.include(scene_.positions[rest_.triangles[t][corner]]);
         }
     }
 }
@@ -304,6 +374,81 @@ void MovingWorld::add_occluders(const Scene& scene, std::uint32_t body)
     body_of_triangle_.resize(occluders_.triangles.size(), body);
 }
 
+Definition MovingWorld::definition_for(const DistanceLimit& limit, Kernel kernel,
+                                       const std::optional<GroundPlane>& ground, float offset) const
+{
+    Definition definition = definition_of(limit, kernel, frame());
+    const Geometry corners = corners_of(box_, frame());
+    definition.ground = ground_of(ground, {corners}, offset);
+    return definition;
+}
+
+const MovingWorld::Body& MovingWorld::owner_of(std::size_t receiver) const
+{
+    const auto found = std::ranges::find_if(bodies_, [&](const Body& body) {
+        return body.target && receiver >= body.first_receiver &&
+               receiver - body.first_receiver < body.target->receivers().size();
+    });
+    SURFELAO_CHECK(found != bodies_.end());
+    return *found;
+}
+
+std::uint32_t MovingWorld::body_of(std::size_t receiver) const
+{
+    return static_cast<std::uint32_t>(&owner_of(receiver) - bodies_.data());
+}
+
+bool MovingWorld::has_normal(std::size_t receiver) const
+{
+    const Body& body = owner_of(receiver);
+    return body.target->receivers()[receiver - body.first_receiver].normal != glm::vec3(0.0f);
+}
+
+std::vector<std::vector<std::uint32_t>> MovingWorld::neighbours() const
+{
+    std::vector<std::vector<std::uint32_t>> all(receiver_count_);
+    for (const Body& body : bodies_) {
+        if (!body.target || body.target->samples() == nullptr)
+            continue;
+        const Geometry& geometry = body.mesh->geometry;
+        const std::vector<SurfacePoint>& points = body.target->samples()->points;
+        const std::span<const Receiver> receivers = body.target->receivers();
+        std::vector<std::vector<std::uint32_t>> at(geometry.positions.size());
+        const auto corner = [&](std::size_t point, int i) {
+            return geometry.welded[geometry.triangles[points[point].triangle][i]];
+        };
+        for (std::uint32_t point = 0; point < points.size(); ++point)
+            for (int i = 0; i < 3; ++i)
+                at[corner(point, i)].push_back(point);
+        for (std::size_t point = 0; point < points.size(); ++point) {
+            std::vector<std::uint32_t>& own = all[body.first_receiver + point];
+            for (int i = 0; i < 3; ++i)
+                for (const std::uint32_t other : at[corner(point, i)])
+                    if (are_smooth(receivers[point].normal, receivers[other].normal, normals_))
+                        own.push_back(static_cast<std::uint32_t>(body.first_receiver + other));
+            std::ranges::sort(own);
+            own.erase(std::unique(own.begin(), own.end()), own.end());
+        }
+    }
+    if (std::ranges::all_of(all, [](const auto& list) { return list.empty(); }))
+        all.clear();
+    return all;
+}
+
+std::vector<Receiver> MovingWorld::receivers_now() const
+{
+    std::vector<Receiver> receivers;
+    receivers.reserve(receiver_count_);
+    for (const Body& body : bodies_) {
+        if (!body.target)
+            continue;
+        for (const Receiver& receiver : body.target->receivers())
+            receivers.push_back(&body == bodies_.data() ? receiver
+                                                        : placed(receiver, body.placement));
+    }
+    return receivers;
+}
+
 std::uint64_t MovingWorld::triangle_count() const
 {
     std::uint64_t count = 0;
@@ -333,34 +478,6 @@ MovingReceivers MovingWorld::receivers_for(const MovingScene& scene,
     return MovingReceivers(scene, std::move(receivers), std::move(bodies), settings);
 }
 
-/// scene_ to these poses.
-void MovingWorld::move_scene(const std::vector<PartPose>& poses)
-{
-    for (std::size_t p = 0; p < poses.size(); ++p) {
-        if (motion_->bodies()[p] == 0)
-            continue;
-        Part& part = scene_.parts[p];
-        const PartPose& pose = poses[p];
-        const glm::dmat3 linear(pose.from_rest);
-        for (std::uint32_t i = 0; i < part.vertex_count; ++i) {
-            const std::uint32_t v = part.first_vertex + i;
-            scene_.positions[v] = pose.positions.empty() ? moved(pose.from_rest, rest_.positions[v])
-                                                         : pose.positions[i];
-            if (!scene_.normals.empty())
-                scene_.normals.values[v] = pose.normals.empty()
-                                               ? moved_normal(linear, rest_.normals.values[v])
-                                               : pose.normals[i];
-        }
-        const bool is_turned = glm::determinant(linear) < 0.0;
-        for (std::uint32_t t = part.first_triangle; t < part.first_triangle + part.triangle_count;
-             ++t) {
-            scene_.triangles[t] = rest_.triangles[t];
-            if (is_turned)
-                std::swap(scene_.triangles[t].y, scene_.triangles[t].z);
-        }
-    }
-}
-
 void MovingWorld::pose(double seconds)
 {
     std::vector<PartPose> poses = motion_->at(seconds);
@@ -370,7 +487,9 @@ void MovingWorld::pose(double seconds)
         if (!is_same_pose(poses[p], poses_[p]))
             bodies_[motion_->bodies()[p]].has_moved = true;
     }
-    move_scene(poses);
+    move_scene(rest_, *motion_, poses, scene_);
+    scene_.notes = rest_.notes;
+    scene_.notes.push_back("the pose is that of " + motion_->text_at(seconds));
     poses_ = std::move(poses);
     for (std::size_t number = 1; number < bodies_.size(); ++number) {
         Body& body = bodies_[number];

@@ -50,7 +50,6 @@ public:
                 const TargetSettings& target, const PartChoice& parts, const ReadOptions& reading);
 
     /// Of all moments together, without what is left out.
-    [[nodiscard]] const Box& box() const { return box_; }
     [[nodiscard]] const Frame& frame() const { return occluders_.frame; }
     [[nodiscard]] std::uint32_t body_count() const
     {
@@ -67,11 +66,24 @@ public:
                                                 const MovingSettings& settings) const;
     /// Receivers, body by body.
     [[nodiscard]] std::size_t receiver_count() const { return receiver_count_; }
+    [[nodiscard]] std::uint32_t body_of(std::size_t receiver) const;
+    [[nodiscard]] bool has_normal(std::size_t receiver) const;
+    /// Per receiver, those that stand on triangles which share a vertex with its own, itself too,
+    /// within half a crease; of the first pose. Empty for VertexValues::point. O(n).
+    [[nodiscard]] std::vector<std::vector<std::uint32_t>> neighbours() const;
+    /// Lengths in the frame; the ground lies below all that is there at any moment. offset: the
+    /// largest of the receivers.
+    [[nodiscard]] Definition definition_for(const DistanceLimit& limit, Kernel kernel,
+                                            const std::optional<GroundPlane>& ground,
+                                            float offset) const;
 
     /// Brings bodies and scene() there. One of the moments. O(n).
     void pose(double seconds);
     /// The scene as read_scene() gives it at the moment.
     [[nodiscard]] const Scene& scene() const { return scene_; }
+    /// The receivers where they stand then.
+    [[nodiscard]] std::vector<Receiver> receivers_now() const;
+    [[nodiscard]] const std::string& animation() const { return motion_->name(); }
     /// What pose() has moved. Each scene is placed after each pose.
     void place(MovingScene& scene, MovingReceivers& receivers) const;
 
@@ -113,16 +125,16 @@ private:
     };
 
     void scan(std::span<const double> seconds, const std::vector<bool>& left_out);
-    void add_to_box(const std::vector<bool>& left_out);
     void make_body(std::uint32_t number, const TargetSettings& target, const Roles& roles,
                    const std::vector<bool>& left_out);
     void add_occluders(const Scene& scene, std::uint32_t body);
-    void move_scene(const std::vector<PartPose>& poses);
     void deform(Body& body);
+    [[nodiscard]] const Body& owner_of(std::size_t receiver) const;
     [[nodiscard]] glm::vec3 in_unit_frame(const glm::dvec3& position) const;
     [[nodiscard]] std::pair<const Body*, std::uint32_t> find_triangle(std::uint32_t t) const;
 
     Scene rest_, scene_;
+    NormalSettings normals_;
     std::unique_ptr<Motion> motion_;
     Box box_;
     Geometry occluders_;
@@ -136,6 +148,12 @@ private:
     Offset offset_;
     std::size_t receiver_count_ = 0;
 };
+
+/// The box of all that is there at any of these moments: what moves is measured alike from first to
+/// last in its frame. Reads the file once. Throws as read_scene() and Motion.
+[[nodiscard]] Box box_of_moments(const std::filesystem::path& input,
+                                 std::span<const Moment> moments, const PartChoice& choice,
+                                 const ReadOptions& reading = {});
 
 /// Values at the vertices of a moving world.
 class MovingValues {

@@ -202,22 +202,6 @@ Mesh mesh_of(Scene scene, const NormalSettings& normals, const PartChoice& choic
             .meshes.front());
 }
 
-Box box_of_moments(const std::filesystem::path& input, std::span<const Moment> moments,
-                   const PartChoice& choice, const ReadOptions& reading)
-{
-    Box all;
-    for (const Moment& moment : moments) {
-        ReadOptions at = reading;
-        at.moment = moment;
-        const Scene scene = read_scene(input, at);
-        const std::vector<Roles> roles = roles_of({&scene, 1}, {}, choice);
-        const Box box = box_of(scene, left_out_of(roles.front(), scene.triangles.size()));
-        all.include(box.low);
-        all.include(box.high);
-    }
-    return all;
-}
-
 Mesh read_mesh(const std::filesystem::path& input, const NormalSettings& normals,
                const PartChoice& choice, const ReadOptions& reading)
 {

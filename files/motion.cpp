@@ -403,6 +403,11 @@ const std::string& Motion::name() const
     return impl_->name;
 }
 
+std::string Motion::text_at(double seconds) const
+{
+    return pose_text(impl_->animation, seconds);
+}
+
 double Motion::first_seconds() const
 {
     return impl_->first_seconds;

@@ -50,6 +50,8 @@ public:
 
     /// "Walk"; "1" where it has no name.
     [[nodiscard]] const std::string& name() const;
+    /// "animation 0 "Walk" at 1.5 s"
+    [[nodiscard]] std::string text_at(double seconds) const;
     [[nodiscard]] double first_seconds() const;  ///< of its first key
     [[nodiscard]] double last_seconds() const;   ///< of its last one
 
