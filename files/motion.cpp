@@ -360,8 +360,14 @@ struct Motion::Impl {
             const glm::dmat4& now = world[part.mover];
             const glm::dmat4& rest = world_at_rest[part.mover];
             poses[p].is_gone = leaves_nothing(now);
-            if (now != rest)
-                poses[p].from_rest = now * glm::inverse(rest);
+            if (now == rest)
+                continue;
+            poses[p].from_rest = now * glm::inverse(rest);
+            for (int i = 0; i < 16; ++i) {
+                if (!std::isfinite(poses[p].from_rest[i / 4][i % 4]))
+                    resolver.fail(numbered("node", part.mover),
+                                  "is too small at rest for its motion to be a finite one");
+            }
         }
         return poses;
     }
