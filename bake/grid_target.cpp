@@ -288,8 +288,8 @@ namespace {
 float inner_share_of(int cells)
 {
     const double last = cells - 1;
-    const double from_middle = 2.0 * std::round((kInnerShare + 1.0) / 2.0 * last) - last;
-    return static_cast<float>(from_middle / last);
+    const double cell = std::min(std::round((kInnerShare + 1.0) / 2.0 * last), last - 1.0);
+    return static_cast<float>(2.0 * cell / last - 1.0);
 }
 
 /// Of half the box, where the object takes `object` of it: at most half of what is left.

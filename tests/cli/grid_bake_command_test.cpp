@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class GridCommand : public testing::Test {
+class GridBakeCommand : public testing::Test {
 protected:
     void SetUp() override
     {
@@ -30,7 +30,7 @@ protected:
     TemporaryFolder folder_;
 };
 
-TEST_F(GridCommand, WritesAGridThatSaysHowItWasMade)
+TEST_F(GridBakeCommand, WritesAGridThatSaysHowItWasMade)
 {
     const Outcome outcome = bake({"-o", folder_ / "a.aogrid.exr", "--store", "sh", "--extent",
                                   "0.1", "--border", "rescale", "--uniform", "--json", "-"});
@@ -52,7 +52,7 @@ TEST_F(GridCommand, WritesAGridThatSaysHowItWasMade)
     EXPECT_EQ(made["error"]["rmse"], report["error"]["rmse"]);
 }
 
-TEST_F(GridCommand, FoldersGetAFileForEachObject)
+TEST_F(GridBakeCommand, FoldersGetAFileForEachObject)
 {
     const Outcome outcome = bake({folder_ / "b.obj", "-o", folder_ / "out/", "--check", "0"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -60,7 +60,7 @@ TEST_F(GridCommand, FoldersGetAFileForEachObject)
     EXPECT_GT(read_grid(folder_ / "out/b.aogrid.json").high.z, 3.0);
 }
 
-TEST_F(GridCommand, TheTextOfAnotherMakerIsKept)
+TEST_F(GridBakeCommand, TheTextOfAnotherMakerIsKept)
 {
     folder_.file("a.aogrid.json", "{\"mine\": 1}");
     const std::vector<std::string> arguments = {"-o", folder_ / "a.aogrid.png", "--check", "0"};
@@ -73,7 +73,7 @@ TEST_F(GridCommand, TheTextOfAnotherMakerIsKept)
     EXPECT_EQ(bake(arguments).code, 0);  // its own may be replaced
 }
 
-TEST_F(GridCommand, WrongUsageAndWrongNamesAreTold)
+TEST_F(GridBakeCommand, WrongUsageAndWrongNamesAreTold)
 {
     for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--size", "64"},
                                                   {"--error", "0.01"},
@@ -95,7 +95,7 @@ TEST_F(GridCommand, WrongUsageAndWrongNamesAreTold)
     EXPECT_NE(named.err.find("NAME.aogrid.exr"), std::string::npos) << named.err;
 }
 
-TEST_F(GridCommand, ComparesWhatCellsHold)
+TEST_F(GridBakeCommand, ComparesWhatCellsHold)
 {
     const Outcome outcome =
         surfelao::run(folder_.path(), {"compare", folder_ / "a.obj", "--at", "grid", "--resolution",
