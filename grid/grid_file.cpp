@@ -317,6 +317,8 @@ AoGrid read_grid(const fs::path& path, GridNotes* notes)
     const fs::path name = text.text("/picture");
     if (name.empty() || name.has_parent_path())
         text.refuse("picture is no name of a file beside it");
+    if (!is_text && name != path.filename())
+        text.refuse("is of " + name.string() + ", not of " + path.filename().string());
     const fs::path picture = is_text ? text_path.parent_path() / name : path;
     const Map sheet = read_map(picture);
     const glm::uvec2 wanted = sheet_size(grid);

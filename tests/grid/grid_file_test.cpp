@@ -108,6 +108,15 @@ TEST(GridFile, IsReadByItsTextToo)
               read_grid(folder / "g.aogrid.png").values);
 }
 
+TEST(GridFile, ATextOfAnotherPictureIsRefused)
+{
+    const TemporaryFolder folder;
+    write_grid(folder / "g.aogrid.png", random_grid(GridStore::cone), MapDepth::half);
+    write_grid(folder / "g.aogrid.exr", random_grid(GridStore::cone), MapDepth::half);
+    EXPECT_THROW(static_cast<void>(read_grid(folder / "g.aogrid.png")), InputError);
+    EXPECT_EQ(read_grid(folder / "g.aogrid.exr").cells.x, 5);
+}
+
 TEST(GridFile, OtherNamesAndDepthsAreRefusedBeforeAnyWork)
 {
     const TemporaryFolder folder;
