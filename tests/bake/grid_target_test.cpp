@@ -16,18 +16,18 @@ namespace {
 
 using scenes::operator+;
 
-GridSettings settings_of(GridStore store, int resolution = 12)
+GridSettings grid_settings_for(GridStore store, int resolution = 12)
 {
     return {.resolution = resolution, .store = store};
 }
 
-GridBake baked(const Scene& scene, const GridSettings& settings, std::uint32_t check = 0)
+GridBake grid_baked(const Scene& scene, const GridSettings& settings, std::uint32_t check = 0)
 {
     return bake_grid(make_geometry(scene), settings, {}, check);
 }
 
 template <class Visit>
-void for_each_cell(const AoGrid& grid, const Visit& visit)
+void for_each_grid_cell(const AoGrid& grid, const Visit& visit)
 {
     for (int z = 0; z < grid.cells.z; ++z)
         for (int y = 0; y < grid.cells.y; ++y)
@@ -35,7 +35,7 @@ void for_each_cell(const AoGrid& grid, const Visit& visit)
                 visit(glm::ivec3(x, y, z));
 }
 
-const float* values_at(const AoGrid& grid, glm::ivec3 cell)
+const float* grid_values_at(const AoGrid& grid, glm::ivec3 cell)
 {
     return &grid.values[grid.index_of(cell) * channels_of(grid.store)];
 }
@@ -45,20 +45,21 @@ const float* values_at(const AoGrid& grid, glm::ivec3 cell)
 TEST(GridTarget, ABallHidesItsCap)
 {
     for (const GridStore store : {GridStore::cone, GridStore::sh}) {
-        const AoGrid grid = baked(scenes::sphere({0, 0, 0}, 1.0, 40), settings_of(store)).grid;
+        const AoGrid grid =
+            grid_baked(scenes::sphere({0, 0, 0}, 1.0, 40), grid_settings_for(store)).grid;
         double moments = 0.0, read = 0.0;
-        for_each_cell(grid, [&](glm::ivec3 cell) {
+        for_each_grid_cell(grid, [&](glm::ivec3 cell) {
             const glm::dvec3 place = place_of(grid, cell);
             const double distance = glm::length(place);
             if (distance < 1.3)
                 return;
             const double square = 1.0 / (distance * distance);
-            const glm::vec4 found = moments_of(store, values_at(grid, cell));
+            const glm::vec4 found = moments_of(store, grid_values_at(grid, cell));
             const glm::vec3 mean(-0.25 * square * place / distance);
             moments = std::max({moments, std::abs(found.w - 0.5 * (1.0 - std::sqrt(1.0 - square))),
                                 double{glm::distance(glm::vec3(found), mean)}});
             const float towards =
-                occlusion_of(store, values_at(grid, cell), glm::vec3(-place / distance));
+                occlusion_of(store, grid_values_at(grid, cell), glm::vec3(-place / distance));
             read = std::max(read, std::abs(towards - square));
         });
         EXPECT_LT(moments, 0.006) << name_of(store);
@@ -71,17 +72,17 @@ TEST(GridTarget, ASheetHidesHalfOfAll)
 {
     const Geometry sheet =
         make_geometry(scenes::sheet({-50, -50, 0}, {100, 0, 0}, {0, 100, 0}, 20));
-    GridSettings settings = settings_of(GridStore::sh, 13);
+    GridSettings settings = grid_settings_for(GridStore::sh, 13);
     const AoGrid grid = bake_grid(sheet, settings, {}, 0).grid;
     const glm::ivec3 above(6, 6, 7);
     const glm::dvec3 place = place_of(grid, above);
     ASSERT_GT(place.z, 0.0);
     ASSERT_LT(place.z, 1.0);
-    const glm::vec4 moments = moments_of(grid.store, values_at(grid, above));
+    const glm::vec4 moments = moments_of(grid.store, grid_values_at(grid, above));
     EXPECT_NEAR(moments.w, 0.5f, 0.02f);
     EXPECT_NEAR(-4.0f * moments.z, 1.0f, 0.03f);  // |m| = pi
-    EXPECT_NEAR(occlusion_of(grid.store, values_at(grid, above), {0, 0, -1}), 1.0f, 0.03f);
-    EXPECT_NEAR(occlusion_of(grid.store, values_at(grid, above), {0, 0, 1}), 0.0f, 0.03f);
+    EXPECT_NEAR(occlusion_of(grid.store, grid_values_at(grid, above), {0, 0, -1}), 1.0f, 0.03f);
+    EXPECT_NEAR(occlusion_of(grid.store, grid_values_at(grid, above), {0, 0, 1}), 0.0f, 0.03f);
 }
 
 TEST(GridTarget, TheBoxOfACubeReachesAsFarAsEpsSays)
@@ -127,12 +128,12 @@ TEST(GridTarget, ASheetHasABoxAndUniformCellsAreEven)
 TEST(GridTarget, CellsInABodyAreMovedOutOfIt)
 {
     const GridBake bake =
-        baked(scenes::sphere({0, 0, 0}, 1.0, 20), settings_of(GridStore::cone, 32));
+        grid_baked(scenes::sphere({0, 0, 0}, 1.0, 20), grid_settings_for(GridStore::cone, 32));
     std::uint64_t in_ball = 0;
     float most = 0.0f;
-    for_each_cell(bake.grid, [&](glm::ivec3 cell) {
+    for_each_grid_cell(bake.grid, [&](glm::ivec3 cell) {
         in_ball += glm::length(place_of(bake.grid, cell)) < 1.0;
-        most = std::max(most, values_at(bake.grid, cell)[3]);
+        most = std::max(most, grid_values_at(bake.grid, cell)[3]);
     });
     EXPECT_NEAR(static_cast<double>(bake.inside), static_cast<double>(in_ball),
                 0.01 * static_cast<double>(in_ball));
@@ -144,7 +145,8 @@ TEST(GridTarget, SameBytesForAnyNumberOfThreads)
     std::vector<std::vector<float>> values;
     for (const int threads : {1, 2}) {
         const ThreadLimit limit(threads);
-        values.push_back(baked(scenes::bumpy_sphere(8), settings_of(GridStore::sh)).grid.values);
+        values.push_back(
+            grid_baked(scenes::bumpy_sphere(8), grid_settings_for(GridStore::sh)).grid.values);
     }
     EXPECT_EQ(values[0], values[1]);
 }
@@ -154,15 +156,15 @@ TEST(GridTarget, SameBytesForAnyNumberOfThreads)
 TEST(GridTarget, ATurnedObjectHasATurnedGrid)
 {
     const Scene scene = scenes::box({-1, -2, -1}, {1, 2, 0.5}, 6);
-    const AoGrid grid = baked(scene, settings_of(GridStore::cone)).grid;
+    const AoGrid grid = grid_baked(scene, grid_settings_for(GridStore::cone)).grid;
     const AoGrid turned =
-        baked(scenes::moved(scene, [](glm::dvec3 p) { return glm::dvec3(-p.y, p.x, p.z); }),
-              settings_of(GridStore::cone))
+        grid_baked(scenes::moved(scene, [](glm::dvec3 p) { return glm::dvec3(-p.y, p.x, p.z); }),
+                   grid_settings_for(GridStore::cone))
             .grid;
     double square = 0.0;
-    for_each_cell(grid, [&](glm::ivec3 cell) {
-        const float* here = values_at(grid, cell);
-        const float* there = values_at(turned, {grid.cells.y - 1 - cell.y, cell.x, cell.z});
+    for_each_grid_cell(grid, [&](glm::ivec3 cell) {
+        const float* here = grid_values_at(grid, cell);
+        const float* there = grid_values_at(turned, {grid.cells.y - 1 - cell.y, cell.x, cell.z});
         const glm::vec4 expected(-here[1], here[0], here[2], here[3]);
         square += glm::dot(expected - glm::vec4(there[0], there[1], there[2], there[3]),
                            expected - glm::vec4(there[0], there[1], there[2], there[3]));
@@ -173,14 +175,14 @@ TEST(GridTarget, ATurnedObjectHasATurnedGrid)
 TEST(GridTarget, TheBordersLargestValueIsNothingAfterRescaling)
 {
     const Scene scene = scenes::box({-1, -1, -1}, {1, 1, 1}, 4);
-    GridSettings settings = settings_of(GridStore::cone);
+    GridSettings settings = grid_settings_for(GridStore::cone);
     settings.border = GridBorder::rescale;
-    const AoGrid grid = baked(scene, settings).grid;
+    const AoGrid grid = grid_baked(scene, settings).grid;
     float most = 0.0f, alpha_there = 0.0f;
-    for_each_cell(grid, [&](glm::ivec3 cell) {
+    for_each_grid_cell(grid, [&](glm::ivec3 cell) {
         const bool on_face =
             glm::any(glm::equal(cell, glm::ivec3(0))) || glm::any(glm::equal(cell, grid.cells - 1));
-        const float alpha = values_at(grid, cell)[3];
+        const float alpha = grid_values_at(grid, cell)[3];
         if (!on_face)
             return;
         alpha_there = std::max(alpha_there, alpha);
@@ -194,7 +196,8 @@ TEST(GridTarget, TheBordersLargestValueIsNothingAfterRescaling)
 
 TEST(GridTarget, StatesItsError)
 {
-    const GridBake bake = baked(scenes::bumpy_sphere(16), settings_of(GridStore::sh, 16), 400);
+    const GridBake bake =
+        grid_baked(scenes::bumpy_sphere(16), grid_settings_for(GridStore::sh, 16), 400);
     ASSERT_TRUE(bake.error.has_value());
     EXPECT_EQ(bake.error->points, 400u);
     EXPECT_GT(bake.error->rmse, 0.001);
@@ -209,8 +212,8 @@ TEST(GridTarget, StatesItsError)
 TEST(GridTarget, GridsOfSeveralBodiesMultiplyWhereTheyAreApart)
 {
     const Scene box = scenes::box({-1, -1, -1}, {1, 1, 1}, 6);
-    GridSettings settings = settings_of(GridStore::sh, 32);
-    const AoGrid grid = baked(box, settings).grid;
+    GridSettings settings = grid_settings_for(GridStore::sh, 32);
+    const AoGrid grid = grid_baked(box, settings).grid;
     const auto both = [&](double apart, glm::dvec3 place) {
         const float first = occlusion_at(grid, place, {0, 1, 0});
         const float second = occlusion_at(grid, place - glm::dvec3(apart, 0, 0), {0, 1, 0});
