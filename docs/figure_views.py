@@ -634,6 +634,7 @@ import mask_views  # noqa: E402, F401 - more views, in files of their own
 import cloud_views  # noqa: E402, F401
 import cube_views  # noqa: E402, F401
 import exact_views  # noqa: E402, F401
+import grid_views  # noqa: E402, F401
 import map_views  # noqa: E402, F401
 import moving_views  # noqa: E402, F401
 import screen_views  # noqa: E402, F401

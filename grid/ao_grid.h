@@ -46,7 +46,7 @@ enum class GridStore {
 /// What is done about the step where the box ends.
 enum class GridBorder {
     fade,     ///< what is read falls smoothly to 0 over the last kGridFade of the box
-    rescale,  ///< what is read becomes (V - border_value) / (1 - border_value), at least 0
+    rescale,  ///< alpha becomes (alpha - V_M) / (1 - V_M), at least 0; the rest as much less
 };
 /// "fade", "rescale"
 [[nodiscard]] std::string name_of(GridBorder border);
@@ -91,11 +91,18 @@ struct AoGrid {
 /// cells, border not applied. Beyond the box: zeros.
 void read_values(const AoGrid& grid, glm::dvec3 place, float* values);
 
+/// By what the values read at a place are multiplied for the border; alpha: what they tell of the
+/// whole sphere. fade: 3 t^2 - 2 t^3, t = (1 - |x|) / kGridFade in [0, 1], x in half the box along
+/// the axis where the place is farthest out. rescale: (alpha - V_M) / (1 - V_M) / alpha, at least
+/// 0. In [0, 1]; 0 beyond the box.
+[[nodiscard]] float border_weight(const AoGrid& grid, glm::dvec3 place, float alpha);
+
 /// The occlusion by the object at a place of its own space, with a normal of unit length: of the
 /// blended cone or harmonics, with the border. In [0, 1]; 0 beyond the box.
 [[nodiscard]] float occlusion_at(const AoGrid& grid, glm::dvec3 place, glm::vec3 normal);
 
-/// Of one cell's values, without a border.
+/// Of one cell's values, without a border: the cone's (cone.h), or
+/// sum A_l / pi c_lm Y_lm(normal), cut to [0, 1].
 [[nodiscard]] float occlusion_of(GridStore store, const float* values, glm::vec3 normal);
 
 }  // namespace surfelao

@@ -3,7 +3,8 @@
 
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
                                     readers stated demo viewers atlas maps map_frontier
-                                    clouds clouds_pcv subdivide pixels origin cubes screen moving;
+                                    clouds clouds_pcv subdivide pixels origin cubes screen moving
+                                    grids;
                                     default: all, about an hour on two quiet cores
 
 Every part is one file that says what command made it, of which version and commit, on what
@@ -504,6 +505,22 @@ def part_origin(build):
     return {**provenance(build, command), **figures}
 
 
+def part_grids(build):
+    """AO grids: errors of three objects, seconds against triangles, bytes."""
+    models = [(name, SHARED / file) for name, file in
+              (("bunny", "stanford_bunny.obj"), ("wingnut", "wingnut.obj"))]
+    if TRIAL:
+        models = [("bracket", ROOT / "data/bracket.obj")]
+    absent = [path.name for _, path in models if not path.exists()]
+    if absent:
+        raise Absent(f"no {', '.join(absent)} (SURFELAO_MODELS)")
+    program = build / "bin/grid_tables"
+    errors = json.loads(run(program, "errors", *[f"{name}={path}" for name, path in models],
+                            shown="grid_tables errors"))
+    return {**provenance(build, "grid_tables errors; grid_tables growth"), **errors,
+            **json.loads(run(program, "growth"))}
+
+
 def part_screen(build):
     """The screen-space passes alone; egl: a GPU where there is one."""
     return {**provenance(build, "screen_tables egl"),
@@ -517,7 +534,7 @@ PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scalin
          "map_frontier": part_map_frontier, "clouds": part_clouds,
          "clouds_pcv": part_clouds_pcv,
          "pixels": part_pixels, "origin": part_origin, "cubes": part_cubes,
-         "screen": part_screen, "moving": part_moving,
+         "screen": part_screen, "moving": part_moving, "grids": part_grids,
          "subdivide": part_subdivide}
 
 
