@@ -1,6 +1,5 @@
 #include "pixels/grid_world.h"
 
-#include "files/motion.h"
 #include "surfels/errors.h"
 #include "surfels/labels.h"
 
@@ -25,8 +24,8 @@ std::vector<std::vector<bool>> triangles_of(const Scene& scene, std::span<const 
     std::vector<std::vector<bool>> all;
     std::vector<bool> taken(scene.triangles.size(), false);
     for (const NodeGrid& grid : grids) {
-        std::vector<bool> found(1, false);
-        all.push_back(triangles_called(scene, {&grid.node, 1}, found));
+        std::vector<bool> found(1, !grid.triangles.empty());
+        all.push_back(found[0] ? grid.triangles : triangles_called(scene, {&grid.node, 1}, found));
         if (!found[0]) {
             std::string near;
             for (const std::string& name : names_near(scene.labels, grid.node))
@@ -94,17 +93,36 @@ glm::dmat4 into_frame(const Frame& frame)
     return matrix;
 }
 
-std::shared_ptr<const Geometry> rest_of(const Mesh& mesh, const ReadOptions& reading,
-                                        PartChoice choice, std::span<const NodeGrid> grids)
+/// A name for the triangles of all objects, which nothing in a file has.
+const std::string kWithGrids = "\x01 with grids";
+
+Label label_of(const std::vector<std::vector<bool>>& triangles)
 {
-    choice.receivers.clear();
-    for (const NodeGrid& grid : grids) {
-        choice.exclude.push_back(grid.node);
-        choice.receivers.push_back(grid.node);
+    Label label{LabelKind::object, kWithGrids, {}};
+    for (std::uint32_t t = 0; t < triangles.front().size(); ++t) {
+        if (std::ranges::none_of(triangles, [&](const auto& of_one) { return of_one[t]; }))
+            continue;
+        if (label.ranges.empty() || label.ranges.back().first + label.ranges.back().count != t)
+            label.ranges.push_back({t, 0});
+        ++label.ranges.back().count;
     }
-    const Mesh without =
-        mesh_of(mesh.scene, {.source = NormalSource::flat}, choice, reading, mesh.geometry.frame);
-    return without.occluders ? without.occluders : std::make_shared<const Geometry>();
+    return label;
+}
+
+/// All that occludes but the objects: as if they alone were baked, and did not occlude.
+std::shared_ptr<const Geometry> rest_of(const Mesh& mesh, const ReadOptions& reading,
+                                        PartChoice choice,
+                                        const std::vector<std::vector<bool>>& triangles)
+{
+    if (triangles.empty())
+        return std::make_shared<const Geometry>(mesh.occluding());
+    Scene scene = mesh.scene;
+    scene.labels.push_back(label_of(triangles));
+    choice.receivers = {kWithGrids};
+    choice.exclude.push_back(kWithGrids);
+    const Mesh objects = mesh_of(std::move(scene), {.source = NormalSource::flat}, choice, reading,
+                                 mesh.geometry.frame);
+    return objects.occluders;
 }
 
 void darken(Occlusion& value, float visibility)
@@ -137,15 +155,15 @@ std::vector<Occlusion> GridWorld::solve_rest(std::span<const Receiver> receivers
     return answers;
 }
 
-std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh, const std::filesystem::path& input,
-                                         const ReadOptions& reading, const PartChoice& choice,
-                                         std::span<const NodeGrid> grids)
+std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh, const ReadOptions& reading,
+                                         const PartChoice& choice, const GridSources& sources)
 {
+    const std::vector<NodeGrid>& grids = sources.grids;
     const Frame& frame = mesh.geometry.frame;
     const auto triangles = triangles_of(mesh.scene, grids);
     std::vector<PartPose> poses;
-    if (reading.moment)
-        poses = Motion(input, reading.moment->animation).at(reading.moment->seconds);
+    if (sources.motion && reading.moment)
+        poses = sources.motion->at(reading.moment->seconds);
     std::vector<PlacedGrid> objects;
     for (std::size_t i = 0; i < grids.size(); ++i) {
         const auto pose = pose_of(mesh.scene, frame, grids[i], triangles[i], poses);
@@ -157,7 +175,8 @@ std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh, const std::filesystem
                              " is sheared or scaled unevenly: its grid does not follow that");
         objects.push_back({grids[i].grid, *placement});
     }
-    return std::make_shared<GridWorld>(std::move(objects), rest_of(mesh, reading, choice, grids));
+    return std::make_shared<GridWorld>(std::move(objects),
+                                       rest_of(mesh, reading, choice, triangles));
 }
 
 std::vector<Occlusion> solve_with_grids(GridPass& pass, const GBuffer& drawing,

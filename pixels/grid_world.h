@@ -10,13 +10,13 @@
 #include "bake/occluders.h"
 #include "bake/world.h"
 #include "engines/engine.h"
+#include "files/motion.h"
 #include "pixels/grid_pass.h"
 #include "pixels/placed_grid.h"
 #include "surfels/progress.h"
 #include "surfels/surface.h"
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -30,6 +30,13 @@ struct NodeGrid {
     std::string node;  ///< of the scene, as a pattern of names (surfels/labels.h)
     /// Its units and axes are the world's of the scene file, as it stands without a moment.
     std::shared_ptr<const AoGrid> grid;
+    std::vector<bool> triangles = {};  ///< of the scene; empty: those that the name means
+};
+
+/// All grids of a scene file, and what moves them.
+struct GridSources {
+    std::vector<NodeGrid> grids;
+    std::shared_ptr<const Motion> motion;  ///< null: the scene is asked as it stands
 };
 
 class GridWorld {
@@ -59,16 +66,14 @@ private:
     Occluders occluders_;
 };
 
-/// Objects of a scene file at the moment that it was read at (reading.moment), from where their
-/// grids were made: the poses of their nodes. mesh: the scene then; choice: with which it was made.
+/// Objects of a scene at a moment, placed from where their grids were made: by the poses of their
+/// nodes. mesh: the scene at that moment; choice, reading: with which it was made.
 /// An object that is gone (a scale of zero) is left out. Throws InputError for a name that means
 /// nothing in the scene, for two objects that have triangles in common, for one that does not move
 /// as one piece or is sheared or unevenly scaled, and as read_scene().
-[[nodiscard]] std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh,
-                                                       const std::filesystem::path& input,
-                                                       const ReadOptions& reading,
+[[nodiscard]] std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh, const ReadOptions& reading,
                                                        const PartChoice& choice,
-                                                       std::span<const NodeGrid> grids);
+                                                       const GridSources& sources);
 
 /// Who answers at pixels with grids.
 struct GridPixels {

@@ -312,8 +312,7 @@ PixelComparison compare_pixels(const PixelCompareSettings& settings, const Stage
         if (grids == nullptr)
             continue;
         if (!world)
-            world = grid_world_of(mesh, settings.input, settings.reading, settings.parts,
-                                  settings.grids);
+            world = grid_world_of(mesh, settings.reading, settings.parts, settings.grids);
         grids->world = world;
     }
     return compare_pixels(mesh, with_grids, progress);

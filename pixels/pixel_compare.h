@@ -70,7 +70,7 @@ struct PixelCompareSettings {
     int rounds = 3;                      ///< >= 1
     bool use_cache = true;               ///< of references
     bool pictures = false;               ///< for html_of()
-    std::vector<NodeGrid> grids;         ///< of engines that are GridPixels
+    GridSources grids;                   ///< of engines that are GridPixels
     GlBackend backend = GlBackend::automatic;
 };
 
