@@ -70,14 +70,40 @@ Image checked_image(const std::string& name, const Read& read)
 
 }  // namespace
 
-Image read_image(const std::filesystem::path& path)
+namespace {
+
+void check_readable(const std::filesystem::path& path)
 {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored))
         throw InputError(path.string() + ": no such file");
     if (std::filesystem::is_directory(path, ignored))
         throw InputError(path.string() + ": is a folder, a picture was wanted");
+}
 
+}  // namespace
+
+Map read_map(const std::filesystem::path& path)
+{
+    check_readable(path);
+    Map map;
+    const std::string error = module().read_map(path.string(), map);
+    if (!error.empty())
+        throw InputError(path.string() + ": cannot be read as a picture: " + one_line(error));
+    const auto wrong =
+        std::ranges::find_if(map.values, [](float value) { return !std::isfinite(value); });
+    if (wrong != map.values.end()) {
+        const std::size_t texel =
+            static_cast<std::size_t>(wrong - map.values.begin()) / map.channels;
+        throw InputError(path.string() + ": pixel " + std::to_string(texel % map.width) + ", " +
+                         std::to_string(texel / map.width) + " is not finite");
+    }
+    return map;
+}
+
+Image read_image(const std::filesystem::path& path)
+{
+    check_readable(path);
     return checked_image(path.string(),
                          [&](Image& image) { return module().read(path.string(), image); });
 }

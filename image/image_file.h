@@ -39,10 +39,15 @@ void write_image(const std::filesystem::path& path, const Image& image);
 void check_map_output(const std::filesystem::path& path, MapDepth depth);
 
 /// Writes the numbers of a map as they are: tagged linear, without a gamma, those of 0 to 1 rounded
-/// to the nearest step of the depth. One channel is grey, three are RGB. mark: who made the file,
+/// to the nearest step of the depth. One channel is grey, three are RGB, four have an alpha that is
+/// a number as the others. mark: who made the file,
 /// and how (files/maker_mark.h), as its description. As write_image() else.
 void write_map(const std::filesystem::path& path, const Map& map, MapDepth depth,
                const std::string& mark = {});
+
+/// The numbers of a picture as they are: as many channels as the file has, whole numbers as shares
+/// of their largest, nothing decoded, alpha not multiplied in. As read_image() else.
+[[nodiscard]] Map read_map(const std::filesystem::path& path);
 
 /// The description of a picture: the mark of one of ours. Empty where there is none, or no picture.
 [[nodiscard]] std::string read_description(const std::filesystem::path& path);

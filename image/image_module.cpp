@@ -15,6 +15,17 @@ namespace {
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;  // 4 GiB as floats: 23,000 x 11,500
 constexpr int kJpegQuality = 95;
 
+/// Why a picture of such a size is not read; empty where it is.
+std::string fault_of_size(const OIIO::ImageSpec& spec)
+{
+    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
+        return "it holds no pixels";
+    if (std::int64_t{spec.width} * spec.height > kMaxPixels)
+        return "it has " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
+               " pixels, more than 2^28";
+    return {};
+}
+
 /// From the file, or from `memory` in the format that `path` has.
 std::string read(const std::string& path, Image& image, OIIO::Filesystem::IOProxy* memory = nullptr)
 {
@@ -24,11 +35,8 @@ std::string read(const std::string& path, Image& image, OIIO::Filesystem::IOProx
     if (!input)
         return OIIO::geterror();
     const OIIO::ImageSpec spec = input->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
-        return "it holds no pixels";
-    if (std::int64_t{spec.width} * spec.height > kMaxPixels)
-        return "it has " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-               " pixels, more than 2^28";
+    if (std::string fault = fault_of_size(spec); !fault.empty())
+        return fault;
 
     const int channels = std::min(spec.nchannels, 4);
     Image result(spec.width, spec.height, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
@@ -105,6 +113,7 @@ std::string write_map(const std::string& path, const Map& map, MapDepth depth,
     OIIO::ImageSpec spec(static_cast<int>(map.width), static_cast<int>(map.height),
                          static_cast<int>(map.channels), type);
     spec.attribute("oiio:ColorSpace", "Linear");
+    spec.attribute("oiio:UnassociatedAlpha", 1);  // a fourth number is multiplied into none
     if (!description.empty())
         spec.attribute("ImageDescription", description);
     if (memory)
@@ -112,6 +121,26 @@ std::string write_map(const std::string& path, const Map& map, MapDepth depth,
     if (!output->open(path, spec) ||
         !output->write_image(OIIO::TypeDesc::FLOAT, map.values.data()) || !output->close())
         return output->geterror();
+    return {};
+}
+
+std::string read_map(const std::string& path, Map& map)
+{
+    OIIO::ImageSpec wishes;
+    wishes.attribute("oiio:UnassociatedAlpha", 1);
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes);
+    if (!input)
+        return OIIO::geterror();
+    const OIIO::ImageSpec spec = input->spec();
+    if (std::string fault = fault_of_size(spec); !fault.empty())
+        return fault;
+    if (spec.nchannels > 4)
+        return "it has " + std::to_string(spec.nchannels) + " channels, more than 4";
+    Map read(static_cast<std::uint32_t>(spec.width), static_cast<std::uint32_t>(spec.height),
+             static_cast<std::uint32_t>(spec.nchannels));
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, read.values.data()))
+        return input->geterror();
+    map = std::move(read);
     return {};
 }
 
@@ -163,6 +192,9 @@ surfelao_image_module()
            const std::string& description) {
             return surfelao::guarded(
                 [&] { return surfelao::write_map(path, map, depth, description); });
+        },
+        [](const std::string& path, surfelao::Map& map) {
+            return surfelao::guarded([&] { return surfelao::read_map(path, map); });
         },
         [](const std::string& path, std::string& description) {
             return surfelao::guarded([&] { return surfelao::read_description(path, description); });

@@ -21,6 +21,8 @@ struct ImageModule {
     /// The same for a map: its numbers as they are, and a description where it is not empty.
     std::string (*write_map)(const std::string& path, const Map& map, MapDepth depth,
                              const std::string& description);
+    /// Reads the numbers of `path` as they are; returns what went wrong.
+    std::string (*read_map)(const std::string& path, Map& map);
     /// What stands in the file's head as its description; returns what went wrong.
     std::string (*read_description)(const std::string& path, std::string& description);
     /// The same as the contents of a .png, into `bytes`.

@@ -12,6 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -433,6 +434,83 @@ std::vector<ClosestHit> closest_hits(const RayScene& scene, std::span<const Ray>
         }
     });
     return hits;
+}
+
+namespace {
+
+glm::vec3 nearest_of_triangle(glm::vec3 p, glm::vec3 a, glm::vec3 b, glm::vec3 c)
+{
+    const glm::vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+    const float d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
+    if (d1 <= 0.0f && d2 <= 0.0f)
+        return a;
+    const float d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
+    if (d3 >= 0.0f && d4 <= d3)
+        return b;
+    const float vc = d1 * d4 - d3 * d2;
+    if (vc <= 0.0f && d1 >= 0.0f && d3 <= 0.0f)
+        return a + d1 / (d1 - d3) * ab;
+    const float d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+    if (d6 >= 0.0f && d5 <= d6)
+        return c;
+    const float vb = d5 * d2 - d1 * d6;
+    if (vb <= 0.0f && d2 >= 0.0f && d6 <= 0.0f)
+        return a + d2 / (d2 - d6) * ac;
+    const float va = d3 * d6 - d5 * d4;
+    if (va <= 0.0f && d4 >= d3 && d5 >= d6)
+        return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+    return a + vb / (va + vb + vc) * ab + vc / (va + vb + vc) * ac;
+}
+
+/// What a point query carries with it.
+struct NearestQuery {
+    const Geometry& geometry;
+    glm::vec3 place;
+    NearestPlace found;
+};
+
+/// Looks at a triangle; whether the search may be narrowed.
+bool look_at_triangle(RTCPointQueryFunctionArguments* arguments)
+{
+    auto& query = *static_cast<NearestQuery*>(arguments->userPtr);
+    const glm::uvec3 t = query.geometry.triangles[arguments->primID];
+    const std::vector<glm::vec3>& at = query.geometry.positions;
+    const glm::vec3 position = nearest_of_triangle(query.place, at[t.x], at[t.y], at[t.z]);
+    const float distance = glm::distance(position, query.place);
+    constexpr float kAsNear = 1.0f + 1e-6f;
+    NearestPlace& best = query.found;
+    const bool is_first = best.triangle == ClosestHit::kNone;
+    if (!is_first && (distance > kAsNear * best.distance ||
+                      (kAsNear * distance >= best.distance && arguments->primID > best.triangle)))
+        return false;
+    best = {arguments->primID, position, distance};
+    if (!(kAsNear * distance < arguments->query->radius))
+        return false;
+    arguments->query->radius = kAsNear * distance;  // those as near are looked at too
+    return true;
+}
+
+}  // namespace
+
+std::vector<NearestPlace> nearest_places(const RayScene& scene, const Geometry& geometry,
+                                         std::span<const glm::vec3> places)
+{
+    std::vector<NearestPlace> found(places.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size(), 64), [&](const auto& some) {
+        for (std::size_t i = some.begin(); i < some.end(); ++i) {
+            NearestQuery nearest{geometry, places[i], {}};
+            RTCPointQuery query{};
+            query.x = places[i].x;
+            query.y = places[i].y;
+            query.z = places[i].z;
+            query.radius = std::numeric_limits<float>::infinity();
+            RTCPointQueryContext context;
+            rtcInitPointQueryContext(&context);
+            rtcPointQuery(scene.impl().scene, &query, &context, look_at_triangle, &nearest);
+            found[i] = nearest.found;
+        }
+    });
+    return found;
 }
 
 }  // namespace surfelao

@@ -1,0 +1,424 @@
+#include "bake/grid_target.h"
+
+#include "grid/cone.h"
+#include "reference/closest_hit.h"
+#include "surfels/errors.h"
+#include "surfels/number_text.h"
+#include "surfels/stopwatch.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <Eigen/Dense>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace surfelao {
+namespace {
+
+/// As many as a group of receivers holds (tree/receiver_groups.h).
+constexpr std::size_t kHemispheres = 16;
+
+/// Cells that are solved at once: a million receivers, 44 bytes each and what groups them.
+constexpr std::size_t kBandCells = std::size_t{1} << 16;
+
+/// The object's own box is so much larger than it, and takes this share of the cells.
+constexpr float kInnerRoom = 1.05f;
+constexpr float kInnerShare = 0.65f;
+
+/// An object counts as at least so thick beside its longest side: a sheet has a box too.
+constexpr double kLeastThickness = 0.01;
+
+/// How far out of the surface cells inside are moved, in diagonals.
+constexpr float kMovedOut = 2e-3f;
+
+/// To tell whether a place is inside.
+constexpr std::size_t kInsideRays = 64;
+
+/// Directions even over the sphere along a spiral.
+template <std::size_t count>
+std::array<glm::vec3, count> spiral_directions()
+{
+    std::array<glm::vec3, count> directions;
+    const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
+    for (std::size_t k = 0; k < count; ++k) {
+        const double turn = static_cast<double>(k);
+        const double z = 1.0 - (2.0 * turn + 1.0) / static_cast<double>(count);
+        const double r = std::sqrt(1.0 - z * z);
+        directions[k] = glm::vec3(r * std::cos(golden * turn), r * std::sin(golden * turn), z);
+    }
+    return directions;
+}
+
+/// From answers in the directions to harmonics.
+class SphereFit {
+public:
+    SphereFit()
+    {
+        Eigen::Matrix<double, kHemispheres, kHarmonics> answers;
+        for (std::size_t k = 0; k < kHemispheres; ++k) {
+            const Harmonics along = harmonics_along(directions[k]);
+            for (std::size_t c = 0; c < kHarmonics; ++c)
+                answers(static_cast<int>(k), static_cast<int>(c)) = cosine_weight(c) * along[c];
+        }
+        inverse_ = answers.completeOrthogonalDecomposition().pseudoInverse().cast<float>();
+    }
+
+    /// answers: kHemispheres. values: channels_of(store).
+    void fit(const Occlusion* answers, GridStore store, float* values) const
+    {
+        Harmonics found{};
+        for (std::size_t c = 0; c < kHarmonics; ++c)
+            for (std::size_t k = 0; k < kHemispheres; ++k)
+                found[c] +=
+                    inverse_(static_cast<int>(c), static_cast<int>(k)) * answers[k].occlusion;
+        if (store == GridStore::sh) {
+            std::ranges::copy(found, values);
+            return;
+        }
+        glm::vec4 moments = moments_of(GridStore::sh, found.data());
+        moments.w = std::clamp(moments.w, 0.0f, 1.0f);
+        for (int c = 0; c < 4; ++c)
+            values[c] = moments[c];
+    }
+
+    const std::array<glm::vec3, kHemispheres> directions = spiral_directions<kHemispheres>();
+
+private:
+    Eigen::Matrix<float, kHarmonics, kHemispheres> inverse_;
+};
+
+const SphereFit& sphere_fit()
+{
+    static const SphereFit fit;
+    return fit;
+}
+
+glm::vec3 in_frame(glm::dvec3 place, const Frame& frame)
+{
+    return glm::vec3((place - frame.centre) / frame.diagonal);
+}
+
+/// Solves cells, and keeps count.
+class GridSolver {
+public:
+    GridSolver(const Prepared& prepared, const EngineSettings& engine,
+               const StageProgress& progress, AoGrid& grid, GridBake& bake)
+        : prepared_(prepared), engine_(engine), progress_(progress), grid_(grid), bake_(bake)
+    {
+    }
+
+    /// places: of these cells, unit frame.
+    void solve_cells(std::string_view stage, std::span<const std::size_t> cells,
+                     std::span<const glm::vec3> places)
+    {
+        const std::size_t channels = channels_of(grid_.store);
+        const SphereFit& sphere = sphere_fit();
+        std::vector<Receiver> receivers;
+        for (std::size_t begin = 0; begin < cells.size(); begin += kBandCells) {
+            const std::size_t count = std::min(kBandCells, cells.size() - begin);
+            receivers.clear();
+            for (std::size_t i = begin; i < begin + count; ++i)
+                for (const glm::vec3 direction : sphere.directions)
+                    receivers.push_back({places[i], direction});
+            const auto in_stage = [&](double done) {
+                return progress_(stage,
+                                 (static_cast<double>(begin) + done * static_cast<double>(count)) /
+                                     static_cast<double>(cells.size()));
+            };
+            const Solution solution =
+                solve(prepared_, receivers, engine_, progress_ ? Progress(in_stage) : Progress());
+            bake_.residual = solution.residual;
+            bake_.receivers += receivers.size();
+            for (std::size_t i = 0; i < count; ++i)
+                sphere.fit(&solution.occlusion[i * kHemispheres], grid_.store,
+                           &grid_.values[cells[begin + i] * channels]);
+        }
+    }
+
+private:
+    const Prepared& prepared_;
+    const EngineSettings& engine_;
+    const StageProgress& progress_;
+    AoGrid& grid_;
+    GridBake& bake_;
+};
+
+/// All places of a grid, in the order of its cells.
+std::vector<glm::vec3> places_of_cells(const AoGrid& grid, const Frame& frame)
+{
+    std::vector<glm::vec3> places;
+    places.reserve(grid.cell_count());
+    for (int z = 0; z < grid.cells.z; ++z)
+        for (int y = 0; y < grid.cells.y; ++y)
+            for (int x = 0; x < grid.cells.x; ++x)
+                places.push_back(in_frame(place_of(grid, {x, y, z}), frame));
+    return places;
+}
+
+float alpha_of(const AoGrid& grid, std::size_t cell)
+{
+    return moments_of(grid.store, &grid.values[cell * channels_of(grid.store)]).w;
+}
+
+/// Cells inside of the object take what is seen from its surface.
+void move_cells_out(const Geometry& object, const RayScene& scene,
+                    std::span<const glm::vec3> places, GridSolver& solver, GridBake& bake)
+{
+    std::vector<std::size_t> suspects;
+    std::vector<glm::vec3> of_suspects;
+    for (std::size_t cell = 0; cell < places.size(); ++cell) {
+        if (alpha_of(bake.grid, cell) <= 0.5f)
+            continue;
+        suspects.push_back(cell);
+        of_suspects.push_back(places[cell]);
+    }
+    const std::vector<std::uint8_t> is_inside = inside_object(scene, of_suspects);
+    std::vector<std::size_t> inside;
+    std::vector<glm::vec3> from;
+    for (std::size_t s = 0; s < suspects.size(); ++s) {
+        if (is_inside[s] == 0)
+            continue;
+        inside.push_back(suspects[s]);
+        from.push_back(of_suspects[s]);
+    }
+    std::vector<glm::vec3> to;
+    for (const NearestPlace& nearest : nearest_places(scene, object, from)) {
+        const glm::vec3 way = nearest.position - from[to.size()];
+        const glm::uvec3 t = object.triangles[nearest.triangle];
+        const glm::vec3 face = glm::cross(object.positions[t.y] - object.positions[t.x],
+                                          object.positions[t.z] - object.positions[t.x]);
+        const bool is_away = nearest.distance > 1e-3f * kMovedOut;
+        to.push_back(nearest.position + kMovedOut * glm::normalize(is_away ? way : face));
+    }
+    bake.inside = inside.size();
+    solver.solve_cells("repair", inside, to);
+}
+
+float largest_on_faces(const AoGrid& grid)
+{
+    float largest = 0.0f;
+    for (int z = 0; z < grid.cells.z; ++z) {
+        for (int y = 0; y < grid.cells.y; ++y) {
+            for (int x = 0; x < grid.cells.x; ++x) {
+                const glm::ivec3 cell(x, y, z);
+                const bool is_face = glm::any(glm::equal(cell, glm::ivec3(0))) ||
+                                     glm::any(glm::equal(cell, grid.cells - 1));
+                if (is_face)
+                    largest = std::max(largest, alpha_of(grid, grid.index_of(cell)));
+            }
+        }
+    }
+    return std::min(largest, 0.99f);  // of an object that fills its box
+}
+
+/// A small generator with the same numbers everywhere (SplitMix64).
+class PlaceNumbers {
+public:
+    explicit PlaceNumbers(std::uint64_t seed) : state_(seed) {}
+
+    /// uniform in [-1, 1)
+    double next()
+    {
+        std::uint64_t z = state_ += 0x9E3779B97F4A7C15u;
+        z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
+        z = (z ^ z >> 27) * 0x94D049BB133111EBu;
+        return static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-52 - 1.0;
+    }
+    glm::dvec3 in_cube()
+    {
+        const double x = next(), y = next();
+        return {x, y, next()};
+    }
+    glm::vec3 direction()
+    {
+        const double z = next(), a = std::numbers::pi * next(), r = std::sqrt(1.0 - z * z);
+        return glm::normalize(glm::vec3(r * std::cos(a), r * std::sin(a), z));
+    }
+
+private:
+    std::uint64_t state_;
+};
+
+/// The error at random places about the object.
+StatedError stated_error_of(const Geometry& object, const RayScene& scene, const AoGrid& grid,
+                            const Definition& definition, std::uint32_t check,
+                            const Progress& progress)
+{
+    constexpr std::uint64_t kSeed = 0x6121D;
+    const std::vector<Receiver> places = places_about(object, grid, scene, check, kSeed);
+    const auto receivers_of = [&](std::span<const SurfacePoint> points) {
+        std::vector<Receiver> receivers;
+        for (const SurfacePoint& point : points)
+            receivers.push_back(places[point.triangle]);
+        return receivers;
+    };
+    const std::vector<double> even(places.size(), 1.0);
+    ErrorCheck judged(even, even, receivers_of, object, check);
+    const Shown shown = [&](const SurfacePoint& point) {
+        return occlusion_at(grid, object.frame, places[point.triangle]);
+    };
+    judged.trace(definition, shown, progress);
+    return judged.error_of(shown);
+}
+
+}  // namespace
+
+void check_grid(const GridSettings& settings)
+{
+    require(settings.resolution >= kLeastGrid && settings.resolution <= kMostGrid,
+            "the resolution of a grid must be between " + std::to_string(kLeastGrid) + " and " +
+                std::to_string(kMostGrid));
+    require(settings.extent > 0.0 && settings.extent <= kMostExtent,
+            "the extent of a grid must be above 0 and at most 0.5");
+    require(settings.depth != MapDepth::whole, "grids have 8 or 16 bits");
+}
+
+std::string text_of(const GridSettings& settings)
+{
+    std::string text = "at=grid resolution=" + std::to_string(settings.resolution) + " extent=";
+    append_shortest(text, settings.extent);
+    text += " store=" + name_of(settings.store) + " border=" + name_of(settings.border);
+    text += settings.uniform ? " uniform" : "";
+    return text + (settings.depth == MapDepth::byte ? " depth=8" : " depth=16");
+}
+
+AoGrid empty_grid(const Box& object, const GridSettings& settings)
+{
+    AoGrid grid;
+    grid.cells = glm::ivec3(settings.resolution);
+    grid.store = settings.store;
+    grid.border = settings.border;
+    grid.inner_share = kInnerShare;
+    const glm::dvec3 middle = 0.5 * (object.low + object.high);
+    glm::dvec3 half = 0.5 * (object.high - object.low);
+    const double longest = std::max({half.x, half.y, half.z, 1e-300});
+    half = glm::max(half, glm::dvec3(kLeastThickness * longest));
+    for (int axis = 0; axis < 3; ++axis) {
+        const double face = 4.0 * half[(axis + 1) % 3] * half[(axis + 2) % 3];
+        const double reach =
+            half[axis] + std::sqrt(face / (4.0 * std::numbers::pi * settings.extent));
+        grid.low[axis] = middle[axis] - reach;
+        grid.high[axis] = middle[axis] + reach;
+        grid.inner[axis] =
+            settings.uniform ? kInnerShare : kInnerRoom * static_cast<float>(half[axis] / reach);
+    }
+    return grid;
+}
+
+Box box_of_triangles(const Geometry& geometry)
+{
+    Box box;
+    for (const glm::uvec3 t : geometry.triangles)
+        for (int corner = 0; corner < 3; ++corner)
+            box.include(geometry.frame.centre +
+                        geometry.frame.diagonal * glm::dvec3(geometry.positions[t[corner]]));
+    return box;
+}
+
+std::vector<std::uint8_t> inside_object(const RayScene& scene, std::span<const glm::vec3> places)
+{
+    constexpr std::size_t kAtOnce = 4096;  // 8 MB of rays
+    static const auto directions = spiral_directions<kInsideRays>();
+    std::vector<std::uint8_t> is_inside(places.size(), 0);
+    std::vector<Ray> rays;
+    for (std::size_t begin = 0; begin < places.size(); begin += kAtOnce) {
+        const std::size_t end = std::min(begin + kAtOnce, places.size());
+        rays.clear();
+        for (std::size_t i = begin; i < end; ++i)
+            for (const glm::vec3 direction : directions)
+                rays.push_back({places[i], direction, std::numeric_limits<float>::infinity()});
+        const std::vector<ClosestHit> hits = closest_hits(scene, rays);
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto first =
+                hits.begin() + static_cast<std::ptrdiff_t>((i - begin) * kInsideRays);
+            const auto backs = std::count_if(first, first + kInsideRays, [](const ClosestHit& hit) {
+                return hit.triangle != ClosestHit::kNone && hit.is_back;
+            });
+            is_inside[i] = backs > static_cast<std::ptrdiff_t>(kInsideRays / 2) ? 1 : 0;
+        }
+    }
+    return is_inside;
+}
+
+std::vector<Receiver> places_about(const Geometry& object, const AoGrid& box, const RayScene& scene,
+                                   std::size_t count, std::uint64_t seed)
+{
+    const Box own = box_of_triangles(object);
+    PlaceNumbers numbers(seed);
+    std::vector<Receiver> found;
+    // an object that fills its box leaves no place outside
+    for (int round = 0; round < 100 && found.size() < count; ++round) {
+        std::vector<glm::vec3> places;
+        for (std::size_t i = 0; i < count; ++i) {
+            const bool is_near = i % 2 == 1;
+            const glm::dvec3 low = is_near ? own.low : box.low;
+            const glm::dvec3 high = is_near ? own.high : box.high;
+            const glm::dvec3 half = (is_near ? kNearShare : 1.0) * 0.5 * (high - low);
+            places.push_back(in_frame(0.5 * (low + high) + half * numbers.in_cube(), object.frame));
+        }
+        const std::vector<std::uint8_t> is_inside = inside_object(scene, places);
+        for (std::size_t i = 0; i < count && found.size() < count; ++i)
+            if (is_inside[i] == 0)
+                found.push_back({places[i], numbers.direction()});
+    }
+    return found;
+}
+
+float occlusion_at(const AoGrid& grid, const Frame& frame, const Receiver& receiver)
+{
+    return occlusion_at(grid, frame.centre + frame.diagonal * glm::dvec3(receiver.position),
+                        receiver.normal);
+}
+
+GridBake bake_grid(const Geometry& object, const GridSettings& settings,
+                   const EngineSettings& engine, std::uint32_t check, const StageProgress& progress)
+{
+    check_grid(settings);
+    check_settings(engine, engine);
+    if (object.triangles.empty())
+        throw InputError("an object without triangles hides nothing: there is no grid round it");
+    const auto enter = [&](std::string_view stage) {
+        if (progress && !progress(stage, 0.0))
+            throw Cancelled();
+    };
+    GridBake bake;
+    bake.engine = engine;
+    bake.grid = empty_grid(box_of_triangles(object), settings);
+    bake.grid.values.resize(bake.grid.cell_count() * channels_of(settings.store));
+    enter("build");
+    Stopwatch watch;
+    const Prepared prepared = prepare(object, engine);
+    const double prepared_s = watch.lap();
+    const RayScene scene(object, RayScene::Build::quick);
+    bake.seconds.surfels = prepared.seconds().surfels;
+    bake.seconds.tree = prepared_s - bake.seconds.surfels + watch.lap();
+    bake.surfels = prepared.surfel_count();
+
+    enter("solve");
+    const std::vector<glm::vec3> places = places_of_cells(bake.grid, object.frame);
+    std::vector<std::size_t> cells(places.size());
+    for (std::size_t i = 0; i < cells.size(); ++i)
+        cells[i] = i;
+    GridSolver solver(prepared, engine, progress, bake.grid, bake);
+    solver.solve_cells("solve", cells, places);
+    bake.seconds.solve = watch.lap();
+    enter("repair");
+    move_cells_out(object, scene, places, solver, bake);
+    bake.grid.border_value = largest_on_faces(bake.grid);
+    bake.seconds.repair = watch.lap();
+    if (check > 0) {
+        enter("check");
+        const auto in_stage = [&](double done) { return progress("check", done); };
+        bake.error = stated_error_of(object, scene, bake.grid, engine.definition, check,
+                                     progress ? Progress(in_stage) : Progress());
+        bake.seconds.check = watch.lap();
+    }
+    return bake;
+}
+
+}  // namespace surfelao
