@@ -56,7 +56,7 @@ bool is_screen_method(const std::string& name)
 
 std::vector<std::string> pixel_engine_names()
 {
-    std::vector<std::string> names = {"masks", "disks", "rays"};
+    std::vector<std::string> names = {"masks", "disks", "rays", "grid"};
     for (const ScreenMethod method : screen_methods())
         names.push_back(name_of(method));
     return names;

@@ -38,4 +38,11 @@ std::optional<Frame> common_frame_of(const RenderCommandOptions& options)
     return options.box ? std::optional(frame_of(*options.box)) : std::nullopt;
 }
 
+PixelEngine engine_at_pixels(const RenderCommandOptions& options)
+{
+    if (options.engine.engine == "grid")
+        return grid_pixels_of(options.grids, options.engine);
+    return pixel_engine_of(options.engine, options.pixels);
+}
+
 }  // namespace surfelao

@@ -74,19 +74,31 @@ float occlusion_at(const PlacedGrid& object, glm::vec3 position, glm::vec3 norma
     return occlusion_at(*object.grid, in_object(object, position), glm::vec3(turned));
 }
 
+std::vector<TakenLight> taken_at(std::span<const PlacedGrid> objects, GridMerge merge,
+                                 glm::vec3 position, glm::vec3 normal)
+{
+    std::vector<TakenLight> all;
+    glm::vec4 joined(0.0f);
+    for (const PlacedGrid& object : objects) {
+        const glm::vec4 moments = moments_at(object, position);
+        if (moments.w < kNothingHidden)
+            continue;
+        joined = merged(joined, moments);
+        if (merge == GridMerge::product)
+            all.push_back({occlusion_at(object, position, normal), moments});
+    }
+    if (merge == GridMerge::caps && joined.w >= kNothingHidden)
+        all.push_back({occlusion_by(cone_of(joined), normal), joined});
+    return all;
+}
+
 float visibility_at(std::span<const PlacedGrid> objects, GridMerge merge, glm::vec3 position,
                     glm::vec3 normal)
 {
-    if (merge == GridMerge::product) {
-        float visibility = 1.0f;
-        for (const PlacedGrid& object : objects)
-            visibility *= 1.0f - occlusion_at(object, position, normal);
-        return visibility;
-    }
-    glm::vec4 all(0.0f);
-    for (const PlacedGrid& object : objects)
-        all = merged(all, moments_at(object, position));
-    return 1.0f - occlusion_by(cone_of(all), normal);
+    float visibility = 1.0f;
+    for (const TakenLight& taken : taken_at(objects, merge, position, normal))
+        visibility *= 1.0f - taken.occlusion;
+    return visibility;
 }
 
 }  // namespace surfelao

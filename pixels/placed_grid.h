@@ -25,6 +25,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace surfelao {
 
@@ -49,6 +50,15 @@ struct PlacedGrid {
 
 /// The occlusion by one of them; normal: of unit length.
 [[nodiscard]] float occlusion_at(const PlacedGrid& object, glm::vec3 position, glm::vec3 normal);
+
+/// What one object, or all of them joined, takes of the light at a receiver.
+struct TakenLight {
+    float occlusion = 0.0f;
+    glm::vec4 moments{0.0f};  ///< from where: m / (4 pi) and alpha
+};
+/// The cones that a merge ends with: one of each object that hides anything, or the joint one.
+[[nodiscard]] std::vector<TakenLight> taken_at(std::span<const PlacedGrid> objects, GridMerge merge,
+                                               glm::vec3 position, glm::vec3 normal);
 
 /// The share of the light that all of them leave: the twin of GridPass.
 [[nodiscard]] float visibility_at(std::span<const PlacedGrid> objects, GridMerge merge,

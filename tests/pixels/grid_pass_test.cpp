@@ -95,7 +95,7 @@ TEST(GridPass, IsItsTwinAtEveryPixel)
                                              three_balls(store, border), merge, mean),
                           0.003f)
                     << name_of(store) << ' ' << name_of(border) << ' ' << name_of(merge);
-                EXPECT_GT(mean, 0.04);
+                EXPECT_GT(mean, 0.02);
             }
         }
     }
