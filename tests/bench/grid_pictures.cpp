@@ -1,14 +1,18 @@
 // grid_pictures: what pictures of objects with AO grids cost and how right they are.
 //
-//   grid_pictures         JSON
+//   grid_pictures ROBOT   JSON; ROBOT: data/robot.glb
 //
 // A box over the whole picture, in cones and harmonics, and over parts of it; objects on a floor,
-// whole frames of them. Times are medians, the device waited for. On software OpenGL.
+// whole frames of them; the floor under an object and two boxes against rays; the robot's walk.
+// Times are medians, the device waited for. On software OpenGL.
 
 #include "../pixels/sphere_grid.h"
+#include "files/scene_io.h"
 #include "gpu/g_buffer.h"
 #include "pixels/camera.h"
 #include "pixels/grid_pass.h"
+#include "pixels/grid_sources.h"
+#include "pixels/pixel_engine.h"
 #include "pixels/seen.h"
 #include "scenes.h"
 #include "surfels/stopwatch.h"
@@ -21,7 +25,9 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace surfelao {
@@ -29,6 +35,8 @@ namespace {
 
 constexpr int kRounds = 15;
 constexpr int kCells = 32;
+constexpr std::uint32_t kRays = 1024;
+constexpr PictureSize kSmall{240, 180};  // of errors
 
 double median_of(std::vector<double> seconds)
 {
@@ -146,7 +154,161 @@ void print_crowd(const GlContext& context, int count)
         1e3 * joined);
 }
 
-int run()
+/// RMSE, mean and largest difference of answers to rays.
+struct GridError {
+    double rmse = 0.0, bias = 0.0, max = 0.0;
+};
+
+GridError error_against_rays(std::span<const Occlusion> found, const Geometry& all,
+                             std::span<const Receiver> receivers)
+{
+    const EngineSettings rays{{.engine = Engine::rays}, {.rays = kRays}};
+    const std::vector<Occlusion> truth = solve(prepare(all, rays), receivers, rays).occlusion;
+    GridError error;
+    const auto count = static_cast<double>(found.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const double off = static_cast<double>(found[i].occlusion - truth[i].occlusion);
+        error.rmse += off * off / count;
+        error.bias += off / count;
+        error.max = std::max(error.max, std::abs(off));
+    }
+    error.rmse = std::sqrt(error.rmse);
+    return error;
+}
+
+/// Objects over a floor, each with a grid of its own.
+struct FloorScene {
+    FloorScene(const std::vector<Scene>& objects, const GridSettings& settings)
+    {
+        Scene all = scenes::sheet({-4, -4, 0}, {8, 0, 0}, {0, 8, 0}, 1);
+        for (const Scene& object : objects) {
+            const std::size_t first = all.triangles.size();
+            all += object;
+            sources.grids.push_back({"object",
+                                     std::make_shared<const AoGrid>(
+                                         bake_grid(make_geometry(object), settings, {}, 0).grid),
+                                     std::vector<bool>(first, false)});
+        }
+        for (std::size_t i = 0; i < objects.size(); ++i) {
+            std::vector<bool>& own = sources.grids[i].triangles;
+            own.resize(own.size() + objects[i].triangles.size(), true);
+            own.resize(all.triangles.size(), false);
+        }
+        mesh = make_mesh(std::move(all));
+        world = grid_world_of(mesh, {}, {}, sources);
+    }
+    /// Of the floor, seen from above; places from -half to half.
+    [[nodiscard]] GridError error(GridMerge merge, double half) const
+    {
+        constexpr int kSide = 100;
+        std::vector<Receiver> receivers;
+        for (int i = 0; i < kSide * kSide; ++i) {
+            const glm::dvec3 place(half * (2.0 * (i % kSide + 0.5) / kSide - 1.0),
+                                   half * (2.0 * (i / kSide + 0.5) / kSide - 1.0), 1e-4);
+            receivers.push_back(
+                {glm::vec3((place - mesh.geometry.frame.centre) / mesh.geometry.frame.diagonal),
+                 {0, 0, 1},
+                 1e-5f});
+        }
+        const GridPixels pixels{merge, {}, world};
+        return error_against_rays(solve_with_grids(pixels, receivers), mesh.geometry, receivers);
+    }
+
+    GridSources sources;
+    Mesh mesh;
+    std::shared_ptr<GridWorld> world;
+};
+
+void print_error(const GridError& error)
+{
+    std::printf("\"rmse\": %.5f, \"bias\": %.5f, \"max\": %.4f}", error.rmse, error.bias,
+                error.max);
+}
+
+void print_floors()
+{
+    const Scene ball = scenes::moved(scenes::bumpy_sphere(20),
+                                     [](glm::dvec3 p) { return 0.5 * p + glm::dvec3(0, 0, 0.65); });
+    const char* separator = "\"floors\": [\n  ";
+    for (const auto& [store, border, extent] : {std::tuple{GridStore::sh, GridBorder::fade, 0.03},
+                                                {GridStore::cone, GridBorder::fade, 0.03},
+                                                {GridStore::cone, GridBorder::rescale, 0.1}}) {
+        const FloorScene scene({ball}, {.extent = extent,
+                                        .uniform = border == GridBorder::rescale,
+                                        .store = store,
+                                        .border = border});
+        std::printf("%s{\"store\": \"%s\", \"border\": \"%s\", \"extent\": %.2f, ", separator,
+                    name_of(store).c_str(), name_of(border).c_str(), extent);
+        print_error(scene.error(GridMerge::product, 1.5));
+        separator = ",\n  ";
+    }
+    std::printf("],\n");
+}
+
+void print_pairs()
+{
+    const auto box = [](glm::dvec3 low, glm::dvec3 high) { return scenes::box(low, high, 4); };
+    const std::tuple<const char*, std::vector<Scene>, double> pairs[] = {
+        {"far apart",
+         {box({-1.9, -0.3, 0.1}, {-1.3, 0.3, 0.7}), box({1.3, -0.3, 0.1}, {1.9, 0.3, 0.7})},
+         2.2},
+        {"one above the other",
+         {box({-0.5, -0.5, 0.2}, {0.5, 0.5, 0.4}), box({-0.5, -0.5, 0.45}, {0.5, 0.5, 0.65})},
+         0.6},
+        {"side by side",
+         {box({-0.8, -0.2, 0.2}, {0.0, 0.2, 1.0}), box({0.0, -0.2, 0.2}, {0.8, 0.2, 1.0})},
+         0.4}};
+    const char* separator = "\"pairs\": [\n  ";
+    for (const auto& [name, objects, half] : pairs) {
+        const FloorScene scene(objects, {});
+        for (const GridMerge merge : {GridMerge::product, GridMerge::caps}) {
+            std::printf("%s{\"boxes\": \"%s\", \"merge\": \"%s\", ", separator, name,
+                        name_of(merge).c_str());
+            print_error(scene.error(merge, half));
+            separator = ",\n  ";
+        }
+    }
+    std::printf("],\n");
+}
+
+/// The walk: grids baked once, then frames of masks for the floor and a pass for each part.
+void print_robot(const GlContext& context, const char* file)
+{
+    constexpr PictureSize kPicture{800, 600};
+    const ReadOptions first{.moment = Moment{0.0, ""}};
+    Stopwatch watch;
+    const GridSources sources = bake_moving_grids(file, first, {}, {});
+    const double bake_s = watch.lap();
+    std::printf("\"robot\": {\"parts\": %zu, \"bake_s\": %.3f, \"frames\": [\n  ",
+                sources.grids.size(), bake_s);
+    GridPass pass(context);
+    const char* separator = "";
+    for (const double seconds : {0.0, 0.25, 0.5, 0.75}) {
+        const ReadOptions then{.moment = Moment{seconds, ""}};
+        const Mesh mesh = make_mesh(read_scene(file, then));
+        const auto world = grid_world_of(mesh, then, {}, sources);
+        const DrawnMesh drawn(context, mesh.geometry, mesh.surface);
+        Camera camera;
+        camera.eye = {0.5f, 0.25f, 0.7f};
+        const View view = view_of(camera, kPicture.width, kPicture.height);
+        GBuffer seen(context, kPicture.width, kPicture.height);
+        const Framebuffer target = pass.make_target(kPicture.width, kPicture.height);
+        const double see = seconds_of(context, [&] { seen.draw(drawn, view); });
+        const double passes = seconds_of(
+            context, [&] { pass.draw(seen, world->objects(), GridMerge::product, target); });
+        const PixelView pixels(context, mesh, drawn, view, kSmall);
+        const GridPixels settings{GridMerge::product, {}, world};
+        const GridError error = error_against_rays(answer(pixels, pass, settings, {}).values,
+                                                   mesh.geometry, pixels.seen().receivers);
+        std::printf("%s{\"seconds\": %.2f, \"see_ms\": %.2f, \"pass_ms\": %.2f, ", separator,
+                    seconds, 1e3 * see, 1e3 * passes);
+        print_error(error);
+        separator = ",\n  ";
+    }
+    std::printf("]}\n");
+}
+
+int run(const char* robot)
 {
     const GlContext context = GlContext::create(GlBackend::osmesa);
     std::printf("{\"renderer\": \"%s\",\n", context.info().renderer.c_str());
@@ -157,17 +319,25 @@ int run()
         std::printf(",\n  ");
         print_crowd(context, count);
     }
-    std::printf("]}\n");
+    std::printf("],\n");
+    print_floors();
+    print_pairs();
+    print_robot(context, robot);
+    std::printf("}\n");
     return 0;
 }
 
 }  // namespace
 }  // namespace surfelao
 
-int main()
+int main(int count, char** words)
 {
+    if (count != 2) {
+        std::fprintf(stderr, "usage: grid_pictures ROBOT\n");
+        return 2;
+    }
     try {
-        return surfelao::run();
+        return surfelao::run(words[1]);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "grid_pictures: %s\n", error.what());
         return 1;
