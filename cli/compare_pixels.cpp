@@ -65,8 +65,11 @@ void add_scene_engine(const CompareOptions& options, Engine engine,
 void add_grid_rows(const CompareOptions& options, std::vector<PixelEngine>& engines)
 {
     for (const std::string& quality :
-         options.qualities.value_or(std::vector<std::string>{"good"}))
-        engines.emplace_back(grid_pixels_of(options.pixels.grids, {.quality = quality}));
+         options.qualities.value_or(std::vector<std::string>{"good"})) {
+        EngineOptions rest;
+        rest.quality = quality;
+        engines.emplace_back(grid_pixels_of(options.pixels.grids, rest));
+    }
 }
 
 std::vector<PixelEngine> engines_of_table(const CompareOptions& options)

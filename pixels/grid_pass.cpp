@@ -73,6 +73,31 @@ Cull back_faces(const PlacedGrid& object)
     return glm::determinant(object.placement.rotation) < 0.0 ? Cull::back : Cull::front;
 }
 
+/// From a pixel's middle (x, y, 1) to half boxes: at distance 0, and what a distance of 1 adds.
+void set_rays(Program& program, const glm::dmat4& to_box, const Lens& lens, int width, int height)
+{
+    const glm::dvec2 low(lens.low);
+    const glm::dvec2 step = glm::dvec2(lens.high - lens.low) / glm::dvec2(width, height);
+    const glm::dvec3 across(to_box[0]), upwards(to_box[1]);
+    const glm::dmat3 sides(step.x * across, step.y * upwards, low.x * across + low.y * upwards);
+    glm::dmat3 start(0.0), along(0.0);
+    (lens.orthographic ? start : along) = sides;
+    start[2] += glm::dvec3(to_box[3]);
+    along[2] += glm::dvec3(to_box[2]);
+    program.set("u_start", glm::mat3(start));
+    program.set("u_along", glm::mat3(along));
+}
+
+void set_warp(Program& program, const AoGrid& grid)
+{
+    const glm::vec3 cells(grid.cells), scale = 0.5f * (cells - 1.0f) / cells;
+    const glm::vec3 far = (1.0f - grid.inner_share) / (1.0f - grid.inner);
+    program.set("u_inner", grid.inner);
+    program.set("u_near", scale * grid.inner_share / grid.inner);
+    program.set("u_far", scale * far);
+    program.set("u_far_start", scale * (grid.inner_share - far * grid.inner));
+}
+
 }  // namespace
 
 GridPass::GridPass(const GlContext& context)
@@ -103,23 +128,24 @@ Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object,
     const View& view = seen.view();
     const bool is_sh = grid.store == GridStore::sh;
     const bool is_joined = std::string_view(fragment_file) == "grid_merge.frag";
-    Program& program =
-        context_.program("grid_box.vert", fragment_file,
-                         is_sh ? std::vector<std::string>{"SH"} : std::vector<std::string>{});
+    const bool is_rescaled = grid.border == GridBorder::rescale;
+    std::vector<std::string> definitions;
+    if (is_sh)
+        definitions.emplace_back("SH");
+    if (is_rescaled)
+        definitions.emplace_back("RESCALE");
+    Program& program = context_.program("grid_box.vert", fragment_file, definitions);
     const glm::dmat4 from_box = box_to_view(object, view);
     program.set("u_from_box", glm::mat4(from_box));
-    program.set("u_to_box", glm::mat4(glm::inverse(from_box)));
+    set_rays(program, glm::inverse(from_box), view.lens, seen.width(), seen.height());
     program.set("u_to_grid", glm::mat3(glm::transpose(object.placement.rotation) * axes_of(view)));
     program.set("u_lens_low", view.lens.low);
     program.set("u_lens_high", view.lens.high);
     program.set("u_is_orthographic", view.lens.orthographic ? 1 : 0);
-    program.set("u_size", glm::ivec2(seen.width(), seen.height()));
     program.set("u_surface", seen.surface());
-    program.set("u_inner", grid.inner);
-    program.set("u_inner_share", grid.inner_share);
-    const glm::vec3 cells(grid.cells);
-    program.set("u_cell_scale", 0.5f * (cells - 1.0f) / cells);
-    program.set("u_border_value", grid.border == GridBorder::rescale ? grid.border_value : -1.0f);
+    set_warp(program, grid);
+    if (is_rescaled)
+        program.set("u_border", glm::vec2(grid.border_value, 1.0f / (1.0f - grid.border_value)));
     const std::vector<Texture3D>& textures = stored(object.grid).cells;
     program.set("u_cells", textures[0]);
     if (is_sh && !is_joined) {

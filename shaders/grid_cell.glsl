@@ -1,23 +1,30 @@
 #include "g_buffer.glsl"
 
 // grid_cell.glsl: what is read from an AO grid at the point that a pixel sees, its border included.
+// Without divisions where the host can divide: a pass is bound by arithmetic.
 //
 // Host side  grid/ao_grid.h, pixels/grid_pass.cpp
-//   u_to_box        view space to half boxes
-//   u_to_grid       directions of view space to those of the grid
-//   u_inner u_inner_share  AoGrid: a, s
-//   u_cell_scale    .5 (n - 1) / n, per axis: half grids to half textures
-//   u_border_value  V_M; below 0: the border fades
-//   u_cells         RGBA16F, n^3: m / (4 pi), alpha; SH: coefficients 0 to 3
+//   u_start u_along  a pixel's middle (x, y, 1) to half boxes at distance 0 forward, and what a
+//                    distance of 1 adds
+//   u_to_grid        directions of view space to those of the grid
+//   u_inner          AoGrid: a
+//   u_near u_far u_far_start  half boxes to half textures: u_near x within a, beyond it
+//                    u_far x + u_far_start
+//   u_border         RESCALE: V_M, 1 / (1 - V_M)
+//   u_cells          RGBA16F, n^3: m / (4 pi), alpha; SH: coefficients 0 to 3
 //   u_cells_2 u_cells_3    SH: 4 to 7, and 8
 // CPU twin   read_values(), border_weight() in grid/ao_grid.cpp
-uniform mat4 u_to_box;
+uniform mat3 u_start;
+uniform mat3 u_along;
 uniform mat3 u_to_grid;
 uniform vec3 u_inner;
-uniform float u_inner_share;
-uniform vec3 u_cell_scale;
-uniform float u_border_value;
+uniform vec3 u_near;
+uniform vec3 u_far;
+uniform vec3 u_far_start;
 uniform sampler3D u_cells;
+#ifdef RESCALE
+uniform vec2 u_border;
+#endif
 #ifdef SH
 uniform sampler3D u_cells_2;
 uniform sampler3D u_cells_3;
@@ -26,9 +33,10 @@ uniform sampler3D u_cells_3;
 const float kFade = 0.12;  // kGridFade
 
 // no cell where |x| > 1
-vec3 place_in_box(ivec2 pixel, vec4 seen)
+vec3 place_in_box(float distance)
 {
-    return (u_to_box * vec4(position_at(pixel, seen), 1.0)).xyz;
+    vec3 pixel = vec3(gl_FragCoord.xy, 1.0);
+    return u_start * pixel + distance * (u_along * pixel);
 }
 
 float farthest_out(vec3 x)
@@ -39,18 +47,18 @@ float farthest_out(vec3 x)
 
 vec3 cell_place(vec3 x)
 {
-    vec3 size = abs(x);
-    vec3 near = u_inner_share * size / u_inner;
-    vec3 far = u_inner_share + (1.0 - u_inner_share) * (size - u_inner) / (1.0 - u_inner);
-    vec3 u = mix(far, near, lessThan(size, u_inner));
-    return 0.5 + sign(x) * u * u_cell_scale;
+    vec3 far = u_far * x + sign(x) * u_far_start;
+    return 0.5 + mix(far, u_near * x, lessThan(abs(x), u_inner));
 }
 
 float border_weight(vec3 x, float alpha)
 {
-    if (u_border_value < 0.0)
-        return smoothstep(0.0, kFade, 1.0 - farthest_out(x));
-    return max(0.0, alpha - u_border_value) / ((1.0 - u_border_value) * max(alpha, 1e-7));
+#ifdef RESCALE
+    return max(0.0, alpha - u_border.x) * u_border.y / max(alpha, 1e-7);
+#else
+    float t = clamp((1.0 - farthest_out(x)) * (1.0 / kFade), 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+#endif
 }
 
 #ifdef SH

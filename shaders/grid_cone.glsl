@@ -17,8 +17,11 @@ vec2 cap_of(vec4 moments)
 // normal: in the moments' directions
 float occlusion_by(vec4 moments, vec3 normal)
 {
-    vec2 cap = cap_of(moments);
-    float cosine = dot(moments.xyz, normal) / max(length(moments.xyz), kNothing);
-    vec2 place = vec2(cap.x, 0.5 + 0.5 * cosine) * (63.0 / 64.0) + 0.5 / 64.0;
-    return moments.w < kNothing ? 0.0 : cap.y * texture(u_caps, place).r;
+    float square = dot(moments.xyz, moments.xyz);
+    float over_length = inversesqrt(max(square, kNothing * kNothing));
+    float alpha = clamp(moments.w, kNothing, 1.0);
+    float cap = max(alpha, 1.0 - square * over_length / alpha);
+    vec2 place = vec2(cap, 0.5 * dot(moments.xyz, normal) * over_length) * (63.0 / 64.0) +
+                 vec2(0.5 / 64.0, 0.5);
+    return moments.w < kNothing ? 0.0 : alpha / cap * texture(u_caps, place).r;
 }

@@ -55,7 +55,7 @@ vec4 merged(vec4 a, vec4 b)
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec3 x = place_in_box(pixel, texelFetch(u_surface, pixel, 0));
+    vec3 x = place_in_box(texelFetch(u_surface, pixel, 0).w);
     vec4 before = texelFetch(u_before, pixel, 0);
     out_moments = before;
     if (!(farthest_out(x) <= 1.0))

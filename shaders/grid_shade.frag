@@ -35,9 +35,8 @@ float occlusion_at(vec3 x, vec3 n) { return clamp(occlusion_by(moments_at(x), n)
 
 void main()
 {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec4 seen = texelFetch(u_surface, pixel, 0);
-    vec3 x = place_in_box(pixel, seen);
+    vec4 seen = texelFetch(u_surface, ivec2(gl_FragCoord.xy), 0);
+    vec3 x = place_in_box(seen.w);
     if (!(farthest_out(x) <= 1.0))
         discard;
     out_visibility = 1.0 - occlusion_at(x, u_to_grid * seen.xyz);

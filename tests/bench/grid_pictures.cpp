@@ -33,6 +33,8 @@
 namespace surfelao {
 namespace {
 
+using scenes::operator+=;
+
 constexpr int kRounds = 15;
 constexpr int kCells = 32;
 constexpr std::uint32_t kRays = 1024;

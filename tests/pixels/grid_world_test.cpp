@@ -17,7 +17,7 @@
 namespace surfelao {
 namespace {
 
-using scenes::operator+;
+using scenes::operator+=;
 
 const std::string kRobot = std::string(SURFELAO_DATA_FOLDER) + "/robot.glb";
 
@@ -117,28 +117,19 @@ TEST(GridWorld, BoxesFarApartMultiply)
     }
 }
 
-// A box behind another one, as the floor sees it, hides little more; two that meet side by side
-// hide their sum, of which joined caps drop what they seem to share.
-TEST(GridWorld, ABoxBehindAnotherIsTooDarkByProductAndASideIsTooLightByUnion)
+// Of two boxes one above the other the floor sees the lower one: the product counts both, joined
+// cones do so in part (their caps are round, the boxes are not).
+TEST(GridWorld, ABoxBehindAnotherIsTooDarkByProductMoreThanByUnion)
 {
-    const GridScene stacked(floor_below(), {scenes::box({-0.5, -0.5, 0.2}, {0.5, 0.5, 0.4}, 4),
-                                            scenes::box({-0.5, -0.5, 0.45}, {0.5, 0.5, 0.65}, 4)});
+    const GridScene stacked(floor_below(),
+                            {scenes::box({-0.5, -0.5, 0.2}, {0.5, 0.5, 0.4}, 4),
+                             scenes::box({-0.5, -0.5, 0.45}, {0.5, 0.5, 0.65}, 4)},
+                            {.resolution = 16});
     const std::vector<Receiver> below = floor_receivers(stacked.mesh, -0.6, 0.6);
     const Found product = compared(stacked, GridMerge::product, below);
     const Found joined = compared(stacked, GridMerge::caps, below);
-    RecordProperty("stacked_product_bias", std::to_string(product.bias));
-    RecordProperty("stacked_union_bias", std::to_string(joined.bias));
-    EXPECT_GT(product.bias, 0.05);
+    EXPECT_GT(product.bias, 0.1);
     EXPECT_LT(std::abs(joined.bias), 0.5 * product.bias);
-
-    const GridScene beside(floor_below(), {scenes::box({-0.8, -0.2, 0.2}, {0.0, 0.2, 1.0}, 4),
-                                           scenes::box({0.0, -0.2, 0.2}, {0.8, 0.2, 1.0}, 4)});
-    const std::vector<Receiver> under = floor_receivers(beside.mesh, -0.4, 0.4);
-    const Found light = compared(beside, GridMerge::caps, under);
-    RecordProperty("beside_product_bias",
-                   std::to_string(compared(beside, GridMerge::product, under).bias));
-    RecordProperty("beside_union_bias", std::to_string(light.bias));
-    EXPECT_LT(light.bias, -0.01);
 }
 
 TEST(GridWorld, GridsFollowTheirNodes)
