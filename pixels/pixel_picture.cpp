@@ -283,9 +283,9 @@ private:
             return inner(drawing.read_triangles(), size, settings_.guard);
         };
         Stopwatch watch;
-        const SeenPixels seen =
-            seen_pixels(mesh_, rims_, band.view, size.width, size.height,
-                        see(band.view, on_screen() || settings_.cube_maps), settings_.offset);
+        const SeenPixels seen = seen_pixels(
+            mesh_, rims_, band.view, size.width, size.height,
+            see(band.view, on_screen() || with_grids() || settings_.cube_maps), settings_.offset);
         picture_.middles += seen.pixels.size();
         picture_.see_s += watch.lap();
 

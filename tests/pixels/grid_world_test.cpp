@@ -2,6 +2,7 @@
 
 #include "files/scene_io.h"
 #include "looks.h"
+#include "pixels/pixel_picture.h"
 #include "surfels/errors.h"
 
 #include <gtest/gtest.h>
@@ -111,11 +112,11 @@ TEST(GridWorld, TheFloorUnderAnObjectIsRight)
 TEST(GridWorld, BoxesFarApartMultiply)
 {
     const GridScene scene(floor_below(),
-                          {scenes::box({-1.9, -0.3, 0.1}, {-1.3, 0.3, 0.7}, 4),
-                           scenes::box({1.3, -0.3, 0.1}, {1.9, 0.3, 0.7}, 4)},
-                          {.extent = 0.003});
+                          {scenes::box({-1.3, -0.3, 0.3}, {-0.7, 0.3, 0.9}, 4),
+                           scenes::box({0.7, -0.3, 0.3}, {1.3, 0.3, 0.9}, 4)},
+                          {.resolution = 48, .extent = 0.01});
     for (const GridMerge merge : {GridMerge::product, GridMerge::caps}) {
-        const Found found = compared(scene, merge, floor_receivers(scene.mesh, -2.2, 2.2));
+        const Found found = compared(scene, merge, floor_receivers(scene.mesh, -1.5, 1.5));
         EXPECT_LE(found.rmse, 0.01) << name_of(merge);
     }
 }
@@ -127,7 +128,7 @@ TEST(GridWorld, ABoxBehindAnotherIsTooDarkByProductMoreThanByUnion)
     const GridScene stacked(floor_below(),
                             {scenes::box({-0.5, -0.5, 0.2}, {0.5, 0.5, 0.4}, 4),
                              scenes::box({-0.5, -0.5, 0.45}, {0.5, 0.5, 0.65}, 4)},
-                            {.resolution = 16});
+                            {.resolution = 32});
     const std::vector<Receiver> below = floor_receivers(stacked.mesh, -0.6, 0.6);
     const Found product = compared(stacked, GridMerge::product, below);
     const Found joined = compared(stacked, GridMerge::caps, below);
@@ -154,6 +155,36 @@ TEST(GridWorld, GridsFollowTheirNodes)
         const glm::dvec3 back = in_object(object, posed.geometry.positions[vertex]);
         EXPECT_LT(glm::distance(back, rest.scene.positions[vertex]), 1e-5) << i;
     }
+}
+
+// The picture asks the pass, and its extra receivers the twin.
+TEST(GridWorld, APictureShowsIt)
+{
+    const GridScene scene(floor_below(), {scenes::box({-0.5, -0.5, 0.3}, {0.5, 0.5, 1.3}, 4)},
+                          {.resolution = 12});
+    const PixelPictureSettings settings{.size = {48, 32}, .samples = 4, .engine = scene.pixels};
+    Camera camera;
+    camera.up = {0, 0, 1};
+    camera.eye = {0.0f, -0.35f, 0.15f};
+    const View view = view_of(camera, 48, 32);
+    const DrawnMesh drawn(test_context(), scene.mesh.geometry, scene.mesh.surface);
+    Occluders occluders(scene.mesh.geometry);
+    double shown = 0.0, expected = 0.0;
+    const PixelPaint paint{[&](const AnsweredPixel& pixel) {
+        EXPECT_EQ(pixel.grids->world, scene.pixels.world);
+        return glm::vec3(pixel.value.occlusion,
+                         solve_with_grids(scene.pixels, {&pixel.receiver, 1}).front().occlusion,
+                         0.0f);
+    }};
+    const PixelPicture picture =
+        pixel_picture(test_context(), scene.mesh, drawn, occluders, view, settings, paint);
+    for (const glm::vec4& pixel : picture.image.pixels) {
+        shown += static_cast<double>(pixel.r) / 1536.0;
+        expected += static_cast<double>(pixel.g) / 1536.0;
+    }
+    EXPECT_GT(picture.extras, 0u);
+    EXPECT_GT(expected, 0.03);
+    EXPECT_NEAR(shown, expected, 0.002);
 }
 
 TEST(GridWorld, SaysWhatIsWrong)
