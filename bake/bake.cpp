@@ -1,5 +1,6 @@
 #include "bake/bake.h"
 
+#include "bake/grid_job.h"
 #include "bake/notes.h"
 #include "bake/peak_memory.h"
 #include "bake/point_job.h"
@@ -9,6 +10,7 @@
 #include "files/maker_mark.h"
 #include "files/scene_io.h"
 #include "files/sidecars.h"
+#include "grid/grid_file.h"
 #include "image/image_file.h"
 #include "surfels/errors.h"
 #include "surfels/number_text.h"
@@ -166,6 +168,8 @@ void bake_at_vertices(const Job& job, BakeReport& report, const StageProgress& p
 std::vector<fs::path> files_beside(const BakeSettings& settings)
 {
     std::vector<fs::path> files;
+    if (settings.grid)
+        files.push_back(grid_text_path(settings.output));
     if (!settings.texels)
         return files;
     if (settings.texels->bent != BentSpace::none)
@@ -178,7 +182,9 @@ std::vector<fs::path> files_beside(const BakeSettings& settings)
 
 void check_before_work(const BakeSettings& settings, bool is_alone)
 {
-    if (settings.texels)
+    if (settings.grid)
+        check_grid_job(settings);
+    else if (settings.texels)
         check_texel_output(settings);
     else
         check_output(settings.input, settings.output);
@@ -242,7 +248,7 @@ BakeReport bake_one(const Job& read, const BakeSettings& settings, double read_s
     report.threads = thread_count();
     report.seconds.read = read_seconds;
     Stopwatch whole;
-    if (!settings.texels)
+    if (!settings.texels && !settings.grid)
         check_output(read.mesh->scene, settings.output);
     report.settings.engine.definition = definition_of(
         report.settings.max_distance, report.settings.kernel, read.mesh->geometry.frame);
@@ -253,7 +259,9 @@ BakeReport bake_one(const Job& read, const BakeSettings& settings, double read_s
     const Geometry& geometry = mesh.geometry;
     if (settings.share)
         report.settings.engine.share = settings.share->share;
-    if (report.settings.texels)
+    if (report.settings.grid)
+        bake_at_grid(mesh, report, progress);
+    else if (report.settings.texels)
         bake_texels(mesh, job.occluders, report, progress);
     else
         bake_at_vertices(job, report, progress);
@@ -281,9 +289,10 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     Scene scene = read_scene(settings.input, settings.reading);
     check_points(settings, scene);
     if (!scene.triangles.empty()) {
-        const Job job{std::make_shared<const Mesh>(mesh_of(std::move(scene),
-                                                           settings.target.normals, settings.parts,
-                                                           settings.reading, settings.frame))};
+        PartChoice parts = settings.parts;
+        parts.alone = settings.grid.has_value();
+        const Job job{std::make_shared<const Mesh>(mesh_of(
+            std::move(scene), settings.target.normals, parts, settings.reading, settings.frame))};
         return bake_one(job, settings, watch.lap(), progress);
     }
     if (settings.share)
@@ -381,6 +390,8 @@ std::string mark_of(const BakeSettings& settings)
     }
     if (settings.subdivide)
         add(" subdivide=", *settings.subdivide);
+    if (settings.grid)
+        return make_mark("bake", text + " " + text_of(*settings.grid));
     for (const fs::path& other : settings.beside)
         text += " beside=" + other.filename().string();
     if (const auto& texels = settings.texels) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "atlas/seams.h"
+#include "bake/grid_target.h"
 #include "bake/map_bake.h"
 #include "bake/part_file.h"
 #include "bake/point_target.h"
@@ -46,6 +47,7 @@ struct BakeSettings {
     /// check >= 1. Of `engine` only the instructions count.
     std::optional<double> error = {};
     std::optional<TexelSettings> texels = {};  ///< a map instead of values at vertices
+    std::optional<GridSettings> grid = {};     ///< an AO grid round the object instead
     /// Whether the input is a cloud of points, as the user says; empty: as it is.
     std::optional<bool> at_points = {};
     /// At vertices: the mesh is cut where what is seen bends by more (bake/subdivide.h); > 0.
@@ -71,6 +73,7 @@ struct BakeSeconds : VertexBakeSeconds {
     double charts = 0.0;  ///< texels: charts of our own
     double raster = 0.0;  ///< texels: which of them, and where each is asked
     double fill = 0.0;    ///< texels: those that nothing covers or nobody sees, and seams
+    double repair = 0.0;  ///< grids: cells inside of the object
     double write = 0.0;   ///< the file, and the notes meanwhile
     double total = 0.0;
 };
@@ -95,6 +98,14 @@ struct TexelReport {
     std::vector<std::filesystem::path> written;  ///< but the output where it is a mesh
 };
 
+struct GridReport {
+    AoGrid grid;               ///< without values
+    std::uint64_t inside = 0;  ///< cells that were moved out of the object
+    glm::dvec3 closest{0.0};   ///< how far the closest cells are apart along each axis, in the
+                               ///< file's units: thinner things leak light
+    std::uint64_t bytes = 0;   ///< of the cells, as they stand in the file
+};
+
 struct BakeReport {
     BakeSettings settings;
     std::uint64_t vertices = 0;
@@ -116,6 +127,7 @@ struct BakeReport {
     std::optional<Misfit> misfit;         ///< of the values at vertices, as displayed
     std::optional<StatedError> error;     ///< as displayed
     std::optional<TexelReport> texels;
+    std::optional<GridReport> grid;
     std::optional<PointReport> points;
     std::optional<SubdivisionReport> subdivision;
     std::vector<Trial> trials;       ///< of settings.error

@@ -2,6 +2,7 @@
 #include "bake/bake.h"
 #include "bake/compare.h"
 #include "bake/frontier.h"
+#include "bake/grid_job.h"
 #include "bake/info.h"
 #include "surfels/labels.h"
 #include "surfels/number_text.h"
@@ -159,6 +160,24 @@ Json json_of(const PartChoice& parts)
             {"transparent", name_of(parts.clear)}};
 }
 
+Json json_of(const BakeReport& report, const GridReport& told)
+{
+    const GridSettings& settings = *report.settings.grid;
+    const AoGrid& grid = told.grid;
+    const auto list = [](auto v) { return Json{v.x, v.y, v.z}; };
+    return {{"cells", list(grid.cells)},
+            {"box", {{"low", list(grid.low)}, {"high", list(grid.high)}}},
+            {"closest_cells", list(told.closest)},
+            {"extent", settings.extent},
+            {"uniform", settings.uniform},
+            {"store", name_of(grid.store)},
+            {"border", name_of(grid.border)},
+            {"border_value", grid.border_value},
+            {"inside", told.inside},
+            {"depth", settings.depth == MapDepth::byte ? 8 : 16},
+            {"bytes", told.bytes}};
+}
+
 Json json_of(const BakeReport& report, const SubdivisionReport& subdivision)
 {
     return {{"tolerance", *report.settings.subdivide},
@@ -203,8 +222,8 @@ Json json_of(const BatchEntry& entry)
         {"read", seconds.read},     {"points", seconds.points}, {"subdivide", seconds.subdivide},
         {"charts", seconds.charts}, {"raster", seconds.raster}, {"surfels", seconds.surfels},
         {"tree", seconds.tree},     {"solve", seconds.solve},   {"fit", seconds.fit},
-        {"fill", seconds.fill},     {"check", seconds.check},   {"write", seconds.write},
-        {"total", seconds.total}};
+        {"fill", seconds.fill},     {"repair", seconds.repair}, {"check", seconds.check},
+        {"write", seconds.write},   {"total", seconds.total}};
     json["receivers"] = report.receivers;
     json["corners_from_file"] = report.corners_from_file;
     json["replaced_corners"] = report.replaced_corners;
@@ -214,6 +233,7 @@ Json json_of(const BatchEntry& entry)
     json["misfit"] = json_of(report.misfit);
     json["error"] = json_of(report.error);
     json["texels"] = report.texels ? json_of(report, *report.texels) : Json();
+    json["grid"] = report.grid ? json_of(report, *report.grid) : Json();
     json["points"] = report.points ? json_of(*report.points) : Json();
     json["subdivision"] = report.subdivision ? json_of(report, *report.subdivision) : Json();
     if (const auto& part = report.settings.share)
@@ -460,6 +480,21 @@ std::string json_of(const Frontier& frontier)
         json["scenes"].push_back(entry);
     }
     return json.dump(2) + '\n';
+}
+
+std::string grid_notes_of(const BakeReport& report)
+{
+    const BakeSettings& settings = report.settings;
+    Json json;
+    json["source"] = settings.input.filename().string();
+    json["parts"] = json_of(settings.parts);
+    json["engine"] = name_of(settings.engine.engine);
+    json["settings"] = json_of(settings.engine);
+    json["extent"] = settings.grid->extent;
+    json["uniform"] = settings.grid->uniform;
+    json["inside"] = report.grid->inside;
+    json["error"] = json_of(report.error);
+    return json.dump();
 }
 
 }  // namespace surfelao

@@ -18,6 +18,7 @@ void check_points(const BakeSettings& settings, const Scene& scene)
     require(is_cloud || !wants_points,
             scene.name + ": has faces, --at points is for files without");
     require(!is_cloud || !settings.texels, scene.name + ": has no faces for a map to lie on");
+    require(!is_cloud || !settings.grid, scene.name + ": has no faces, a grid is round a mesh");
     require(!is_cloud || !settings.subdivide, scene.name + ": has no faces to subdivide");
     require(!is_cloud || wants_points, scene.name + ": has points only, no faces: --at points");
     check_target(scene, settings.target, settings.parts);

@@ -72,6 +72,8 @@ std::vector<Roles> roles_of(Scenes inputs, Scenes others, const PartChoice& choi
         own.baked = own.occlude;
         if (!choice.receivers.empty())
             own.baked = triangles_called(scene, choice.receivers, received);
+        if (choice.alone)
+            own.occlude = own.baked;
     };
     for (const Scene& scene : inputs)
         look_at(scene, true);

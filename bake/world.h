@@ -42,6 +42,7 @@ struct PartChoice {
     /// Files in the same coordinates that occlude, but are not baked.
     std::vector<std::filesystem::path> occluders = {};
     ClearSurfaces clear = ClearSurfaces::solid;
+    bool alone = false;  ///< of the inputs only what is baked occludes: an object by itself
     bool operator==(const PartChoice&) const = default;
 };
 

@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/frame_options.h"
+#include "cli/grid_bake_options.h"
 #include "cli/output.h"
 #include "cli/part_options.h"
 #include "cli/progress_bar.h"
@@ -12,7 +13,9 @@
 #include "cli/texel_options.h"
 #include "engines/threads.h"
 #include "files/file_type.h"
+#include "files/maker_mark.h"
 #include "files/scene_io.h"
+#include "grid/grid_file.h"
 #include "surfels/errors.h"
 #include "surfels/progress.h"
 
@@ -41,6 +44,7 @@ struct BakeOptions {
     SurfaceOptions surface;
     ColorOptions colors;
     TexelOptions texels;
+    GridBakeOptions grid;
     std::optional<double> subdivide;
     PartOptions parts;
     bool together = false;
@@ -74,6 +78,14 @@ std::vector<FrameFile> frames_of(const BakeOptions& options)
     return frames_of(options.frames, options.inputs, options.output, options.reading);
 }
 
+/// "FOLDER/NAME.aogrid.exr" of a grid, else as output_in_folder().
+fs::path result_in_folder(const BakeOptions& options, const fs::path& input)
+{
+    if (is_at_grid(options.texels))
+        return fs::path(options.output) / (input.stem().string() + ".aogrid.exr");
+    return output_in_folder(input, options.output);
+}
+
 /// Where every result goes. Two results under one name, or one in the place of an input, are
 /// refused before anything is overwritten.
 std::vector<Job> jobs_of(const BakeOptions& options)
@@ -93,11 +105,13 @@ std::vector<Job> jobs_of(const BakeOptions& options)
         jobs.push_back({options.inputs.front(), frame.output, frame.moment});
     if (jobs.empty()) {
         for (const std::string& input : options.inputs)
-            jobs.push_back({input, into_folder ? output_in_folder(input, options.output)
-                                               : fs::path(options.output)});
+            jobs.push_back(
+                {input, into_folder ? result_in_folder(options, input) : fs::path(options.output)});
     }
     for (const Job& job : jobs) {
         files.writes(job.output, job.input.string());
+        if (is_at_grid(options.texels))
+            files.writes(grid_text_path(job.output), job.input.string());
         if (texel_settings_of(options.texels, job.output)) {
             if (options.subdivide)
                 throw UsageError("--subdivide is for values at vertices: it goes with no map.");
@@ -149,7 +163,8 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     settings.check = options.check;
     settings.error = options.error;
     settings.texels = texel_settings_of(options.texels, job.output);
-    if (options.texels.at && *options.texels.at != "texels")
+    settings.grid = grid_settings_of(options.grid, options.texels);
+    if (options.texels.at && *options.texels.at != "texels" && !settings.grid)
         settings.at_points = options.texels.at == "points";
     settings.subdivide = options.subdivide;
     settings.colors = colors_of(options.colors);
@@ -161,15 +176,30 @@ BakeSettings settings_for(const BakeOptions& options, const Job& job)
     return settings;
 }
 
+/// The text beside a grid has a name that its user did not give.
+void refuse_foreign_text(const BakeSettings& settings)
+{
+    if (!settings.grid)
+        return;
+    const fs::path text = grid_text_path(settings.output);
+    std::error_code ignored;
+    if (fs::exists(text, ignored) && command_of_mark(grid_maker(text)) != "bake")
+        throw InputError(text.string() +
+                         ": stands there and was not made by bake (--overwrite replaces it)");
+}
+
 /// One job, or several that are baked together; `label` stands in front of its progress. False when
 /// it failed: the others can still be done.
-bool run_jobs(const std::vector<BakeSettings>& settings, bool ask_before_replacing,
+bool run_jobs(const std::vector<BakeSettings>& settings, bool ask_before_replacing, bool overwrite,
               const std::string& label, std::span<BatchEntry> entries)
 {
     try {
-        for (const BakeSettings& one : settings)
+        for (const BakeSettings& one : settings) {
             if (ask_before_replacing)
                 refuse_foreign(one.output, "bake");
+            if (!overwrite)
+                refuse_foreign_text(one);
+        }
         ProgressBar bar(label);
         std::vector<BakeReport> reports = bake_together(
             settings, [&](std::string_view stage, double done) { return bar.update(stage, done); });
@@ -200,6 +230,8 @@ void add_written(const BatchEntry& entry, std::vector<fs::path>& written)
     }
     if (!entry.report->texels || type_of(entry.output) != FileType::unknown)
         written.push_back(entry.output);
+    if (entry.report->grid)
+        written.push_back(grid_text_path(entry.output));
     if (entry.report->texels)
         written.insert(written.end(), entry.report->texels->written.begin(),
                        entry.report->texels->written.end());
@@ -243,7 +275,7 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
         }
         const std::string label = std::to_string(first + 1) + "/" + std::to_string(jobs.size()) +
                                   " " + jobs[first].input.filename().string() + " ";
-        if (!run_jobs(settings, ask, batch && step == 1 ? label : "", of_run)) {
+        if (!run_jobs(settings, ask, options.overwrite, batch && step == 1 ? label : "", of_run)) {
             failed += step;
             continue;
         }
@@ -281,6 +313,23 @@ void check_part(const BakeOptions& options, const EngineSettings& engine)
         throw UsageError("--resume knows no parts: leave it or --part out.");
 }
 
+/// Throws UsageError for what is of no use round an object.
+void check_grid_options(const BakeOptions& options)
+{
+    if (!grid_settings_of(options.grid, options.texels))
+        return;
+    if (options.together || !options.parts.occluders.empty())
+        throw UsageError("--at grid is of one object alone: leave out --together and --occluders.");
+    if (options.error || options.part || options.subdivide || options.frames.frames)
+        throw UsageError("--at grid goes with none of --error, --part, --subdivide and --frames.");
+    if (options.measure.ground || kernel_of(options.measure) != Kernel::cosine)
+        throw UsageError("--at grid knows --kernel cosine only, and no --ground.");
+    if (options.surface.values || options.surface.offset || options.surface.viewpoint ||
+        options.surface.occluder_spacing)
+        throw UsageError(
+            "--values, --offset, --viewpoint and --occluder-spacing are not for --at grid.");
+}
+
 /// Throws UsageError for what contradicts itself.
 void check_options(const BakeOptions& options)
 {
@@ -301,6 +350,7 @@ void check_options(const BakeOptions& options)
     if (options.resume && options.texels.udim)
         throw UsageError("--resume knows no tiles: leave it or --udim out.");
     check_part(options, engine);
+    check_grid_options(options);
     if (!frames_of(options).empty() &&
         (options.part || options.subdivide || !options.texels.high.empty()))
         throw UsageError("--frames goes with neither --part nor --subdivide nor --high.");
@@ -314,7 +364,8 @@ void add_options(CLI::App* command, const std::shared_ptr<BakeOptions>& options)
             "-o,--output", options->output,
             "Mesh or cloud file (.ply .obj .off, .gltf/.glb from glTF, .pcd .xyz .pts .txt .asc "
             "from clouds), a map over the file's texture "
-            "coordinates (.png .tif .exr), or a folder (made where it is "
+            "coordinates (.png .tif .exr), with --at grid NAME.aogrid.exr or .png, or a folder "
+            "(made where it is "
             "missing, for several files and behind a /): there every "
             "result has its input's name, .ply for .stl, and only files that bake made are "
             "replaced")
@@ -329,6 +380,7 @@ void add_options(CLI::App* command, const std::shared_ptr<BakeOptions>& options)
     add_subdivide_option(*command, options->subdivide);
     add_color_options(*command, options->colors);
     add_texel_options(*command, options->texels);
+    add_grid_bake_options(*command, options->grid, true);
     add_part_options(*command, options->parts);
     command
         ->add_flag("--together", options->together,
@@ -413,8 +465,8 @@ void add_bake_command(CLI::App& app, Work& work)
     const auto options = std::make_shared<BakeOptions>();
     CLI::App* command = app.add_subcommand("bake",
                                            "Occlusion and bent normals at every vertex or point, "
-                                           "or as a map: a mesh or a cloud of points in, the same "
-                                           "or a picture out");
+                                           "as a map, or in a grid round an object: a mesh or a "
+                                           "cloud of points in, the same or a picture out");
     add_options(command, options);
     command->callback([options, command, &work] {
         options->arguments = arguments_of(*command);

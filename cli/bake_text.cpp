@@ -27,6 +27,10 @@ std::string question_of(const BakeReport& report)
             (report.texels->uv_set ? "texture coordinates " + std::to_string(*report.texels->uv_set)
                                    : charts_text(*report.texels->charts)) +
             ")";
+    else if (const auto& told = report.grid)
+        text += " about " + std::to_string(told->grid.cell_count()) + " cells (" +
+                name_of(told->grid.store) + ", " + name_of(told->grid.border) + ", " +
+                std::to_string(told->inside) + " of them moved out of the object)";
     else if (report.points)
         text = name_of(settings.engine.engine) + ", " + setting_of(settings.engine) + ", at " +
                count_text(report.receivers, "point");
@@ -132,15 +136,22 @@ void print_report(const BakeReport& report)
                   << report.threads << (report.threads == 1 ? " thread" : " threads") << '\n';
         return;
     }
-    std::cout << "\n  " << question_of(report) << ": mean occlusion "
+    std::cout << "\n  " << question_of(report)
+              << (report.grid ? ": mean share hidden " : ": mean occlusion ")
               << fixed(report.mean_occlusion, 4);
+    if (const auto& told = report.grid)
+        std::cout << ", cells " << significant(told->closest.x) << ", "
+                  << significant(told->closest.y) << ", " << significant(told->closest.z)
+                  << " apart at the closest, " << told->bytes / 1024 << " KiB";
     if (report.residual)
         std::cout << ", residual " << fixed(*report.residual, 4);
     if (report.settings.error && report.error)
         std::cout << "\n  " << search_of(report);
     if (report.error)
         std::cout << "\n  " << statement_of(*report.error)
-                  << (report.points ? ", against rays at the same squares" : "");
+                  << (report.points ? ", against rays at the same squares"
+                      : report.grid ? " about the object"
+                                    : "");
     std::cout << "\n  read " << time(seconds.read);
     if (report.points)
         std::cout << ", points " << time(seconds.points);
@@ -152,7 +163,9 @@ void print_report(const BakeReport& report)
         std::cout << ", raster " << time(seconds.raster);
     std::cout << ", surfels " << time(seconds.surfels) << ", tree " << time(seconds.tree)
               << ", solve " << time(seconds.solve)
-              << (report.texels ? ", fill " + time(seconds.fill) : ", fit " + time(seconds.fit))
+              << (report.texels ? ", fill " + time(seconds.fill)
+                  : report.grid ? ", repair " + time(seconds.repair)
+                                : ", fit " + time(seconds.fit))
               << ", check " << time(seconds.check) << ", write " << time(seconds.write)
               << ", total " << time(seconds.total) << "; " << report.threads
               << (report.threads == 1 ? " thread, " : " threads, ")

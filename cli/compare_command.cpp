@@ -174,6 +174,18 @@ int run_at_pixels(const CompareOptions& options, std::vector<fs::path>& written)
     return kDone;
 }
 
+int run_at_grid(const CompareOptions& options, std::vector<fs::path>& written)
+{
+    const GridComparison comparison = [&] {
+        ProgressBar bar;
+        return compare_grids(
+            grid_compare_settings(options),
+            [&](std::string_view stage, double done) { return bar.update(stage, done); });
+    }();
+    print_or_write(options, comparison, written);
+    return kDone;
+}
+
 /// What goes into the folder of -o without having been named by the user.
 std::vector<fs::path> own_names(const CompareOptions& options)
 {
@@ -201,6 +213,7 @@ int run(const CompareOptions& options)
         limit.emplace(*options.threads);
     std::vector<fs::path> written;
     const int code = is_at_pixels(options.texels) ? run_at_pixels(options, written)
+                     : is_at_grid(options.texels) ? run_at_grid(options, written)
                      : options.frontier           ? run_frontier(options, written)
                                                   : run_compare(options, written);
     print_written(written, options.json == "-" || options.csv == "-");
@@ -227,7 +240,8 @@ void check(const CompareOptions& options)
     if (options.json == "-" && options.csv == "-")
         throw UsageError("--json and --csv cannot both go to standard output.");
     check_pixel_table(options);
-    if (!is_at_pixels(options.texels)) {
+    check_grid_table(options);
+    if (!is_at_pixels(options.texels) && !is_at_grid(options.texels)) {
         const CompareSettings settings = compare_settings(options);
         for (const EngineSettings& candidate : settings.candidates)
             check_kernel(candidate.engine, settings.kernel);
@@ -327,6 +341,7 @@ void add_compare_command(CLI::App& app, Work& work)
     add_surface_options(*command, options->surface);
     add_subdivide_option(*command, options->subdivide);
     add_layout_options(*command, options->texels, kShownMaps);
+    add_grid_bake_options(*command, options->grid, false);
     add_part_options(*command, options->parts);
     add_pixel_table_options(*command, options->pixels);
     add_run_options(*command, *options);

@@ -1,7 +1,9 @@
 /// compare_options.h: what `compare` was asked, and its part for values at pixels.
 #pragma once
 
+#include "bake/grid_compare.h"
 #include "cli/engine_options.h"
+#include "cli/grid_bake_options.h"
 #include "cli/grid_options.h"
 #include "cli/part_options.h"
 #include "cli/pixel_options.h"
@@ -44,6 +46,7 @@ struct CompareOptions {
     SurfaceOptions surface;
     std::optional<double> subdivide;
     TexelOptions texels;
+    GridBakeOptions grid;
     PartOptions parts;
     PixelTableOptions pixels;
     std::optional<std::uint32_t> reference_rays;
@@ -62,6 +65,11 @@ void add_pixel_table_options(CLI::App& command, PixelTableOptions& options);
 void check_pixel_table(const CompareOptions& options);
 
 /// Of --at pixels. Throws UsageError.
+/// Throws UsageError for what does not go with --at grid, and for options of grids without it.
+void check_grid_table(const CompareOptions& options);
+
+[[nodiscard]] GridCompareSettings grid_compare_settings(const CompareOptions& options);
+
 [[nodiscard]] PixelCompareSettings pixel_compare_settings(const CompareOptions& options);
 
 /// As --qualities says, or all three.

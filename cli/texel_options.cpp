@@ -29,10 +29,11 @@ void add_layout_options(CLI::App& command, TexelOptions& options, const std::str
         .add_option("--at", options.at,
                     "Where occlusion is asked: vertices, texels of a map on the triangles, the "
                     "points of a file without faces (default: points there, else vertices; of "
-                    "bake, texels for pictures), and where it is not baked: pixels of the picture, "
-                    "or cube maps inside of the scene")
-        ->check(CLI::IsMember({"vertices", "texels", "points", "pixels", "cubemaps"}))
-        ->type_name("vertices|texels|points|pixels|cubemaps")
+                    "bake, texels for pictures), a grid of cells round an object (bake, compare), "
+                    "and where it is not baked: pixels of the picture, or cube maps inside of the "
+                    "scene")
+        ->check(CLI::IsMember({"vertices", "texels", "points", "grid", "pixels", "cubemaps"}))
+        ->type_name("vertices|texels|points|grid|pixels|cubemaps")
         ->group(group);
     command.add_option("--size", options.size, "Texels of each side of the map")
         ->check(CLI::Range(1u, kMostTexels))
@@ -183,6 +184,13 @@ std::optional<TexelSettings> texel_settings_of(const TexelOptions& options,
 {
     if (options.at == "pixels" || options.at == "cubemaps")
         throw UsageError("--at " + *options.at + " is for render, compare and view.");
+    if (options.at == "grid") {
+        TexelOptions others = options;
+        others.depth.reset();
+        if (has_texel_option(others))
+            throw UsageError("Of the options of maps only --depth is for --at grid.");
+        return {};
+    }
     const bool picture = is_picture(output);
     if (picture && (options.at == "vertices" || options.at == "points"))
         throw UsageError("--at " + *options.at + " needs a mesh file to write to, no picture.");
@@ -216,6 +224,8 @@ std::optional<TexelSettings> shown_texels_of(const TexelOptions& options)
         check_together(options, false);
         return layout_settings_of(options);
     }
+    if (options.at == "grid")
+        throw UsageError("--at grid is for bake and compare.");
     if (has_texel_option(options))
         throw UsageError("--size, --uv, --charts, --udim and --padding are for --at texels.");
     return {};

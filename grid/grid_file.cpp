@@ -236,6 +236,12 @@ int tile_columns(int slices)
     return columns;
 }
 
+std::uint64_t bytes_of(const AoGrid& grid, MapDepth depth)
+{
+    return grid.cell_count() * sheets_of(grid.store) * kTexelNumbers *
+           (depth == MapDepth::byte ? 1 : 2);
+}
+
 bool is_grid_name(const fs::path& path)
 {
     const std::string extension = lower_extension(path);

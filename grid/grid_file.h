@@ -23,6 +23,7 @@
 #include "grid/ao_grid.h"
 #include "image/map.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -60,6 +61,9 @@ void write_grid(const std::filesystem::path& picture, const AoGrid& grid, MapDep
 /// The texels of a grid as they stand in the file, before they are rounded, and back.
 [[nodiscard]] Map sheet_of(const AoGrid& grid, float zero);
 void take_sheet(const Map& sheet, float zero, AoGrid& grid);
+
+/// Of the numbers in the file, before any compression.
+[[nodiscard]] std::uint64_t bytes_of(const AoGrid& grid, MapDepth depth);
 
 /// Columns of tiles: as many as make the sheet about square.
 [[nodiscard]] int tile_columns(int slices);

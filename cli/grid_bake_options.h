@@ -1,0 +1,35 @@
+/// grid_bake_options.h: the options of AO grids that are made.
+#pragma once
+
+#include "bake/grid_target.h"
+#include "cli/texel_options.h"
+
+#include <optional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace surfelao {
+
+/// What was asked for: empty where an option was not given.
+struct GridBakeOptions {
+    std::optional<int> resolution;
+    std::optional<double> extent;
+    std::optional<std::string> store;
+    std::optional<std::string> border;
+    bool uniform = false;
+};
+
+/// --resolution, --extent, --border, --uniform; --store where a single grid is made.
+void add_grid_bake_options(CLI::App& command, GridBakeOptions& options, bool with_store);
+
+[[nodiscard]] bool is_at_grid(const TexelOptions& options);
+
+/// Nothing without --at grid. Throws UsageError for options of grids without it, and for a depth
+/// that no grid has.
+[[nodiscard]] std::optional<GridSettings> grid_settings_of(const GridBakeOptions& options,
+                                                           const TexelOptions& texels);
+
+}  // namespace surfelao

@@ -1,0 +1,253 @@
+#include "bake/grid_target.h"
+
+#include "engines/threads.h"
+#include "grid/cone.h"
+#include "scenes.h"
+#include "surfels/errors.h"
+#include "surfels/geometry.h"
+
+#include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+
+#include <cmath>
+
+namespace surfelao {
+namespace {
+
+using scenes::operator+;
+
+GridSettings settings_of(GridStore store, int resolution = 12)
+{
+    return {.resolution = resolution, .store = store};
+}
+
+GridBake baked(const Scene& scene, const GridSettings& settings, std::uint32_t check = 0)
+{
+    return bake_grid(make_geometry(scene), settings, {}, check);
+}
+
+template <class Visit>
+void for_each_cell(const AoGrid& grid, const Visit& visit)
+{
+    for (int z = 0; z < grid.cells.z; ++z)
+        for (int y = 0; y < grid.cells.y; ++y)
+            for (int x = 0; x < grid.cells.x; ++x)
+                visit(glm::ivec3(x, y, z));
+}
+
+const float* values_at(const AoGrid& grid, glm::ivec3 cell)
+{
+    return &grid.values[grid.index_of(cell) * channels_of(grid.store)];
+}
+
+/// What a ball of radius 1 about the origin hides: alpha = (1 - sqrt(1 - s^2)) / 2, m = pi s^2
+/// towards it, of a receiver that sees all of it s^2 cos; s: its radius over the distance.
+TEST(GridTarget, ABallHidesItsCap)
+{
+    for (const GridStore store : {GridStore::cone, GridStore::sh}) {
+        const AoGrid grid = baked(scenes::sphere({0, 0, 0}, 1.0, 40), settings_of(store)).grid;
+        double moments = 0.0, read = 0.0;
+        for_each_cell(grid, [&](glm::ivec3 cell) {
+            const glm::dvec3 place = place_of(grid, cell);
+            const double distance = glm::length(place);
+            if (distance < 1.3)
+                return;
+            const double square = 1.0 / (distance * distance);
+            const glm::vec4 found = moments_of(store, values_at(grid, cell));
+            const glm::vec3 mean(-0.25 * square * place / distance);
+            moments = std::max({moments, std::abs(found.w - 0.5 * (1.0 - std::sqrt(1.0 - square))),
+                                double{glm::distance(glm::vec3(found), mean)}});
+            const float towards =
+                occlusion_of(store, values_at(grid, cell), glm::vec3(-place / distance));
+            read = std::max(read, std::abs(towards - square));
+        });
+        EXPECT_LT(moments, 0.006) << name_of(store);
+        EXPECT_LT(read, 0.02) << name_of(store);
+    }
+}
+
+/// A sheet from close above: half of all directions.
+TEST(GridTarget, ASheetHidesHalfOfAll)
+{
+    const Geometry sheet =
+        make_geometry(scenes::sheet({-50, -50, 0}, {100, 0, 0}, {0, 100, 0}, 20));
+    GridSettings settings = settings_of(GridStore::sh, 13);
+    const AoGrid grid = bake_grid(sheet, settings, {}, 0).grid;
+    const glm::ivec3 above(6, 6, 7);
+    const glm::dvec3 place = place_of(grid, above);
+    ASSERT_GT(place.z, 0.0);
+    ASSERT_LT(place.z, 1.0);
+    const glm::vec4 moments = moments_of(grid.store, values_at(grid, above));
+    EXPECT_NEAR(moments.w, 0.5f, 0.02f);
+    EXPECT_NEAR(-4.0f * moments.z, 1.0f, 0.03f);  // |m| = pi
+    EXPECT_NEAR(occlusion_of(grid.store, values_at(grid, above), {0, 0, -1}), 1.0f, 0.03f);
+    EXPECT_NEAR(occlusion_of(grid.store, values_at(grid, above), {0, 0, 1}), 0.0f, 0.03f);
+}
+
+TEST(GridTarget, TheBoxOfACubeReachesAsFarAsEpsSays)
+{
+    GridSettings settings;
+    settings.extent = 0.1;
+    const AoGrid grid = empty_grid({{-1, -1, -1}, {1, 1, 1}}, settings);
+    EXPECT_NEAR(grid.high.x, 2.784, 0.001);
+    EXPECT_EQ(grid.low, -grid.high);
+    settings.extent = 0.03;
+    EXPECT_NEAR(empty_grid({{-1, -1, -1}, {1, 1, 1}}, settings).high.z, 4.257, 0.001);
+}
+
+TEST(GridTarget, CellsStandAtTheBendOfTheWarp)
+{
+    for (const int cells : {4, 5, 24, 32, 33}) {
+        GridSettings settings;
+        settings.resolution = cells;
+        const AoGrid grid = empty_grid({{0, 0, 0}, {1, 2, 3}}, settings);
+        const float cell = 0.5f * (grid.inner_share + 1.0f) * static_cast<float>(cells - 1);
+        EXPECT_NEAR(cell, std::round(cell), 1e-4f) << cells;
+        EXPECT_LT(grid.inner_share, 1.0f) << cells;
+    }
+}
+
+TEST(GridTarget, ASheetHasABoxAndUniformCellsAreEven)
+{
+    GridSettings settings;
+    settings.extent = kMostExtent;
+    const AoGrid flat = empty_grid({{0, 0, 5}, {1, 1, 5}}, settings);
+    for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_LT(flat.low[axis], flat.high[axis]);
+        EXPECT_GT(flat.inner[axis], 0.0f);
+        EXPECT_LT(flat.inner[axis], 1.0f);
+    }
+    settings.uniform = true;
+    const AoGrid even = empty_grid({{0, 0, 0}, {1, 2, 3}}, settings);
+    const glm::dvec3 step = (even.high - even.low) / 31.0;
+    EXPECT_LT(glm::distance(place_of(even, {7, 8, 9}), even.low + glm::dvec3(7, 8, 9) * step),
+              1e-5);
+}
+
+TEST(GridTarget, CellsInABodyAreMovedOutOfIt)
+{
+    const GridBake bake =
+        baked(scenes::sphere({0, 0, 0}, 1.0, 20), settings_of(GridStore::cone, 32));
+    std::uint64_t in_ball = 0;
+    float most = 0.0f;
+    for_each_cell(bake.grid, [&](glm::ivec3 cell) {
+        in_ball += glm::length(place_of(bake.grid, cell)) < 1.0;
+        most = std::max(most, values_at(bake.grid, cell)[3]);
+    });
+    EXPECT_NEAR(static_cast<double>(bake.inside), static_cast<double>(in_ball),
+                0.01 * static_cast<double>(in_ball));
+    EXPECT_LT(most, 0.55f);  // just out of a ball half is hidden
+}
+
+TEST(GridTarget, SameBytesForAnyNumberOfThreads)
+{
+    std::vector<std::vector<float>> values;
+    for (const int threads : {1, 2}) {
+        const ThreadLimit limit(threads);
+        values.push_back(baked(scenes::bumpy_sphere(8), settings_of(GridStore::sh)).grid.values);
+    }
+    EXPECT_EQ(values[0], values[1]);
+}
+
+/// The cells of an object that is turned about z are those of the other, turned: as exactly as the
+/// masks and the directions, which do not turn with it.
+TEST(GridTarget, ATurnedObjectHasATurnedGrid)
+{
+    const Scene scene = scenes::box({-1, -2, -1}, {1, 2, 0.5}, 6);
+    const AoGrid grid = baked(scene, settings_of(GridStore::cone)).grid;
+    const AoGrid turned =
+        baked(scenes::moved(scene, [](glm::dvec3 p) { return glm::dvec3(-p.y, p.x, p.z); }),
+              settings_of(GridStore::cone))
+            .grid;
+    double square = 0.0;
+    for_each_cell(grid, [&](glm::ivec3 cell) {
+        const float* here = values_at(grid, cell);
+        const float* there = values_at(turned, {grid.cells.y - 1 - cell.y, cell.x, cell.z});
+        const glm::vec4 expected(-here[1], here[0], here[2], here[3]);
+        square += glm::dot(expected - glm::vec4(there[0], there[1], there[2], there[3]),
+                           expected - glm::vec4(there[0], there[1], there[2], there[3]));
+    });
+    EXPECT_LT(std::sqrt(square / static_cast<double>(grid.cell_count())), 0.006);
+}
+
+TEST(GridTarget, TheBordersLargestValueIsNothingAfterRescaling)
+{
+    const Scene scene = scenes::box({-1, -1, -1}, {1, 1, 1}, 4);
+    GridSettings settings = settings_of(GridStore::cone);
+    settings.border = GridBorder::rescale;
+    const AoGrid grid = baked(scene, settings).grid;
+    float most = 0.0f, alpha_there = 0.0f;
+    for_each_cell(grid, [&](glm::ivec3 cell) {
+        const bool on_face =
+            glm::any(glm::equal(cell, glm::ivec3(0))) || glm::any(glm::equal(cell, grid.cells - 1));
+        const float alpha = values_at(grid, cell)[3];
+        if (!on_face)
+            return;
+        alpha_there = std::max(alpha_there, alpha);
+        most = std::max(most, alpha * border_weight(grid, place_of(grid, cell), alpha));
+    });
+    EXPECT_EQ(most, 0.0f);
+    EXPECT_EQ(alpha_there, grid.border_value);
+    EXPECT_GT(grid.border_value, 0.01f);
+    EXPECT_LT(grid.border_value, 0.05f);
+}
+
+TEST(GridTarget, StatesItsError)
+{
+    const GridBake bake = baked(scenes::bumpy_sphere(16), settings_of(GridStore::sh, 16), 400);
+    ASSERT_TRUE(bake.error.has_value());
+    EXPECT_EQ(bake.error->points, 400u);
+    EXPECT_GT(bake.error->rmse, 0.001);
+    EXPECT_LT(bake.error->rmse, 0.03);
+    EXPECT_LE(bake.error->low, bake.error->rmse);
+    EXPECT_GE(bake.error->high, bake.error->rmse);
+}
+
+/// What both boxes hide from a floor's point, from their own grids: the product of what each leaves
+/// is right where one of them hides next to nothing. Where both hide a and b, one beside the other,
+/// it leaves a b too much; where they overlap it counts twice what both hide (too dark).
+TEST(GridTarget, GridsOfSeveralBodiesMultiplyWhereTheyAreApart)
+{
+    const Scene box = scenes::box({-1, -1, -1}, {1, 1, 1}, 6);
+    GridSettings settings = settings_of(GridStore::sh, 32);
+    const AoGrid grid = baked(box, settings).grid;
+    const auto both = [&](double apart, glm::dvec3 place) {
+        const float first = occlusion_at(grid, place, {0, 1, 0});
+        const float second = occlusion_at(grid, place - glm::dvec3(apart, 0, 0), {0, 1, 0});
+        return 1.0f - (1.0f - first) * (1.0f - second);
+    };
+    const auto truth = [&](double apart, glm::dvec3 place) {
+        const Geometry pair = make_geometry(
+            box + scenes::moved(box, [&](glm::dvec3 p) { return p + glm::dvec3(apart, 0, 0); }));
+        const Receiver receiver{glm::vec3((place - pair.frame.centre) / pair.frame.diagonal),
+                                {0, 1, 0}};
+        return trace_occlusion(RayScene(pair, RayScene::Build::robust), {&receiver, 1},
+                               {.rays = 4096})[0]
+            .occlusion;
+    };
+    for (const double x : {-1.5, 0.0, 0.5})
+        EXPECT_NEAR(both(5.0, {x, -2.2, 0}), truth(5.0, {x, -2.2, 0}), 0.01) << x;
+    const float middle = occlusion_at(grid, {2.5, -2.2, 0}, {0, 1, 0});
+    EXPECT_NEAR(both(5.0, {2.5, -2.2, 0}) + middle * middle, truth(5.0, {2.5, -2.2, 0}), 0.01);
+    EXPECT_GT(both(0.5, {0, -1.6, 0}), truth(0.5, {0, -1.6, 0}) + 0.05f);
+}
+
+TEST(GridTarget, WhatCannotBeIsRefused)
+{
+    const Geometry box = make_geometry(scenes::box({-1, -1, -1}, {1, 1, 1}, 1));
+    for (const GridSettings& wrong :
+         {GridSettings{.resolution = 3}, GridSettings{.resolution = 257},
+          GridSettings{.extent = 0.0}, GridSettings{.extent = 0.6},
+          GridSettings{.depth = MapDepth::whole}})
+        EXPECT_THROW(static_cast<void>(bake_grid(box, wrong, {}, 0)), SettingsError);
+    EngineSettings bunnell;
+    bunnell.engine = Engine::rays;
+    bunnell.definition.kernel = Kernel::bunnell;
+    EXPECT_THROW(static_cast<void>(bake_grid(box, {}, bunnell, 0)), SettingsError);
+    EXPECT_THROW(static_cast<void>(bake_grid(make_geometry(Scene{}), {}, {}, 0)), InputError);
+    const StageProgress stop = [](std::string_view stage, double) { return stage != "repair"; };
+    EXPECT_THROW(static_cast<void>(bake_grid(box, {.resolution = 4}, {}, 0, stop)), Cancelled);
+}
+
+}  // namespace
+}  // namespace surfelao
