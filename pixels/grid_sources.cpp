@@ -18,12 +18,17 @@ Scene scene_at_rest(const std::filesystem::path& input, const ReadOptions& readi
     return read_scene(input, {.columns = reading.columns});
 }
 
+/// The part alone that the grid was baked of (bake --receivers); empty where it is not one.
 std::string node_named_by(const GridNotes& notes)
 {
     const nlohmann::json about = nlohmann::json::parse(notes.about, nullptr, false);
-    const auto node = about.is_object() ? about.find("node") : about.end();
-    return about.is_object() && node != about.end() && node->is_string() ? node->get<std::string>()
-                                                                         : std::string();
+    const nlohmann::json::json_pointer where("/parts/receivers");
+    if (!about.is_object() || !about.contains(where))
+        return {};
+    const nlohmann::json& names = about.at(where);
+    return names.is_array() && names.size() == 1 && names[0].is_string()
+               ? names[0].get<std::string>()
+               : std::string();
 }
 
 /// What one body's parts are called.

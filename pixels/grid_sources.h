@@ -12,7 +12,8 @@
 
 namespace surfelao {
 
-/// A grid's file and whose it is; without a node: that which its text names (kGridNodeKey).
+/// A grid's file and whose it is; without a node: the one part that was baked, as
+/// its text tells (bake --at grid --receivers NODE).
 struct GridFile {
     std::string node;
     std::filesystem::path path;
