@@ -128,6 +128,8 @@ std::vector<ScreenSettings> screen_settings_of(ScreenMethod method, const PixelO
 
 PixelEngine pixel_engine_of(const EngineOptions& engine, const PixelOptions& options)
 {
+    if (engine.engine == "grid")
+        throw UsageError("--engine grid is for render and compare.");
     const auto method = screen_method_of(engine.engine.value_or("masks"));
     if (!method) {
         if (!options.taps.empty() || !options.set.empty() || options.guard)

@@ -66,6 +66,7 @@ TEST_F(GridCommand, RefusesWhatDoesNotGoTogether)
     EXPECT_EQ(render({"--at", "pixels", "--engine", "grid", "--rays", "9"}).code, 2);
     EXPECT_EQ(render({"--at", "pixels", "--engine", "grid", "--guard", "9%"}).code, 2);
     EXPECT_EQ(render({"--at", "pixels", "--engine", "grid", "--mode", "bent-normals"}).code, 2);
+    EXPECT_EQ(run(folder_.path(), {"view", kRobot, "--at", "pixels", "--engine", "grid"}).code, 2);
     const Outcome missing =
         render({"--at", "pixels", "--engine", "grid", "--grid", "head=x.aogrid.json"});
     EXPECT_EQ(missing.code, 1);
