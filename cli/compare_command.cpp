@@ -176,9 +176,14 @@ int run_at_pixels(const CompareOptions& options, std::vector<fs::path>& written)
 {
     const PixelComparison comparison = [&] {
         ProgressBar bar;
-        return compare_pixels(
-            pixel_compare_settings(options),
-            [&](std::string_view stage, double done) { return bar.update(stage, done); });
+        const auto update = [&](std::string_view stage, double done) {
+            return bar.update(stage, done);
+        };
+        PixelCompareSettings settings = pixel_compare_settings(options);
+        if (std::ranges::find(options.engines, "grid") != options.engines.end())
+            settings.grids = grid_sources_of(options.pixels.grids, options.inputs.front(),
+                                             options.reading, update);
+        return compare_pixels(settings, update);
     }();
     print_or_write(options, comparison, written);
     if (options.output) {
@@ -292,6 +297,8 @@ void check(const CompareOptions& options)
     for (const auto* inputs : {&options.inputs, &options.parts.occluders})
         for (const std::string& input : *inputs)
             files.reads(input);
+    for (const GridFile& grid : grid_files_of(options.pixels.grids))
+        files.reads(grid.path.string());
     for (const fs::path& file : own_names(options))
         files.writes(file, file.filename().string());
     files.writes_report(options.json, "--json");

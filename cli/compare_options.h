@@ -5,6 +5,7 @@
 #include "cli/engine_options.h"
 #include "cli/frame_options.h"
 #include "cli/grid_bake_options.h"
+#include "cli/grid_options.h"
 #include "cli/part_options.h"
 #include "cli/pixel_options.h"
 #include "cli/read_options.h"
@@ -25,6 +26,7 @@ namespace surfelao {
 /// At pixels only: empty where an option was not given.
 struct PixelTableOptions {
     PixelOptions methods;
+    GridOptions grids;
     std::vector<std::string> cameras;
     std::optional<int> views, width, height;
     std::vector<std::uint32_t> rays;

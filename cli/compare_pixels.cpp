@@ -61,12 +61,27 @@ void add_scene_engine(const CompareOptions& options, Engine engine,
     }
 }
 
+/// One for each quality of the rest that is named, else good.
+void add_grid_rows(const CompareOptions& options, std::vector<PixelEngine>& engines)
+{
+    for (const std::string& quality :
+         options.qualities.value_or(std::vector<std::string>{"good"})) {
+        EngineOptions rest;
+        rest.quality = quality;
+        engines.emplace_back(grid_pixels_of(options.pixels.grids, rest));
+    }
+}
+
 std::vector<PixelEngine> engines_of_table(const CompareOptions& options)
 {
     const PixelOptions methods = methods_with_taps(options);
     std::vector<PixelEngine> engines;
     for (const std::string& name : engines_at_pixels(options)) {
         const auto method = screen_method_of(name);
+        if (name == "grid") {
+            add_grid_rows(options, engines);
+            continue;
+        }
         if (!method) {
             add_scene_engine(options, engine_of(name), engines);
             continue;
@@ -102,6 +117,7 @@ void add_pixel_table_options(CLI::App& command, PixelTableOptions& options)
 {
     constexpr const char* kGroup = "Pixels (--at pixels)";
     add_pixel_options(command, options.methods, true);
+    add_grid_options(command, options.grids);
     command
         .add_option("--camera", options.cameras,
                     "From where to look, as of `render`; may be given again")
@@ -148,6 +164,7 @@ void check_pixel_table(const CompareOptions& options)
     const std::vector<std::string> engines =
         is_at_pixels(options.texels) ? engines_at_pixels(options) : options.engines;
     const bool tunes = pixels.tune.has_value();
+    check_grid_options(pixels.grids, engines, options.texels);
     if (is_at_cube_maps(options.texels))
         throw UsageError("compare is at vertices, texels, points or pixels.");
     if (!is_at_pixels(options.texels)) {

@@ -56,7 +56,7 @@ bool is_screen_method(const std::string& name)
 
 std::vector<std::string> pixel_engine_names()
 {
-    std::vector<std::string> names = {"masks", "disks", "rays"};
+    std::vector<std::string> names = {"masks", "disks", "rays", "grid"};
     for (const ScreenMethod method : screen_methods())
         names.push_back(name_of(method));
     return names;
@@ -128,6 +128,8 @@ std::vector<ScreenSettings> screen_settings_of(ScreenMethod method, const PixelO
 
 PixelEngine pixel_engine_of(const EngineOptions& engine, const PixelOptions& options)
 {
+    if (engine.engine == "grid")
+        throw UsageError("--engine grid is for render and compare.");
     const auto method = screen_method_of(engine.engine.value_or("masks"));
     if (!method) {
         if (!options.taps.empty() || !options.set.empty() || options.guard)

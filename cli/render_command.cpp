@@ -40,6 +40,8 @@ void check_files(const RenderCommandOptions& options)
     plan.reads(options.input);
     for (const std::string& other : options.parts.occluders)
         plan.reads(other);
+    for (const GridFile& grid : grid_files_of(options.grids))
+        plan.reads(grid.path.string());
     if (options.show.environment)
         plan.reads(*options.show.environment);
     for (const FrameFile& frame : frames_of(options))
@@ -54,11 +56,15 @@ void check_engine(const RenderCommandOptions& options)
     const std::string name = options.engine.engine.value_or("masks");
     check_pixel_options({&name, 1}, options.pixels, options.texels, options.measure);
     check_cube_options(options.cubes, is_at_cube_maps(options.texels));
-    const PixelEngine engine = pixel_engine_of(options.engine, options.pixels);
+    check_grid_options(options.grids, {&name, 1}, options.texels);
+    const PixelEngine engine = engine_at_pixels(options);
     static_cast<void>(guard_of(options.pixels, {options.width, options.height}));
     if (const auto* of_scene = std::get_if<EngineSettings>(&engine))
         check_kernel(of_scene->engine, kernel_of(options.measure));
-    else if (view_options_of(options.show).colors == Colors::bent_normals)
+    else if (std::holds_alternative<GridPixels>(engine))
+        check_kernel(Engine::masks, kernel_of(options.measure));
+    if (!std::holds_alternative<EngineSettings>(engine) &&
+        view_options_of(options.show).colors == Colors::bent_normals)
         throw UsageError("--mode bent-normals is for --engine masks, disks or rays: " + name +
                          " knows none.");
 }
@@ -275,6 +281,19 @@ int run(const RenderCommandOptions& options, FrameSequence* sequence)
     return kDone;
 }
 
+/// Read or baked once for all frames.
+std::shared_ptr<const GridSources> grid_sources_for(const RenderCommandOptions& options,
+                                                    const std::vector<FrameFile>& frames)
+{
+    ProgressBar bar;
+    ReadOptions reading = options.reading;
+    if (!frames.empty())
+        reading.moment = frames.front().moment;
+    return std::make_shared<const GridSources>(grid_sources_of(
+        options.grids, options.input, reading,
+        [&](std::string_view stage, double done) { return bar.update(stage, done); }));
+}
+
 /// One picture, or one for each frame, at pixels or not.
 int run_frames(const RenderCommandOptions& options, bool asks_pixels)
 {
@@ -283,14 +302,16 @@ int run_frames(const RenderCommandOptions& options, bool asks_pixels)
         return asks_pixels ? render_pixels(one) : run(one, sequence ? &*sequence : nullptr);
     };
     const std::vector<FrameFile> frames = frames_of(options);
+    RenderCommandOptions one = options;
+    if (options.engine.engine == "grid")
+        one.grid_sources = grid_sources_for(options, frames);
     if (frames.empty())
-        return run_one(options);
+        return run_one(one);
     // what moves is kept from frame to frame where values at vertices are shown
     if (!asks_pixels && !shown_texels_of(options.texels) &&
         settings_of(options.engine).device == Device::cpu &&
         !ground_plane_of(options.measure, options.show.up))
         sequence.emplace(options, seconds_of(options.frames, {&options.input, 1}));
-    RenderCommandOptions one = options;
     one.box = box_of_frames(frames, options.input, part_choice_of(options.parts), options.reading);
     for (const FrameFile& frame : frames) {
         one.reading.moment = frame.moment;
@@ -355,6 +376,7 @@ void add_render_command(CLI::App& app, Work& work)
     add_engine_options(*command, options->engine, pixel_engine_names());
     add_pixel_options(*command, options->pixels);
     add_cube_options(*command, options->cubes);
+    add_grid_options(*command, options->grids);
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
     add_thread_option(*command, options->threads);

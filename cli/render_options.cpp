@@ -1,5 +1,7 @@
 #include "cli/render_options.h"
 
+#include "cli/commands.h"
+
 #include <glm/common.hpp>
 
 #include <array>
@@ -36,6 +38,18 @@ Camera camera_of(const RenderCommandOptions& options, std::span<const glm::vec3>
 std::optional<Frame> common_frame_of(const RenderCommandOptions& options)
 {
     return options.box ? std::optional(frame_of(*options.box)) : std::nullopt;
+}
+
+PixelEngine engine_at_pixels(const RenderCommandOptions& options)
+{
+    if (options.engine.engine == "grid") {
+        if (!options.pixels.taps.empty() || !options.pixels.set.empty() || options.pixels.guard)
+            throw UsageError(
+                "--taps, --set and --guard are for methods that know the picture alone, not for "
+                "--engine grid.");
+        return grid_pixels_of(options.grids, options.engine);
+    }
+    return pixel_engine_of(options.engine, options.pixels);
 }
 
 }  // namespace surfelao

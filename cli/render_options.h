@@ -4,6 +4,7 @@
 #include "cli/cube_options.h"
 #include "cli/engine_options.h"
 #include "cli/frame_options.h"
+#include "cli/grid_options.h"
 #include "cli/part_options.h"
 #include "cli/pixel_options.h"
 #include "cli/read_options.h"
@@ -12,6 +13,7 @@
 #include "gpu/context.h"
 #include "pixels/camera.h"
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -35,6 +37,8 @@ struct RenderCommandOptions {
     TexelOptions texels;
     PixelOptions pixels;
     CubeOptions cubes;
+    GridOptions grids;
+    std::shared_ptr<const GridSources> grid_sources = {};  ///< of all frames, once they are there
     PartOptions parts;
     bool atlas = false;
     std::optional<int> threads;
@@ -49,6 +53,9 @@ struct RenderCommandOptions {
 
 /// What is measured in, where it is not the scene's own.
 [[nodiscard]] std::optional<Frame> common_frame_of(const RenderCommandOptions& options);
+
+/// Who answers at pixels. Throws UsageError.
+[[nodiscard]] PixelEngine engine_at_pixels(const RenderCommandOptions& options);
 
 /// --at pixels and cubemaps. Returns the exit code.
 int render_pixels(const RenderCommandOptions& options);

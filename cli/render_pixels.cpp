@@ -45,7 +45,11 @@ void choose_engine(const RenderCommandOptions& options, PixelJob& job)
         return;
     }
     if (colors != Colors::normals)
-        job.settings.engine = pixel_engine_of(options.engine, options.pixels);
+        job.settings.engine = engine_at_pixels(options);
+    if (auto* grids =
+            job.settings.engine ? std::get_if<GridPixels>(&*job.settings.engine) : nullptr)
+        grids->world = grid_world_of(job.mesh, options.reading, part_choice_of(options.parts),
+                                     *options.grid_sources);
     if (colors == Colors::difference)
         job.settings.reference_rays = rays;
 }

@@ -291,9 +291,116 @@ def write_glb(path, mesh):
         out.write(struct.pack("<I4s", len(body), b"BIN\0") + body)
 
 
+# Parts of the robot, metres: name, of which joint, where the joint lies from its parent's, where the
+# part's middle lies from the joint, the part's size. y is up, z forward.
+ROBOT = [("pelvis", None, (0, 0.92, 0), (0, 0, 0), (0.30, 0.16, 0.20)),
+         ("torso", "pelvis", (0, 0.09, 0), (0, 0.26, 0), (0.40, 0.46, 0.24)),
+         ("head", "torso", (0, 0.51, 0), (0, 0.15, 0), (0.20, 0.24, 0.22)),
+         ("left upper arm", "torso", (0.27, 0.45, 0), (0, -0.14, 0), (0.11, 0.32, 0.12)),
+         ("right upper arm", "torso", (-0.27, 0.45, 0), (0, -0.14, 0), (0.11, 0.32, 0.12)),
+         ("left lower arm", "left upper arm", (0, -0.32, 0), (0, -0.15, 0), (0.09, 0.30, 0.10)),
+         ("right lower arm", "right upper arm", (0, -0.32, 0), (0, -0.15, 0), (0.09, 0.30, 0.10)),
+         ("left thigh", "pelvis", (0.09, -0.09, 0), (0, -0.19, 0), (0.14, 0.38, 0.16)),
+         ("right thigh", "pelvis", (-0.09, -0.09, 0), (0, -0.19, 0), (0.14, 0.38, 0.16)),
+         ("left shin", "left thigh", (0, -0.40, 0), (0, -0.20, 0), (0.12, 0.40, 0.14)),
+         ("right shin", "right thigh", (0, -0.40, 0), (0, -0.20, 0), (0.12, 0.40, 0.14))]
+ROBOT_KEYS = 17  # of a walk of one second
+
+
+def robot_turn(name, phase):
+    """Angles about x and y of a joint at a phase of the walk, radians."""
+    side = -1 if name.startswith("right") else 1
+    swing = side * math.sin(phase)
+    part = name.split(" ", 1)[-1]
+    return {"thigh": (-0.55 * swing, 0),
+            "shin": (0.35 * (1 + side * math.sin(phase + 2.2)), 0),
+            "upper arm": (0.5 * swing, 0), "lower arm": (-0.45 + 0.25 * swing, 0),
+            "torso": (0.04, 0.12 * math.sin(phase)), "head": (0, -0.25 * math.sin(phase)),
+            "pelvis": (0, -0.08 * math.sin(phase))}[part]
+
+
+def robot(detail):
+    """A block with round edges, of which every part is made."""
+    mesh = Mesh()
+
+    def rounded(p):
+        size = sum(abs(x) ** 8 for x in p) ** 0.125
+        return tuple(0.5 * x / size for x in p)
+    mesh_of_cube = Mesh()
+    box(mesh_of_cube, (-1, -1, -1), (1, 1, 1), 4 * detail)
+    mesh.add([rounded(p) for p in mesh_of_cube.vertices], mesh_of_cube.faces)
+    return mesh
+
+
+def write_robot(path, mesh):
+    """The robot on a floor, walking: a glTF of 11 moving parts."""
+    import json
+    triangles = mesh.triangles()
+    chunks, views, accessors = [], [], []
+
+    def add(values, form, kind, component, **more):
+        data = b"".join(struct.pack(form, *v) for v in values)
+        views.append({"buffer": 0, "byteOffset": sum(map(len, chunks)), "byteLength": len(data)})
+        chunks.append(data)
+        count = len(values) * (3 if kind == "SCALAR" and form == "<3I" else 1)
+        accessors.append({"bufferView": len(views) - 1, "componentType": component,
+                          "count": count, "type": kind, **more})
+        return len(accessors) - 1
+
+    def add_points(points):
+        packed = [struct.unpack("<3f", struct.pack("<3f", *p)) for p in points]
+        return add(points, "<3f", "VEC3", 5126, min=[min(p[k] for p in packed) for k in range(3)],
+                   max=[max(p[k] for p in packed) for k in range(3)])
+
+    def primitive(points, faces):
+        return {"primitives": [{"attributes": {"POSITION": add_points(points)},
+                                "indices": add(faces, "<3I", "SCALAR", 5125)}]}
+    meshes = [primitive(mesh.vertices, triangles),
+              primitive([(-1.5, 0, 1.5), (1.5, 0, 1.5), (1.5, 0, -1.5), (-1.5, 0, -1.5)],
+                        [(0, 1, 2), (0, 2, 3)])]
+    seconds = [(i / (ROBOT_KEYS - 1),) for i in range(ROBOT_KEYS)]
+    times = add(seconds, "<f", "SCALAR", 5126, min=[0.0], max=[1.0])
+    nodes = [{"name": "floor", "mesh": 1}]
+    joints, samplers, channels = {}, [], []
+
+    def animate(node, path, values, form, kind):
+        samplers.append({"input": times, "output": add(values, form, kind, 5126)})
+        channels.append({"sampler": len(samplers) - 1, "target": {"node": node, "path": path}})
+    for name, parent, joint_at, middle, size in ROBOT:
+        joint = len(nodes)
+        joints[name] = joint
+        nodes.append({"name": name + " joint", "translation": list(joint_at), "children":
+                      [joint + 1]})
+        nodes.append({"name": name, "mesh": 0, "translation": list(middle), "scale": list(size)})
+        if parent is not None:
+            nodes[joints[parent]]["children"].append(joint)
+        turns = []
+        for (second,) in seconds:
+            x, y = robot_turn(name, 2 * math.pi * second)
+            sx, cx, sy, cy = math.sin(x / 2), math.cos(x / 2), math.sin(y / 2), math.cos(y / 2)
+            turns.append((cy * sx, sy * cx, -sy * sx, cy * cx))
+        animate(joint, "rotation", turns, "<4f", "VEC4")
+    animate(joints["pelvis"], "translation",
+            [(0, 0.9 + 0.02 * math.cos(4 * math.pi * s), 0) for (s,) in seconds], "<3f", "VEC3")
+    body = b"".join(chunks)
+    document = {
+        "asset": {"version": "2.0", "generator": "data/generate.py"},
+        "scene": 0, "scenes": [{"nodes": [0, joints["pelvis"]]}], "nodes": nodes,
+        "meshes": meshes, "animations": [{"name": "walk", "samplers": samplers,
+                                          "channels": channels}],
+        "buffers": [{"byteLength": len(body)}], "bufferViews": views, "accessors": accessors}
+    text = json.dumps(document, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 4)
+    with open(path, "wb") as out:
+        out.write(struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(body)))
+        out.write(struct.pack("<I4s", len(text), b"JSON") + text)
+        out.write(struct.pack("<I4s", len(body), b"BIN\0") + body)
+
+
 SCENES = [("blob.off", blob, write_off), ("room.obj", room, write_obj),
           ("blocks.ply", blocks, write_ply), ("shells.stl", shells, write_stl),
-          ("leaves.glb", leaves, write_glb), ("bracket.obj", bracket, write_obj)]
+          ("leaves.glb", leaves, write_glb), ("bracket.obj", bracket, write_obj),
+          ("robot.glb", robot, write_robot)]
 
 
 def main():

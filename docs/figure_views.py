@@ -633,6 +633,7 @@ def stated_cost(figures, least="0", most="1e9"):
 import mask_views  # noqa: E402, F401 - more views, in files of their own
 import cloud_views  # noqa: E402, F401
 import cube_views  # noqa: E402, F401
+import grid_picture_views  # noqa: E402, F401
 import exact_views  # noqa: E402, F401
 import grid_views  # noqa: E402, F401
 import map_views  # noqa: E402, F401

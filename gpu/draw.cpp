@@ -27,11 +27,13 @@ void apply(const GlTable& gl, const Framebuffer& target, const DrawState& state)
     gl.BlendEquation(GL_FUNC_ADD);
     if (state.blend == Blend::over)
         gl.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    else if (state.blend == Blend::multiply)
+        gl.BlendFuncSeparate(GL_DST_COLOR, GL_ZERO, GL_DST_ALPHA, GL_ZERO);
     else
         gl.BlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ONE);
 
     enable(gl, GL_CULL_FACE, state.cull != Cull::none);
-    gl.CullFace(GL_BACK);
+    gl.CullFace(state.cull == Cull::front ? GL_FRONT : GL_BACK);
     const GLboolean write_color = state.write_color ? GL_TRUE : GL_FALSE;
     gl.ColorMask(write_color, write_color, write_color, write_color);
 }

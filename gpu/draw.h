@@ -17,11 +17,12 @@ enum class DepthTest {
 
 enum class Blend {
     off,
-    over,  ///< out = alpha * new + (1 - alpha) * old
-    add,   ///< out = old + new, alpha too
+    over,      ///< out = alpha * new + (1 - alpha) * old
+    add,       ///< out = old + new, alpha too
+    multiply,  ///< out = old * new, alpha too
 };
 
-enum class Cull { none, back };  ///< counter-clockwise triangles show their front
+enum class Cull { none, back, front };  ///< counter-clockwise triangles show their front
 
 struct DrawState {
     DepthTest depth = DepthTest::off;

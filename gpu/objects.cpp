@@ -191,6 +191,29 @@ TextureBinding Texture2D::binding() const
     return {GL_TEXTURE_2D, handle_.id()};
 }
 
+Texture3D::Texture3D(const GlContext& context, glm::ivec3 size, std::span<const glm::vec4> texels)
+    : handle_(make_texture(context.gl()))
+{
+    SURFELAO_CHECK(size.x > 0 && size.y > 0 && size.z > 0 &&
+                   texels.size() == static_cast<std::size_t>(size.x) *
+                                        static_cast<std::size_t>(size.y) *
+                                        static_cast<std::size_t>(size.z));
+    const GlTable& gl = context.gl();
+    gl.BindTexture(GL_TEXTURE_3D, handle_.id());
+    gl.TexImage3D(GL_TEXTURE_3D, 0, GL_RGBA16F, size.x, size.y, size.z, 0, GL_RGBA, GL_FLOAT,
+                  texels.data());
+    gl.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    gl.TexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+        gl.TexParameteri(GL_TEXTURE_3D, axis, GL_CLAMP_TO_EDGE);
+    check_gl(gl, "making a block of texels");
+}
+
+TextureBinding Texture3D::binding() const
+{
+    return {GL_TEXTURE_3D, handle_.id()};
+}
+
 // --- Framebuffer
 // ----------------------------------------------------------------------------------
 

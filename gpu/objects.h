@@ -6,6 +6,7 @@
 
 #include "gpu/context.h"
 
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include <cstddef>
@@ -164,6 +165,19 @@ public:
 private:
     GlHandle handle_;
     int width_ = 0, height_ = 0;
+};
+
+/// A block of texels, x fastest, then y, then z; between them what is fetched is linear, beyond the
+/// outer ones as they are. Four numbers each, given as floats and kept as halves: a share of 2^-11
+/// of a value is lost.
+class Texture3D {
+public:
+    Texture3D(const GlContext& context, glm::ivec3 size, std::span<const glm::vec4> texels);
+
+    TextureBinding binding() const;
+
+private:
+    GlHandle handle_;
 };
 
 /// An axis-aligned part of a target, in pixels from the lower left corner.

@@ -138,6 +138,11 @@ void Program::set(std::string_view sampler, const Texture2D& texture)
     bind(sampler, texture.binding());
 }
 
+void Program::set(std::string_view sampler, const Texture3D& texture)
+{
+    bind(sampler, texture.binding());
+}
+
 void Program::bind(std::string_view sampler, TextureBinding texture)
 {
     location(sampler);  // refuses an unknown name

@@ -45,6 +45,7 @@ public:
     /// Binds a texture to a sampler for the draws that follow; the texture must live until then.
     void set(std::string_view sampler, const TextureBuffer& texture);
     void set(std::string_view sampler, const Texture2D& texture);
+    void set(std::string_view sampler, const Texture3D& texture);
 
     /// Makes it the program of the next draw, with its textures. Called by draw().
     void use() const;

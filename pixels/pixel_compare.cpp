@@ -23,6 +23,7 @@ struct Answerers {
         : context(gl),
           drawn(gl, mesh.geometry, mesh.surface),
           screen(gl),
+          grids(gl),
           on_cpu(mesh.occluding()),
           on_gpu(mesh.occluding())
     {
@@ -36,6 +37,7 @@ struct Answerers {
     const GlContext& context;
     DrawnMesh drawn;
     ScreenSpace screen;
+    GridPass grids;
     Occluders on_cpu, on_gpu;
 };
 
@@ -119,9 +121,12 @@ double run_pixel_round(const PixelQuestion& question, Answerers& answerers, bool
     const auto* pass = std::get_if<ScreenSettings>(&row.engine);
     double seconds = 0.0;
     if (pass == nullptr || is_first) {
+        const auto* grids = std::get_if<GridPixels>(&row.engine);
         const PixelAnswer result =
-            answer(question.view, answerers.occluders_for(row.engine), answerers.screen, row.engine,
-                   question.definition, progress);
+            grids != nullptr
+                ? answer(question.view, answerers.grids, *grids, question.definition, progress)
+                : answer(question.view, answerers.occluders_for(row.engine), answerers.screen,
+                         row.engine, question.definition, progress);
         seconds = result.seconds;
         row.clock = "steady_clock";
         if (is_first) {
@@ -220,8 +225,10 @@ void check_pixel_settings(const PixelCompareSettings& settings)
     for (const PixelEngine& engine : settings.engines) {
         if (const auto* scene = std::get_if<EngineSettings>(&engine))
             check_settings(*scene, *scene);
+        else if (const auto* screen = std::get_if<ScreenSettings>(&engine))
+            check_settings(*screen);
         else
-            check_settings(std::get<ScreenSettings>(engine));
+            check_settings(std::get<GridPixels>(engine).rest, std::get<GridPixels>(engine).rest);
     }
 }
 
@@ -298,7 +305,17 @@ PixelComparison compare_pixels(const PixelCompareSettings& settings, const Stage
         throw InputError(scene.name + ": has points only, no faces: --at points");
     const Mesh mesh =
         mesh_of(std::move(scene), settings.target.normals, settings.parts, settings.reading);
-    return compare_pixels(mesh, settings, progress);
+    PixelCompareSettings with_grids = settings;
+    std::shared_ptr<GridWorld> world;
+    for (PixelEngine& engine : with_grids.engines) {
+        auto* grids = std::get_if<GridPixels>(&engine);
+        if (grids == nullptr)
+            continue;
+        if (!world)
+            world = grid_world_of(mesh, settings.reading, settings.parts, settings.grids);
+        grids->world = world;
+    }
+    return compare_pixels(mesh, with_grids, progress);
 }
 
 }  // namespace surfelao

@@ -70,6 +70,7 @@ struct PixelCompareSettings {
     int rounds = 3;                      ///< >= 1
     bool use_cache = true;               ///< of references
     bool pictures = false;               ///< for html_of()
+    GridSources grids;                   ///< of engines that are GridPixels
     GlBackend backend = GlBackend::automatic;
 };
 
@@ -135,7 +136,7 @@ struct PixelComparison {
 /// reference's rays, and the rounds of all engines.
 [[nodiscard]] PixelComparison compare_pixels(const PixelCompareSettings& settings,
                                              const StageProgress& progress = {});
-/// The same of a mesh: `input`, `reading` and `parts` do not count.
+/// The same of a mesh: `input`, `reading`, `parts` and `grids` do not count.
 [[nodiscard]] PixelComparison compare_pixels(const Mesh& mesh, const PixelCompareSettings& settings,
                                              const StageProgress& progress = {});
 

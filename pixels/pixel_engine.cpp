@@ -1,5 +1,6 @@
 #include "pixels/pixel_engine.h"
 
+#include "surfels/errors.h"
 #include "surfels/stopwatch.h"
 
 namespace surfelao {
@@ -14,12 +15,18 @@ std::string name_of(const PixelEngine& engine)
 {
     if (const auto* screen = std::get_if<ScreenSettings>(&engine))
         return name_of(screen->method);
+    if (std::holds_alternative<GridPixels>(engine))
+        return "grid";
     return name_of(std::get<EngineSettings>(engine).engine);
 }
 
 std::string setting_of(const PixelEngine& engine)
 {
-    return std::visit([](const auto& settings) { return setting_of(settings); }, engine);
+    if (const auto* grids = std::get_if<GridPixels>(&engine))
+        return name_of(grids->merge) + ", rest " + setting_of(grids->rest);
+    if (const auto* screen = std::get_if<ScreenSettings>(&engine))
+        return setting_of(*screen);
+    return setting_of(std::get<EngineSettings>(engine));
 }
 
 PixelView::PixelView(const GlContext& context, const Mesh& mesh, const DrawnMesh& drawn,
@@ -56,11 +63,31 @@ PixelAnswer answer(const PixelView& view, Occluders& occluders, ScreenSpace& scr
         solving.definition = definition;
         result.values = solve(prepared, view.seen().receivers, solving, progress).occlusion;
     } else {
+        SURFELAO_CHECK(std::holds_alternative<ScreenSettings>(engine));
         const Framebuffer target = screen.make_target(view.g_buffer());
         screen.draw(view.g_buffer(), std::get<ScreenSettings>(engine), definition, target);
         for (const float occlusion : view.at_seen(target.read_red(target.rect())))
             result.values.push_back({occlusion, glm::vec3(0.0f)});
     }
+    result.seconds = watch.lap();
+    return result;
+}
+
+PixelAnswer answer(const PixelView& view, GridPass& pass, const GridPixels& settings,
+                   const Definition& definition, const Progress& progress)
+{
+    Stopwatch watch;
+    GridPixels asked = settings;
+    asked.rest.definition = definition;
+    std::vector<std::uint32_t> pixels;
+    const auto columns = static_cast<std::uint32_t>(view.seen().width);
+    const auto guard = static_cast<std::uint32_t>(view.guard());
+    for (const std::uint32_t pixel : view.seen().pixels)
+        pixels.push_back((pixel / columns + guard) * (columns + 2 * guard) + pixel % columns +
+                         guard);
+    PixelAnswer result;
+    result.values =
+        solve_with_grids(pass, view.g_buffer(), asked, view.seen().receivers, pixels, progress);
     result.seconds = watch.lap();
     return result;
 }

@@ -1,10 +1,11 @@
-/// pixel_engine.h: who answers the pixels of a picture, behind one door: an engine of the scene, or
-/// a method that knows the picture alone.
+/// pixel_engine.h: who answers the pixels of a picture, behind one door: an engine of the scene, a
+/// method that knows the picture alone, or the AO grids of objects with an engine for the rest.
 #pragma once
 
 #include "bake/occluders.h"
 #include "engines/engine.h"
 #include "gpu/screen_space.h"
+#include "pixels/grid_world.h"
 #include "pixels/seen.h"
 #include "surfels/progress.h"
 
@@ -14,11 +15,11 @@
 
 namespace surfelao {
 
-using PixelEngine = std::variant<EngineSettings, ScreenSettings>;
+using PixelEngine = std::variant<EngineSettings, ScreenSettings, GridPixels>;
 
-/// "masks", "gtao"
+/// "masks", "gtao", "grid"
 [[nodiscard]] std::string name_of(const PixelEngine& engine);
-/// "good", "24 samples"
+/// "good", "24 samples", "product"
 [[nodiscard]] std::string setting_of(const PixelEngine& engine);
 
 /// How large a picture is; each way at least 1 and at most what the device draws at once.
@@ -72,9 +73,14 @@ struct PixelAnswer {
 };
 
 /// occluders: of the mesh that the view is of. screen: of the view's context. Both engines measure
-/// this definition. Throws as solve(), and as ScreenSpace::draw().
+/// this definition. Not of GridPixels, which have an answer of their own. Throws as solve(), and as
+/// ScreenSpace::draw().
 [[nodiscard]] PixelAnswer answer(const PixelView& view, Occluders& occluders, ScreenSpace& screen,
                                  const PixelEngine& engine, const Definition& definition,
                                  const Progress& progress = {});
+
+/// Of a world with grids. pass: of the view's context. Throws as solve_with_grids().
+[[nodiscard]] PixelAnswer answer(const PixelView& view, GridPass& pass, const GridPixels& settings,
+                                 const Definition& definition, const Progress& progress = {});
 
 }  // namespace surfelao

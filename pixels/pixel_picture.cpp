@@ -153,6 +153,8 @@ private:
             return;
         if (const auto* engine = std::get_if<EngineSettings>(&*settings_.engine))
             static_cast<void>(occluders_.prepared_for(here(*engine)));
+        else if (const GridPixels* grids = with_grids())
+            grids->world->prepare_rest(grids->rest);
         picture_.prepare_s = watch.lap();
     }
 
@@ -161,6 +163,8 @@ private:
     {
         if (!settings_.engine || std::holds_alternative<ScreenSettings>(*settings_.engine))
             return std::vector<Occlusion>(receivers.size());
+        if (with_grids() != nullptr)
+            return solve_with_grids(defined_grids(), receivers, progress);
         const EngineSettings engine = here(std::get<EngineSettings>(*settings_.engine));
         return solve(occluders_.prepared_for(engine), receivers, engine, progress).occlusion;
     }
@@ -180,6 +184,26 @@ private:
     [[nodiscard]] const ScreenSettings* on_screen() const
     {
         return settings_.engine ? std::get_if<ScreenSettings>(&*settings_.engine) : nullptr;
+    }
+
+    [[nodiscard]] const GridPixels* with_grids() const
+    {
+        return settings_.engine ? std::get_if<GridPixels>(&*settings_.engine) : nullptr;
+    }
+    [[nodiscard]] GridPixels defined_grids() const
+    {
+        GridPixels grids = *with_grids();
+        grids.rest.definition = settings_.definition;
+        return grids;
+    }
+
+    /// What grids say of the pixels that the G-buffer was drawn for.
+    std::vector<Occlusion> solved_by_pass(const GBuffer& drawing, const SeenPixels& seen)
+    {
+        if (!grid_pass_)
+            grid_pass_.emplace(context_);
+        return solve_with_grids(*grid_pass_, drawing, defined_grids(), seen.receivers, seen.pixels,
+                                stage("solve"));
     }
 
     /// What the picture's method finds at those of the pixels that the G-buffer was drawn for.
@@ -202,7 +226,8 @@ private:
         const auto pixels = [&](std::size_t i) { return seen.pixels[i]; };
         Answers answers;
         if (settings_.cube_maps == nullptr) {
-            answers.values = solved(seen.receivers, stage("solve"));
+            answers.values = with_grids() != nullptr ? solved_by_pass(drawing, seen)
+                                                     : solved(seen.receivers, stage("solve"));
             if (on_screen())
                 put_screen(drawing, size, pixels, answers.values);
             picture_.solve_s += watch.lap();
@@ -258,9 +283,9 @@ private:
             return inner(drawing.read_triangles(), size, settings_.guard);
         };
         Stopwatch watch;
-        const SeenPixels seen =
-            seen_pixels(mesh_, rims_, band.view, size.width, size.height,
-                        see(band.view, on_screen() || settings_.cube_maps), settings_.offset);
+        const SeenPixels seen = seen_pixels(
+            mesh_, rims_, band.view, size.width, size.height,
+            see(band.view, on_screen() || with_grids() || settings_.cube_maps), settings_.offset);
         picture_.middles += seen.pixels.size();
         picture_.see_s += watch.lap();
 
@@ -307,13 +332,14 @@ private:
         const std::vector<Occlusion>& references =
             answers.references.empty() ? answers.values : answers.references;
         std::vector<glm::vec3> colors(receivers.size());
-        tbb::parallel_for(
-            tbb::blocked_range<std::size_t>(0, receivers.size(), kPaintGrain),
-            [&](const tbb::blocked_range<std::size_t>& range) {
-                for (std::size_t i = range.begin(); i < range.end(); ++i)
-                    colors[i] = paint_.color({receivers[i], answers.values[i], references[i],
-                                              !answers.holes.empty() && answers.holes[i] != 0});
-            });
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, receivers.size(), kPaintGrain),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                              for (std::size_t i = range.begin(); i < range.end(); ++i)
+                                  colors[i] =
+                                      paint_.color({receivers[i], answers.values[i], references[i],
+                                                    !answers.holes.empty() && answers.holes[i] != 0,
+                                                    with_grids()});
+                          });
         return colors;
     }
 
@@ -327,6 +353,7 @@ private:
     Rims rims_;
     std::vector<std::uint32_t> parts_;
     ScreenSpace screen_;
+    std::optional<GridPass> grid_pass_;
     PixelPicture picture_;
     std::size_t band_ = 0;
 };

@@ -47,8 +47,9 @@ struct PixelPictureSettings {
 struct AnsweredPixel {
     const Receiver& receiver;
     const Occlusion& value;
-    const Occlusion& reference;  ///< the value where none was asked for
-    bool is_hole = false;        ///< no cube map answered
+    const Occlusion& reference;         ///< the value where none was asked for
+    bool is_hole = false;               ///< no cube map answered
+    const GridPixels* grids = nullptr;  ///< who answered, if it was grids
 };
 
 /// How answers become colours. Both are called from many threads.

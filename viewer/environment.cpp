@@ -130,6 +130,30 @@ Image irradiance_map(const Image& panorama)
     return result;
 }
 
+std::vector<Image> halved_panoramas(const Image& panorama)
+{
+    std::vector<Image> halves = {panorama};
+    while (halves.back().height > 1) {
+        const Image& last = halves.back();
+        halves.push_back(box_shrink(last, std::max(1, last.width / 2), last.height / 2));
+    }
+    return halves;
+}
+
+glm::vec3 patch_light(std::span<const Image> halves, glm::vec3 direction, float alpha)
+{
+    const float texels =
+        alpha * static_cast<float>(halves[0].width) * static_cast<float>(halves[0].height);
+    const float last = static_cast<float>(halves.size() - 1);
+    const float level = glm::clamp(0.5f * std::log2(std::max(texels, 1.0f)), 0.0f, last);
+    const auto finer = static_cast<std::size_t>(level);
+    const std::size_t coarser = std::min(finer + 1, halves.size() - 1);
+    const glm::vec2 uv = panorama_uv(direction);
+    return glm::mix(glm::vec3(sample_panorama(halves[finer], uv)),
+                    glm::vec3(sample_panorama(halves[coarser], uv)),
+                    level - static_cast<float>(finer));
+}
+
 float automatic_exposure(const Image& irradiance)
 {
     double sum = 0.0;

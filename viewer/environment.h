@@ -11,6 +11,9 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <span>
+#include <vector>
+
 namespace surfelao {
 
 /// Where in a panorama the unit direction (y up) lies, as uv of sample_panorama.
@@ -31,6 +34,14 @@ namespace surfelao {
 
 /// The panorama averaged over boxes to at most that width, for backgrounds; height to match.
 [[nodiscard]] Image shrink_panorama(const Image& panorama, int max_width);
+
+/// A panorama and its halves, each the mean of four texels of the one before, down to one row.
+[[nodiscard]] std::vector<Image> halved_panoramas(const Image& panorama);
+
+/// Mean light of a patch about a direction that has the share alpha of all directions, from the
+/// halves of a panorama of W x H: between the two about level .5 log2(alpha W H), at least 0.
+[[nodiscard]] glm::vec3 patch_light(std::span<const Image> halves, glm::vec3 direction,
+                                    float alpha);
 
 /// Exposure by itself: one over what a surface that faces the sky receives, in the middle; 1 for a
 /// map that is black.

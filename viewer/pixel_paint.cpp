@@ -24,13 +24,12 @@ glm::vec3 direction_number(glm::vec3 direction)
     return 0.5f + 0.5f * direction;
 }
 
-/// Light from all around, along a bent normal.
+/// Light from all around, along a bent normal; with AO grids, less what comes out of the
+/// cones that the objects hide.
 class SkyLight {
 public:
     SkyLight(const ViewOptions& options, UpAxis up, const Image* panorama)
-        : irradiance_(irradiance_map(panorama ? *panorama : builtin_sky())),
-          frame_(sky_frame(up_direction(up))),
-          exposure_(automatic_exposure(irradiance_) * std::exp2(options.exposure))
+        : SkyLight(options, up, panorama ? *panorama : builtin_sky())
     {
     }
     [[nodiscard]] glm::vec3 operator()(const AnsweredPixel& pixel) const
@@ -39,11 +38,44 @@ public:
         const glm::vec3 bent = pixel.value.bent_normal == glm::vec3(0.0f) ? pixel.receiver.normal
                                                                           : pixel.value.bent_normal;
         const glm::vec3 light(sample_panorama(irradiance_, panorama_uv(frame_ * bent)));
-        return soften(kAlbedo * (1.0f - pixel.value.occlusion) * exposure_ * light);
+        return soften(
+            kAlbedo * exposure_ *
+            (pixel.grids ? left_by_grids(pixel, light) : (1.0f - pixel.value.occlusion) * light));
     }
 
 private:
+    SkyLight(const ViewOptions& options, UpAxis up, const Image& panorama)
+        : irradiance_(irradiance_map(panorama)),
+          halves_(halved_panoramas(panorama)),
+          frame_(sky_frame(up_direction(up))),
+          exposure_(automatic_exposure(irradiance_) * std::exp2(options.exposure))
+    {
+    }
+    /// (1 - occlusion by the rest) (B - A): B the light of the hemisphere, A what the cones'
+    /// patches of the panorama would send, weighed so that together they take what all objects
+    /// take.
+    [[nodiscard]] glm::vec3 left_by_grids(const AnsweredPixel& pixel, glm::vec3 light) const
+    {
+        const Receiver& at = pixel.receiver;
+        float visible = 1.0f, sum = 0.0f;
+        glm::vec3 taken(0.0f);
+        for (const TakenLight& one :
+             taken_at(pixel.grids->world->objects(), pixel.grids->merge, at.position, at.normal)) {
+            const glm::vec3 mean(one.moments);
+            const float length = glm::length(mean);
+            const glm::vec3 axis = length > 0.0f ? mean / length : at.normal;
+            visible *= 1.0f - one.occlusion;
+            sum += one.occlusion;
+            taken += one.occlusion * patch_light(halves_, frame_ * axis, one.moments.w);
+        }
+        if (!(sum > 0.0f) || !(visible > 0.0f))
+            return (1.0f - pixel.value.occlusion) * light;
+        return (1.0f - pixel.value.occlusion) / visible *
+               glm::max(light - (1.0f - visible) / sum * taken, 0.0f);
+    }
+
     Image irradiance_;
+    std::vector<Image> halves_;
     glm::mat3 frame_;
     float exposure_;
 };

@@ -4,7 +4,7 @@
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
                                     readers stated demo viewers atlas maps map_frontier
                                     clouds clouds_pcv subdivide pixels origin cubes screen moving
-                                    grids;
+                                    grids gridpictures;
                                     default: all, about an hour on two quiet cores
 
 Every part is one file that says what command made it, of which version and commit, on what
@@ -527,6 +527,12 @@ def part_screen(build):
             **json.loads(run(build / "bin/screen_tables", "egl"))}
 
 
+def part_gridpictures(build):
+    """Pictures of objects with AO grids: cost of boxes and crowds, floors, pairs, the robot."""
+    return {**provenance(build, "grid_pictures data/robot.glb"),
+            **json.loads(run(build / "bin/grid_pictures", ROOT / "data/robot.glb"))}
+
+
 PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scaling": part_scaling,
          "stability": part_stability, "gpu": part_gpu, "drawing": part_drawing,
          "readers": part_readers, "stated": part_stated, "demo": part_demo,
@@ -535,6 +541,7 @@ PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scalin
          "clouds_pcv": part_clouds_pcv,
          "pixels": part_pixels, "origin": part_origin, "cubes": part_cubes,
          "screen": part_screen, "moving": part_moving, "grids": part_grids,
+         "gridpictures": part_gridpictures,
          "subdivide": part_subdivide}
 
 

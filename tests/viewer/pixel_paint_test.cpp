@@ -10,6 +10,8 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <memory>
+#include <span>
 #include <vector>
 
 namespace surfelao {
@@ -54,6 +56,38 @@ TEST(PixelPaint, LightIsThatOfTheShaders)
             << static_cast<int>(colors);
         EXPECT_LT(differences.back(), 0.3f) << static_cast<int>(colors);
     }
+}
+
+// Under an even sky it does not matter from where the light is that a grid takes; under half a sky
+// it does.
+TEST(PixelPaint, GridsTakeTheLightOfTheirCones)
+{
+    auto grid = std::make_shared<AoGrid>();
+    grid->cells = glm::ivec3(2);
+    grid->low = glm::dvec3(-1.0);
+    grid->high = glm::dvec3(1.0);
+    for (int cell = 0; cell < 8; ++cell)  // a cap of 60 degrees along x
+        grid->values.insert(grid->values.end(), {0.1875f, 0.0f, 0.0f, 0.25f});
+    GridPixels grids;
+    grids.world = std::make_shared<GridWorld>(std::vector<PlacedGrid>{{grid, {}}},
+                                              std::make_shared<const Geometry>());
+    const Receiver receiver{{0.0f, 0.0f, 0.0f}, {0, 1, 0}, 0.0f};
+    const Occlusion value =
+        solve_with_grids(grids, std::span<const Receiver>(&receiver, 1)).front();
+    ASSERT_GT(value.occlusion, 0.15f);
+    const auto shown = [&](const Image& sky, const GridPixels* taking) {
+        const PixelPaint paint = pixel_paint({.colors = Colors::environment, .exposure = -2.0f},
+                                             UpAxis::y, &sky, nullptr);
+        return paint.color({receiver, value, value, false, taking}).r;
+    };
+    Image even(64, 32), half(64, 32);
+    std::ranges::fill(even.pixels, glm::vec4(1.0f));
+    std::ranges::fill(half.pixels, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+    for (int y = 0; y < 32; ++y)
+        for (int x = 16; x < 48; ++x)  // the middle column looks along x
+            half.at(x, y) = glm::vec4(1.0f);
+    EXPECT_NEAR(shown(even, &grids), shown(even, nullptr), 1e-4f);
+    EXPECT_LT(shown(half, &grids), 0.93f * shown(half, nullptr));
 }
 
 }  // namespace

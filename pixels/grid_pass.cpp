@@ -1,0 +1,202 @@
+#include "pixels/grid_pass.h"
+
+#include "gpu/draw.h"
+#include "gpu/program.h"
+#include "grid/cone.h"
+#include "surfels/errors.h"
+
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+namespace surfelao {
+namespace {
+
+constexpr int kCapTable = 64;  // of grid_cone.glsl: off by .0014 at most, .0001 RMS
+constexpr std::size_t kBoxVertices = 36;
+
+/// T over the share of the sphere that a cap has and (1 + cos b) / 2.
+std::vector<float> cap_table()
+{
+    std::vector<float> table;
+    constexpr double kLast = kCapTable - 1;
+    for (int y = 0; y < kCapTable; ++y) {
+        for (int x = 0; x < kCapTable; ++x)
+            table.push_back(
+                static_cast<float>(clipped_cap(1.0 - 2.0 * (x / kLast), 2.0 * (y / kLast) - 1.0)));
+    }
+    return table;
+}
+
+std::vector<Texture3D> cells_of(const GlContext& context, const AoGrid& grid)
+{
+    const std::size_t channels = channels_of(grid.store);
+    std::vector<Texture3D> cells;
+    for (std::size_t first = 0; first < channels; first += 4) {
+        std::vector<glm::vec4> texels(grid.cell_count(), glm::vec4(0.0f));
+        for (std::size_t i = 0; i < texels.size(); ++i) {
+            for (std::size_t c = first; c < std::min(channels, first + 4); ++c)
+                texels[i][static_cast<int>(c - first)] = grid.values[i * channels + c];
+        }
+        cells.emplace_back(context, grid.cells, std::span<const glm::vec4>(texels));
+    }
+    return cells;
+}
+
+/// Its columns are the view's axes.
+glm::dmat3 axes_of(const View& view)
+{
+    return {glm::dvec3(view.right), glm::dvec3(view.up), glm::dvec3(view.forward)};
+}
+
+/// From half boxes of the grid to view space.
+glm::dmat4 box_to_view(const PlacedGrid& object, const View& view)
+{
+    const AoGrid& grid = *object.grid;
+    const Placement& at = object.placement;
+    const glm::dvec3 middle = 0.5 * (grid.low + grid.high), half = 0.5 * (grid.high - grid.low);
+    const glm::dmat3 turn = glm::transpose(axes_of(view)) * at.rotation;
+    glm::dmat4 result(1.0);
+    for (int axis = 0; axis < 3; ++axis)
+        result[axis] = glm::dvec4(at.scale * half[axis] * turn[axis], 0.0);
+    const glm::dvec3 place = at.scale * (at.rotation * middle) + at.translation;
+    result[3] = glm::dvec4((place - glm::dvec3(view.eye)) * axes_of(view), 1.0);
+    return result;
+}
+
+/// What is left out so that they remain; a mirrored box has its faces turned.
+Cull back_faces(const PlacedGrid& object)
+{
+    return glm::determinant(object.placement.rotation) < 0.0 ? Cull::back : Cull::front;
+}
+
+/// From a pixel's middle (x, y, 1) to half boxes: at distance 0, and what a distance of 1 adds.
+void set_rays(Program& program, const glm::dmat4& to_box, const Lens& lens, int width, int height)
+{
+    const glm::dvec2 low(lens.low);
+    const glm::dvec2 step = glm::dvec2(lens.high - lens.low) / glm::dvec2(width, height);
+    const glm::dvec3 across(to_box[0]), upwards(to_box[1]);
+    const glm::dmat3 sides(step.x * across, step.y * upwards, low.x * across + low.y * upwards);
+    glm::dmat3 start(0.0), along(0.0);
+    (lens.orthographic ? start : along) = sides;
+    start[2] += glm::dvec3(to_box[3]);
+    along[2] += glm::dvec3(to_box[2]);
+    program.set("u_start", glm::mat3(start));
+    program.set("u_along", glm::mat3(along));
+}
+
+void set_warp(Program& program, const AoGrid& grid)
+{
+    const glm::vec3 cells(grid.cells), scale = 0.5f * (cells - 1.0f) / cells;
+    const glm::vec3 far = (1.0f - grid.inner_share) / (1.0f - grid.inner);
+    program.set("u_inner", grid.inner);
+    program.set("u_near", scale * grid.inner_share / grid.inner);
+    program.set("u_far", scale * far);
+    program.set("u_far_start", scale * (grid.inner_share - far * grid.inner));
+}
+
+}  // namespace
+
+GridPass::GridPass(const GlContext& context)
+    : context_(context),
+      nothing_(context),
+      caps_(context, kCapTable, kCapTable, TexelFormat::r32f, std::span<const float>(cap_table()),
+            {.filter = TextureFilter::linear})
+{
+}
+
+Framebuffer GridPass::make_target(int width, int height) const
+{
+    return {context_, {.width = width, .height = height, .colors = {TexelFormat::r32f}}};
+}
+
+const GridPass::Stored& GridPass::stored(const std::shared_ptr<const AoGrid>& grid)
+{
+    const auto found = stored_.find(grid.get());
+    if (found != stored_.end())
+        return found->second;
+    return stored_.emplace(grid.get(), Stored{grid, cells_of(context_, *grid)}).first->second;
+}
+
+Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object,
+                               const char* fragment_file)
+{
+    const AoGrid& grid = *object.grid;
+    const View& view = seen.view();
+    const bool is_sh = grid.store == GridStore::sh;
+    const bool is_joined = std::string_view(fragment_file) == "grid_merge.frag";
+    const bool is_rescaled = grid.border == GridBorder::rescale;
+    std::vector<std::string> definitions;
+    if (is_sh)
+        definitions.emplace_back("SH");
+    if (is_rescaled)
+        definitions.emplace_back("RESCALE");
+    Program& program = context_.program("grid_box.vert", fragment_file, definitions);
+    const glm::dmat4 from_box = box_to_view(object, view);
+    program.set("u_from_box", glm::mat4(from_box));
+    set_rays(program, glm::inverse(from_box), view.lens, seen.width(), seen.height());
+    program.set("u_to_grid", glm::mat3(glm::transpose(object.placement.rotation) * axes_of(view)));
+    program.set("u_lens_low", view.lens.low);
+    program.set("u_lens_high", view.lens.high);
+    program.set("u_is_orthographic", view.lens.orthographic ? 1 : 0);
+    program.set("u_surface", seen.surface());
+    set_warp(program, grid);
+    if (is_rescaled)
+        program.set("u_border", glm::vec2(grid.border_value, 1.0f / (1.0f - grid.border_value)));
+    const std::vector<Texture3D>& textures = stored(object.grid).cells;
+    program.set("u_cells", textures[0]);
+    if (is_sh && !is_joined) {
+        program.set("u_cells_2", textures[1]);
+        program.set("u_cells_3", textures[2]);
+    }
+    if (!is_sh && !is_joined)
+        program.set("u_caps", caps_);
+    return program;
+}
+
+void GridPass::draw(const GBuffer& seen, std::span<const PlacedGrid> objects, GridMerge merge,
+                    const Framebuffer& target)
+{
+    SURFELAO_CHECK(target.width() == seen.width() && target.height() == seen.height());
+    if (merge == GridMerge::caps) {
+        join(seen, objects, target);
+        return;
+    }
+    target.clear_color(glm::vec4(1.0f));
+    for (const PlacedGrid& object : objects) {
+        const Program& program = program_for(seen, object, "grid_shade.frag");
+        surfelao::draw(target, program, nothing_, {.count = kBoxVertices},
+                       {.blend = Blend::multiply, .cull = back_faces(object)});
+    }
+}
+
+void GridPass::join(const GBuffer& seen, std::span<const PlacedGrid> objects,
+                    const Framebuffer& target)
+{
+    if (!joined_ || joined_->first.width() != seen.width() ||
+        joined_->first.height() != seen.height()) {
+        const FramebufferOptions options{
+            .width = seen.width(), .height = seen.height(), .colors = {TexelFormat::rgba32f}};
+        joined_.emplace(Framebuffer(context_, options), Framebuffer(context_, options));
+    }
+    const auto& [before, after] = *joined_;
+    before.clear_color(glm::vec4(0.0f));
+    after.clear_color(glm::vec4(0.0f));
+    for (const PlacedGrid& object : objects) {
+        Program& program = program_for(seen, object, "grid_merge.frag");
+        program.set("u_before", before.color());
+        surfelao::draw(after, program, nothing_, {.count = kBoxVertices},
+                       {.cull = back_faces(object)});
+        after.copy_to(before);
+    }
+    Program& program = context_.program("fullscreen.vert", "grid_union.frag");
+    program.set("u_surface", seen.surface());
+    program.set("u_before", before.color());
+    program.set("u_caps", caps_);
+    draw_fullscreen(target, program, nothing_);
+}
+
+}  // namespace surfelao

@@ -1,0 +1,212 @@
+#include "pixels/grid_world.h"
+
+#include "surfels/errors.h"
+#include "surfels/labels.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace surfelao {
+namespace {
+
+constexpr std::size_t kGridGrain = 1024;  // receivers of one task
+/// Poses of one object's parts agree to this share of the scene.
+constexpr double kSamePose = 1e-6;
+
+/// Scene triangles of each object.
+std::vector<std::vector<bool>> triangles_of(const Scene& scene, std::span<const NodeGrid> grids)
+{
+    std::vector<std::vector<bool>> all;
+    std::vector<bool> taken(scene.triangles.size(), false);
+    for (const NodeGrid& grid : grids) {
+        std::vector<bool> found(1, !grid.triangles.empty());
+        all.push_back(found[0] ? grid.triangles : triangles_called(scene, {&grid.node, 1}, found));
+        if (!found[0]) {
+            std::string near;
+            for (const std::string& name : names_near(scene.labels, grid.node))
+                near += (near.empty() ? "" : ", ") + name;
+            throw InputError(scene.name + ": no part is called " + grid.node +
+                             ", whose grid is given" +
+                             (near.empty() ? "" : " (near it: " + near + ")"));
+        }
+        for (std::size_t t = 0; t < taken.size(); ++t) {
+            if (!all.back()[t])
+                continue;
+            if (taken[t])
+                throw InputError(scene.name + ": two grids are given for parts of " + grid.node);
+            taken[t] = true;
+        }
+    }
+    return all;
+}
+
+/// Whether the part has triangles of the object.
+bool has_some(const Part& part, const std::vector<bool>& triangles)
+{
+    const auto first = triangles.begin() + static_cast<std::ptrdiff_t>(part.first_triangle);
+    return std::find(first, first + static_cast<std::ptrdiff_t>(part.triangle_count), true) !=
+           first + static_cast<std::ptrdiff_t>(part.triangle_count);
+}
+
+/// What the pose of an object does to places of its frame at rest, as far as it is measured.
+double pose_difference(const glm::dmat4& a, const glm::dmat4& b, const Frame& frame)
+{
+    double largest = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
+        const glm::dvec4 place(frame.centre + frame.diagonal * (side - 0.5), 1.0);
+        largest = std::max(largest, glm::length(glm::dvec3(a * place - b * place)));
+    }
+    return largest / frame.diagonal;
+}
+
+/// From rest to now; empty where the object is gone.
+std::optional<glm::dmat4> pose_of(const Scene& scene, const Frame& frame, const NodeGrid& grid,
+                                  const std::vector<bool>& triangles,
+                                  const std::vector<PartPose>& poses)
+{
+    if (poses.empty())
+        return glm::dmat4(1.0);
+    std::optional<glm::dmat4> pose;
+    for (std::size_t p = 0; p < scene.parts.size(); ++p) {
+        if (!has_some(scene.parts[p], triangles) || poses[p].is_gone)
+            continue;
+        if (!poses[p].positions.empty() ||
+            (pose && pose_difference(*pose, poses[p].from_rest, frame) > kSamePose))
+            throw InputError(scene.name + ": " + grid.node +
+                             " does not move as one piece: give each of its parts a grid");
+        pose = pose.value_or(poses[p].from_rest);
+    }
+    return pose;
+}
+
+/// From the world to the unit frame.
+glm::dmat4 into_frame(const Frame& frame)
+{
+    glm::dmat4 matrix(1.0 / frame.diagonal);
+    matrix[3] = glm::dvec4(-frame.centre / frame.diagonal, 1.0);
+    return matrix;
+}
+
+/// A name for the triangles of all objects, which nothing in a file has.
+const std::string kWithGrids = "\x01 with grids";
+
+Label label_of(const std::vector<std::vector<bool>>& triangles)
+{
+    Label label{LabelKind::object, kWithGrids, {}};
+    for (std::uint32_t t = 0; t < triangles.front().size(); ++t) {
+        if (std::ranges::none_of(triangles, [&](const auto& of_one) { return of_one[t]; }))
+            continue;
+        if (label.ranges.empty() || label.ranges.back().first + label.ranges.back().count != t)
+            label.ranges.push_back({t, 0});
+        ++label.ranges.back().count;
+    }
+    return label;
+}
+
+/// All that occludes but the objects: as if they alone were baked, and did not occlude.
+std::shared_ptr<const Geometry> rest_of(const Mesh& mesh, const ReadOptions& reading,
+                                        PartChoice choice,
+                                        const std::vector<std::vector<bool>>& triangles)
+{
+    if (triangles.empty())
+        return std::make_shared<const Geometry>(mesh.occluding());
+    Scene scene = mesh.scene;
+    scene.labels.push_back(label_of(triangles));
+    choice.receivers = {kWithGrids};
+    choice.exclude.push_back(kWithGrids);
+    const Mesh objects = mesh_of(std::move(scene), {.source = NormalSource::flat}, choice, reading,
+                                 mesh.geometry.frame);
+    return objects.occluders;
+}
+
+void darken(Occlusion& value, float visibility)
+{
+    value.occlusion = 1.0f - (1.0f - value.occlusion) * visibility;
+}
+
+}  // namespace
+
+void GridWorld::prepare_rest(const EngineChoice& choice)
+{
+    if (!rest_->triangles.empty())
+        static_cast<void>(occluders_.prepared_for(choice));
+}
+
+std::vector<Occlusion> GridWorld::solve_rest(std::span<const Receiver> receivers,
+                                             const EngineSettings& engine, const Progress& progress)
+{
+    if (!rest_->triangles.empty())
+        return solve(occluders_.prepared_for(engine), receivers, engine, progress).occlusion;
+    std::vector<Occlusion> answers;
+    const std::optional<Ground>& ground = engine.definition.ground;
+    if (ground && std::isfinite(engine.definition.max_distance))
+        throw InputError("a ground and a limit of the distance need a part without a grid");
+    for (const Receiver& receiver : receivers) {
+        // of an endless plane that a receiver stands over: a wedge's share
+        const float hidden = ground ? 0.5f * (1.0f - glm::dot(receiver.normal, ground->up)) : 0.0f;
+        answers.push_back({receiver.normal == glm::vec3(0.0f) ? 0.0f : hidden, receiver.normal});
+    }
+    return answers;
+}
+
+std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh, const ReadOptions& reading,
+                                         const PartChoice& choice, const GridSources& sources)
+{
+    const std::vector<NodeGrid>& grids = sources.grids;
+    const Frame& frame = mesh.geometry.frame;
+    const auto triangles = triangles_of(mesh.scene, grids);
+    std::vector<PartPose> poses;
+    if (sources.motion && reading.moment)
+        poses = sources.motion->at(reading.moment->seconds);
+    std::vector<PlacedGrid> objects;
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+        const auto pose = pose_of(mesh.scene, frame, grids[i], triangles[i], poses);
+        if (!pose)
+            continue;
+        const auto placement = placement_of(into_frame(frame) * *pose);
+        if (!placement)
+            throw InputError(mesh.scene.name + ": " + grids[i].node +
+                             " is sheared or scaled unevenly: its grid does not follow that");
+        objects.push_back({grids[i].grid, *placement});
+    }
+    return std::make_shared<GridWorld>(std::move(objects),
+                                       rest_of(mesh, reading, choice, triangles));
+}
+
+std::vector<Occlusion> solve_with_grids(GridPass& pass, const GBuffer& drawing,
+                                        const GridPixels& settings,
+                                        std::span<const Receiver> receivers,
+                                        std::span<const std::uint32_t> pixels,
+                                        const Progress& progress)
+{
+    std::vector<Occlusion> values = settings.world->solve_rest(receivers, settings.rest, progress);
+    const Framebuffer target = pass.make_target(drawing.width(), drawing.height());
+    pass.draw(drawing, settings.world->objects(), settings.merge, target);
+    const std::vector<float> visibility = target.read_red(target.rect());
+    for (std::size_t i = 0; i < values.size(); ++i)
+        darken(values[i], visibility[pixels[i]]);
+    return values;
+}
+
+std::vector<Occlusion> solve_with_grids(const GridPixels& settings,
+                                        std::span<const Receiver> receivers,
+                                        const Progress& progress)
+{
+    std::vector<Occlusion> values = settings.world->solve_rest(receivers, settings.rest, progress);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, receivers.size(), kGridGrain),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i)
+                              darken(values[i],
+                                     visibility_at(settings.world->objects(), settings.merge,
+                                                   receivers[i].position, receivers[i].normal));
+                      });
+    return values;
+}
+
+}  // namespace surfelao

@@ -1,0 +1,77 @@
+#include "g_buffer.glsl"
+
+// grid_cell.glsl: what is read from an AO grid at the point that a pixel sees, its border included.
+// Without divisions where the host can divide: a pass is bound by arithmetic.
+//
+// Host side  grid/ao_grid.h, pixels/grid_pass.cpp
+//   u_start u_along  a pixel's middle (x, y, 1) to half boxes at distance 0 forward, and what a
+//                    distance of 1 adds
+//   u_to_grid        directions of view space to those of the grid
+//   u_inner          AoGrid: a
+//   u_near u_far u_far_start  half boxes to half textures: u_near x within a, beyond it
+//                    u_far x + u_far_start
+//   u_border         RESCALE: V_M, 1 / (1 - V_M)
+//   u_cells          RGBA16F, n^3: m / (4 pi), alpha; SH: coefficients 0 to 3
+//   u_cells_2 u_cells_3    SH: 4 to 7, and 8
+// CPU twin   read_values(), border_weight() in grid/ao_grid.cpp
+uniform mat3 u_start;
+uniform mat3 u_along;
+uniform mat3 u_to_grid;
+uniform vec3 u_inner;
+uniform vec3 u_near;
+uniform vec3 u_far;
+uniform vec3 u_far_start;
+uniform sampler3D u_cells;
+#ifdef RESCALE
+uniform vec2 u_border;
+#endif
+#ifdef SH
+uniform sampler3D u_cells_2;
+uniform sampler3D u_cells_3;
+#endif
+
+const float kFade = 0.12;  // kGridFade
+
+// no cell where |x| > 1
+vec3 place_in_box(float distance)
+{
+    vec3 pixel = vec3(gl_FragCoord.xy, 1.0);
+    return u_start * pixel + distance * (u_along * pixel);
+}
+
+float farthest_out(vec3 x)
+{
+    vec3 size = abs(x);
+    return max(size.x, max(size.y, size.z));
+}
+
+vec3 cell_place(vec3 x)
+{
+    vec3 far = u_far * x + sign(x) * u_far_start;
+    return 0.5 + mix(far, u_near * x, lessThan(abs(x), u_inner));
+}
+
+float border_weight(vec3 x, float alpha)
+{
+#ifdef RESCALE
+    return max(0.0, alpha - u_border.x) * u_border.y / max(alpha, 1e-7);
+#else
+    float t = clamp((1.0 - farthest_out(x)) * (1.0 / kFade), 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+#endif
+}
+
+#ifdef SH
+// m / (4 pi) and alpha of the first four coefficients
+vec4 moments_of(vec4 c) { return vec4(c.w, c.yz, c.x) * vec4(vec3(0.16286750), 0.28209479); }
+#endif
+
+// m / (4 pi) in the grid's directions, and alpha
+vec4 moments_at(vec3 x)
+{
+    vec4 moments = texture(u_cells, cell_place(x));
+#ifdef SH
+    moments = moments_of(moments);
+#endif
+    return border_weight(x, moments.w) * moments;
+}

@@ -1,0 +1,21 @@
+#version 330 core
+#include "g_buffer.glsl"
+#include "grid_cone.glsl"
+
+// grid_union.frag: what the joined cones of all objects leave of the light at each pixel.
+//
+// Vertices   fullscreen.vert
+// Reads      g_buffer.glsl (the normal alone), grid_cone.glsl
+//            u_before  as grid_merge.frag writes it
+// Writes     out_visibility  1 - occlusion
+
+uniform sampler2D u_before;
+
+out float out_visibility;
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec3 normal = texelFetch(u_surface, pixel, 0).xyz;
+    out_visibility = 1.0 - clamp(occlusion_by(texelFetch(u_before, pixel, 0), normal), 0.0, 1.0);
+}
