@@ -292,8 +292,8 @@ PixelQuestion CellView::question_for(const EngineSettings& engine)
 std::shared_ptr<const Prepared> CellView::prepared_for(const EngineSettings& engine) const
 {
     const std::shared_ptr<const Prepared>& prepared = session_.state().prepared;
-    const bool is_shared = engine.device != Device::gpu && prepared &&
-                           prepared->choice() == EngineChoice(engine);
+    const bool is_shared =
+        engine.device != Device::gpu && prepared && prepared->choice() == EngineChoice(engine);
     return is_shared ? prepared : nullptr;
 }
 

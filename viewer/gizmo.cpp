@@ -22,8 +22,8 @@ constexpr double kEdgeOn = 0.15;
 glm::dvec3 axis_of(GizmoHandle handle)
 {
     glm::dvec3 axis(0.0);
-    const int first = static_cast<int>(handle >= GizmoHandle::turn_x ? GizmoHandle::turn_x
-                                                                      : GizmoHandle::move_x);
+    const int first =
+        static_cast<int>(handle >= GizmoHandle::turn_x ? GizmoHandle::turn_x : GizmoHandle::move_x);
     axis[static_cast<int>(handle) - first] = 1.0;
     return axis;
 }
@@ -53,7 +53,8 @@ double distance_to_segment(glm::vec2 p, glm::vec2 a, glm::vec2 b)
 {
     const glm::vec2 along = b - a;
     const float length2 = glm::dot(along, along);
-    const float t = length2 > 0.0f ? glm::clamp(glm::dot(p - a, along) / length2, 0.0f, 1.0f) : 0.0f;
+    const float t =
+        length2 > 0.0f ? glm::clamp(glm::dot(p - a, along) / length2, 0.0f, 1.0f) : 0.0f;
     return glm::distance(p, a + t * along);
 }
 
@@ -111,8 +112,7 @@ Gizmo::Gizmo(const View& view, int width, int height, glm::dvec3 centre, float l
     }
     const glm::dvec3 right = kInnerShare * glm::dvec3(view.right);
     const glm::dvec3 up = kInnerShare * glm::dvec3(view.up);
-    add(GizmoHandle::move_in_view,
-        {right + up, right - up, -right - up, -right + up, right + up});
+    add(GizmoHandle::move_in_view, {right + up, right - up, -right - up, -right + up, right + up});
 }
 
 GizmoHandle Gizmo::handle_at(glm::vec2 pixel, float reach) const
@@ -121,8 +121,7 @@ GizmoHandle Gizmo::handle_at(glm::vec2 pixel, float reach) const
     double nearest = reach;
     for (const Line& line : lines_) {
         for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
-            const double distance =
-                distance_to_segment(pixel, line.points[i], line.points[i + 1]);
+            const double distance = distance_to_segment(pixel, line.points[i], line.points[i + 1]);
             if (distance < nearest) {
                 nearest = distance;
                 found = line.handle;
@@ -132,8 +131,8 @@ GizmoHandle Gizmo::handle_at(glm::vec2 pixel, float reach) const
     return found;
 }
 
-PartMove dragged(const PartMove& start, GizmoHandle handle, glm::dvec3 centre,
-                 const SightRay& from, const SightRay& to, glm::dvec3 forward, double radius)
+PartMove dragged(const PartMove& start, GizmoHandle handle, glm::dvec3 centre, const SightRay& from,
+                 const SightRay& to, glm::dvec3 forward, double radius)
 {
     PartMove move = start;
     switch (handle) {
@@ -143,8 +142,8 @@ PartMove dragged(const PartMove& start, GizmoHandle handle, glm::dvec3 centre,
         case GizmoHandle::move_y:
         case GizmoHandle::move_z: {
             const glm::dvec3 axis = axis_of(handle);
-            move.translation += axis * (nearest_on_axis(centre, axis, to) -
-                                        nearest_on_axis(centre, axis, from));
+            move.translation +=
+                axis * (nearest_on_axis(centre, axis, to) - nearest_on_axis(centre, axis, from));
             break;
         }
         case GizmoHandle::turn_x:

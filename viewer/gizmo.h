@@ -60,8 +60,7 @@ private:
                                double radius);
 
 /// How far a length of so many pixels reaches at that point. Unit frame.
-[[nodiscard]] double length_of_pixels(const View& view, int height, glm::dvec3 point,
-                                      float pixels);
+[[nodiscard]] double length_of_pixels(const View& view, int height, glm::dvec3 point, float pixels);
 
 /// A rotation as three angles, about x first, then y, then z; degrees.
 [[nodiscard]] glm::dvec3 degrees_of(const glm::dquat& rotation);

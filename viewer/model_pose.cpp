@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -21,8 +22,8 @@ glm::dmat4 in_unit_frame(const glm::dmat4& world, const Frame& frame)
 {
     glm::dmat4 unit = world;
     const glm::dvec3 centre = frame.centre;
-    unit[3] = glm::dvec4((glm::dvec3(world * glm::dvec4(centre, 1.0)) - centre) / frame.diagonal,
-                         1.0);
+    unit[3] =
+        glm::dvec4((glm::dvec3(world * glm::dvec4(centre, 1.0)) - centre) / frame.diagonal, 1.0);
     return unit;
 }
 
@@ -36,6 +37,12 @@ glm::vec3 turned(const glm::dmat3& by, glm::vec3 direction)
 glm::dvec3 place_of(const Placement& placement, glm::dvec3 p)
 {
     return placement.scale * (placement.rotation * p) + placement.translation;
+}
+
+std::size_t part_of(const Scene& scene, std::uint32_t vertex)
+{
+    const auto behind = std::ranges::upper_bound(scene.parts, vertex, {}, &Part::first_vertex);
+    return static_cast<std::size_t>(behind - scene.parts.begin()) - 1;
 }
 
 /// A pose under way: all at rest, but for what was set.
@@ -76,12 +83,12 @@ public:
             pose_.shape.positions[v] = base_.geometry().positions[bodies_.vertices[body].front()];
     }
 
-    /// positions: of the part's vertices, unit frame.
-    void deform(std::uint32_t body, std::uint32_t first, std::span<const glm::dvec3> positions)
+    /// place: of a vertex, unit frame.
+    void deform(std::uint32_t body, const std::function<glm::dvec3(std::uint32_t)>& place)
     {
         pose_.bodies[body].state = BodyState::deformed;
         for (const std::uint32_t v : bodies_.vertices[body])
-            pose_.shape.positions[v] = glm::vec3(positions[v - first]);
+            pose_.shape.positions[v] = glm::vec3(place(v));
         is_deformed_ = true;
     }
 
@@ -159,8 +166,8 @@ std::vector<std::uint32_t> smooth_places_of(const Mesh& mesh, const Bodies& bodi
 
 }  // namespace
 
-Bodies bodies_of(const Model& base, const Movables& movables,
-                 std::span<const std::uint32_t> moved, const std::vector<bool>& part_moves)
+Bodies bodies_of(const Model& base, const Movables& movables, std::span<const std::uint32_t> moved,
+                 const Motion* motion)
 {
     const Scene& scene = base.mesh->scene;
     std::vector<std::uint32_t> index_of(movables.list.size(), Body::kNone);
@@ -171,13 +178,17 @@ Bodies bodies_of(const Model& base, const Movables& movables,
     bodies.of_vertex.assign(scene.positions.size(), 0);
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers{
         {{Body::kNone, Body::kNone}, 0}};
+    std::map<std::uint32_t, std::uint32_t> first_part;  // of Motion::bodies()
     for (std::uint32_t p = 0; p < scene.parts.size(); ++p) {
         const Part& part = scene.parts[p];
-        const bool is_animated = p < part_moves.size() && part_moves[p];
+        std::uint32_t alike = Body::kNone;  // the first part that moves as it does
+        if (motion && motion->bodies()[p] != 0)
+            alike = motion->deforms()[p]
+                        ? p
+                        : first_part.try_emplace(motion->bodies()[p], p).first->second;
         for (std::uint32_t v = 0; v < part.vertex_count; ++v) {
             const std::uint32_t movable = movables.of_vertex[part.first_vertex + v];
-            const Body body{is_animated ? p : Body::kNone,
-                            movable == Movables::kNone ? Body::kNone : index_of[movable]};
+            const Body body{alike, movable == Movables::kNone ? Body::kNone : index_of[movable]};
             const auto next = static_cast<std::uint32_t>(bodies.list.size());
             const auto [entry, is_new] =
                 numbers.try_emplace(std::pair(body.part, body.movable), next);
@@ -200,7 +211,7 @@ Bodies bodies_of(const Model& base, const Movables& movables,
         if (body != 0)
             bodies.wedges[body].push_back(wedge);
     }
-    if (std::ranges::find(part_moves, true) != part_moves.end())
+    if (motion)
         bodies.smooth_places = smooth_places_of(*base.mesh, bodies);
     return bodies;
 }
@@ -210,8 +221,7 @@ Placement placement_of(const PartMove& move, glm::dvec3 middle)
     Placement placement;
     placement.rotation = glm::mat3_cast(move.rotation);
     placement.scale = move.scale;
-    placement.translation =
-        middle + move.translation - move.scale * (placement.rotation * middle);
+    placement.translation = middle + move.translation - move.scale * (placement.rotation * middle);
     return placement;
 }
 
@@ -236,8 +246,8 @@ ModelPose pose_of(const Model& base, const Bodies& bodies, const Movables& movab
         Placement by_hand;
         if (body.movable != Body::kNone) {
             glm::dvec3& middle = middles[body.movable];
-            middle = glm::dvec3(
-                animated * glm::dvec4(movables.list[moved[body.movable]].middle(), 1.0));
+            middle =
+                glm::dvec3(animated * glm::dvec4(movables.list[moved[body.movable]].middle(), 1.0));
             by_hand = placement_of(moves[body.movable], middle);
         }
         const std::optional<Placement> placement =
@@ -246,18 +256,15 @@ ModelPose pose_of(const Model& base, const Bodies& bodies, const Movables& movab
             posing.place(b, *placement);
             continue;
         }
-        const Part& range = base.mesh->scene.parts[body.part];
-        std::vector<glm::dvec3> positions(range.vertex_count);
-        for (std::uint32_t v = 0; v < range.vertex_count; ++v) {
+        posing.deform(b, [&](std::uint32_t v) {
+            const std::size_t p = part_of(base.mesh->scene, v);
             const glm::dvec3 world =
-                part.positions.empty()
-                    ? glm::dvec3(part.from_rest *
-                                 glm::dvec4(base.mesh->scene.positions[range.first_vertex + v],
-                                            1.0))
-                    : part.positions[v];
-            positions[v] = place_of(by_hand, (world - frame.centre) / frame.diagonal);
-        }
-        posing.deform(b, range.first_vertex, positions);
+                parts[p].positions.empty()
+                    ? glm::dvec3(parts[p].from_rest *
+                                 glm::dvec4(base.mesh->scene.positions[v], 1.0))
+                    : parts[p].positions[v - base.mesh->scene.parts[p].first_vertex];
+            return place_of(by_hand, (world - frame.centre) / frame.diagonal);
+        });
     }
     ModelPose pose = posing.finish();
     pose.middles = std::move(middles);
@@ -312,8 +319,7 @@ void turn_normals(Scene& scene, const Bodies& bodies, const ModelPose& pose)
         return;
     if (normals.corners.empty()) {
         for (std::uint32_t v = 0; v < normals.values.size(); ++v) {
-            const bool is_deformed =
-                pose.bodies[bodies.of_vertex[v]].state == BodyState::deformed;
+            const bool is_deformed = pose.bodies[bodies.of_vertex[v]].state == BodyState::deformed;
             normals.values[v] = is_deformed
                                     ? pose.shape.normals[v]
                                     : glm::vec3(rotation_of(v) * glm::dvec3(normals.values[v]));
@@ -373,10 +379,9 @@ Scene posed_scene(const Model& base, const Bodies& bodies, const ModelPose& pose
 Model posed_model(const Model& base, const Bodies& bodies, const ModelPose& pose)
 {
     SURFELAO_CHECK(!base.cloud);
-    Model model =
-        make_model(make_mesh(posed_scene(base, bodies, pose), base.settings.normals,
-                             {.frame = base.geometry().frame}),
-                   base.up, base.settings);
+    Model model = make_model(make_mesh(posed_scene(base, bodies, pose), base.settings.normals,
+                                       {.frame = base.geometry().frame}),
+                             base.up, base.settings);
     model.ground_plane = base.ground_plane;
     model.occluding_ground = base.occluding_ground;
     model.ground = base.ground;

@@ -21,16 +21,16 @@ namespace surfelao {
 
 /// By hand. Turned and scaled about the part's middle, then moved.
 struct PartMove {
-    glm::dvec3 translation{0.0};               ///< in diagonals
+    glm::dvec3 translation{0.0};              ///< in diagonals
     glm::dquat rotation{1.0, 0.0, 0.0, 0.0};  ///< of unit length
-    double scale = 1.0;                        ///< > 0
+    double scale = 1.0;                       ///< > 0
     bool operator==(const PartMove&) const = default;
 };
 
 /// What moves as one in MovingScene's sense.
 struct Body {
     static constexpr std::uint32_t kNone = 0xffffffff;
-    std::uint32_t part = kNone;     ///< of the scene, that the animation moves
+    std::uint32_t part = kNone;     ///< of the scene, that the animation moves, and others alike
     std::uint32_t movable = kNone;  ///< that is moved by hand: an index into `moved`
     bool operator==(const Body&) const = default;
 };
@@ -45,10 +45,9 @@ struct Bodies {
     std::vector<std::uint32_t> smooth_places;
 };
 
-/// part_moves: Motion::moves(), or empty. moved: of the movables, those that a hand may move. O(n).
+/// motion: of the base's scene, or null. moved: of the movables, those that a hand may move. O(n).
 [[nodiscard]] Bodies bodies_of(const Model& base, const Movables& movables,
-                               std::span<const std::uint32_t> moved,
-                               const std::vector<bool>& part_moves);
+                               std::span<const std::uint32_t> moved, const Motion* motion);
 
 /// What is drawn. Where a body is gone, its vertices lie in one point.
 struct ModelShape {

@@ -88,8 +88,7 @@ struct MovingSession::Built {
         : number(of),
           question(asked),
           base(*question.base),
-          bodies(bodies_of(base, *question.movables, question.moved,
-                           question.motion ? question.motion->moves() : std::vector<bool>())),
+          bodies(bodies_of(base, *question.movables, question.moved, question.motion.get())),
           scene(base.geometry(), bodies.of_triangle, choice_of(question.engine)),
           rough_target(base.mesh, at_points_of(base.settings)),
           rough(scene, base, rough_target, bodies, draft_of(question.engine))
@@ -146,7 +145,7 @@ struct MovingSession::Built {
     {
         MovingFrame frame;
         frame.report = solve_roughly(progress);
-        frame.pose = at;
+        frame.pose = *at;
         frame.shape = now.shape;
         frame.middles = now.middles;
         frame.pose_s = pose_s;
@@ -184,8 +183,8 @@ struct MovingSession::Built {
         frame.values = whole->values();
         remember(frame.values);
         frame.posed = std::make_shared<const Model>(posed_model(base, bodies, now));
-        frame.at_points = scene.solve(frame.posed->point_receivers, question.engine, progress)
-                              .occlusion;
+        frame.at_points =
+            scene.solve(frame.posed->point_receivers, question.engine, progress).occlusion;
         frame.is_whole = true;
     }
 
@@ -259,10 +258,8 @@ void MovingSession::start_if_idle()
     if (is_running_)
         return;
     is_running_ = true;
-    worker_.start([this, number = number_, question = question_,
-                   known = known_](const Progress& progress) {
-        run(number, question, known, progress);
-    });
+    worker_.start([this, number = number_, question = question_, known = known_](
+                      const Progress& progress) { run(number, question, known, progress); });
 }
 
 bool MovingSession::has_newer() const
