@@ -167,7 +167,7 @@ PartMove dragged(const PartMove& start, GizmoHandle handle, glm::dvec3 centre, c
 
 glm::dvec3 degrees_of(const glm::dquat& rotation)
 {
-    return glm::degrees(glm::eulerAngles(rotation));
+    return glm::degrees(glm::eulerAngles(rotation)) + 0.0;  // no -0
 }
 
 glm::dquat rotation_of(glm::dvec3 degrees)
