@@ -173,12 +173,9 @@ Bodies bodies_of(const Model& base, const Movables& movables, std::span<const st
     std::vector<std::uint32_t> index_of(movables.list.size(), Body::kNone);
     for (std::uint32_t i = 0; i < moved.size(); ++i)
         index_of[moved[i]] = i;
-    Bodies bodies;
-    bodies.list.emplace_back();
-    bodies.of_vertex.assign(scene.positions.size(), 0);
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers{
-        {{Body::kNone, Body::kNone}, 0}};
     std::map<std::uint32_t, std::uint32_t> first_part;  // of Motion::bodies()
+    std::vector<Body> of_vertex;
+    of_vertex.reserve(scene.positions.size());
     for (std::uint32_t p = 0; p < scene.parts.size(); ++p) {
         const Part& part = scene.parts[p];
         std::uint32_t alike = Body::kNone;  // the first part that moves as it does
@@ -188,17 +185,27 @@ Bodies bodies_of(const Model& base, const Movables& movables, std::span<const st
                         : first_part.try_emplace(motion->bodies()[p], p).first->second;
         for (std::uint32_t v = 0; v < part.vertex_count; ++v) {
             const std::uint32_t movable = movables.of_vertex[part.first_vertex + v];
-            const Body body{alike, movable == Movables::kNone ? Body::kNone : index_of[movable]};
-            const auto next = static_cast<std::uint32_t>(bodies.list.size());
-            const auto [entry, is_new] =
-                numbers.try_emplace(std::pair(body.part, body.movable), next);
-            if (is_new)
-                bodies.list.push_back(body);
-            bodies.of_vertex[part.first_vertex + v] = entry->second;
+            of_vertex.push_back(
+                {alike, movable == Movables::kNone ? Body::kNone : index_of[movable]});
         }
     }
-    for (const glm::uvec3 triangle : base.geometry().triangles)
-        bodies.of_triangle.push_back(bodies.of_vertex[triangle.x]);
+    // only what has triangles is a body
+    Bodies bodies;
+    bodies.list.emplace_back();
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers{
+        {{Body::kNone, Body::kNone}, 0}};
+    for (const glm::uvec3 triangle : base.geometry().triangles) {
+        const Body& body = of_vertex[triangle.x];
+        const auto next = static_cast<std::uint32_t>(bodies.list.size());
+        const auto [entry, is_new] = numbers.try_emplace(std::pair(body.part, body.movable), next);
+        if (is_new)
+            bodies.list.push_back(body);
+        bodies.of_triangle.push_back(entry->second);
+    }
+    for (const Body& body : of_vertex) {
+        const auto found = numbers.find(std::pair(body.part, body.movable));
+        bodies.of_vertex.push_back(found == numbers.end() ? 0 : found->second);
+    }
     bodies.vertices.resize(bodies.list.size());
     bodies.wedges.resize(bodies.list.size());
     for (std::uint32_t v = 0; v < bodies.of_vertex.size(); ++v) {

@@ -37,7 +37,7 @@ struct Body {
 
 struct Bodies {
     std::vector<Body> list;                  ///< the first one never moves
-    std::vector<std::uint32_t> of_vertex;    ///< of the scene
+    std::vector<std::uint32_t> of_vertex;    ///< of the scene; 0 also where nothing has triangles
     std::vector<std::uint32_t> of_triangle;  ///< of the geometry
     /// Per body but the first: vertices, and wedges of the surface.
     std::vector<std::vector<std::uint32_t>> vertices, wedges;

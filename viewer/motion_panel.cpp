@@ -195,9 +195,9 @@ void MotionPanel::playing()
 {
     const std::vector<std::string>& animations = mover_.animations();
     const std::string shown =
-        mover_.chosen() ? title_of(animations, *mover_.chosen()) : "as in the file";
+        mover_.chosen() ? title_of(animations, *mover_.chosen()) : "as it was read";
     if (ImGui::BeginCombo("plays", shown.c_str())) {
-        if (ImGui::Selectable("as in the file", !mover_.chosen()))
+        if (ImGui::Selectable("as it was read", !mover_.chosen()))
             mover_.choose(std::nullopt);
         for (std::size_t i = 0; i < animations.size(); ++i) {
             ImGui::PushID(static_cast<int>(i));

@@ -28,6 +28,7 @@ namespace {
 constexpr int kMostSamples = 32;       // a view at rest is done then
 constexpr double kPollSeconds = 0.03;  // while something runs in the background
 constexpr double kIdleSeconds = 0.5;
+constexpr double kMovingSeconds = 0.004;  // while something moves: little beside a picture
 constexpr int kEchoFrames = 4;  // after an event: widgets take some until they stand still
 
 /// Where a picture goes.
@@ -115,13 +116,14 @@ private:
     void wait_for_events()
     {
         const bool drawing = has_view() && (panes_.empty() || samples() < most_samples());
-        if (drawing || options_.on_frame || echo_frames_ > 0 || mover_.player().is_playing) {
+        if (drawing || options_.on_frame || echo_frames_ > 0) {
             glfwPollEvents();
             echo_frames_ = std::max(0, echo_frames_ - 1);
         } else {
             const bool is_busy =
                 left_.is_busy() || (right_ && right_->is_busy()) || mover_.is_busy();
-            const double timeout = is_busy ? kPollSeconds : kIdleSeconds;
+            const bool moves = left_.is_moved() || mover_.player().is_playing;
+            const double timeout = moves ? kMovingSeconds : is_busy ? kPollSeconds : kIdleSeconds;
             const double start = glfwGetTime();
             glfwWaitEventsTimeout(timeout);
             if (glfwGetTime() - start < timeout)
@@ -213,7 +215,8 @@ private:
     CellView& view_of_pane(const Pane& pane) { return pane.as.right ? *right_ : left_; }
 
     bool shows_atlas() const { return panel_state_.shows_atlas && state().layout; }
-    int most_samples() const { return shows_atlas() ? 1 : kMostSamples; }
+    /// What moves leaves its time to the engine.
+    int most_samples() const { return shows_atlas() || left_.is_moved() ? 1 : kMostSamples; }
 
     void frame_all()
     {
@@ -507,6 +510,10 @@ private:
             note_ = what == Saved::picture ? "there is no picture yet" : "nothing is solved yet";
             return;
         }
+        if (what == Saved::baked && left_.is_moved()) {
+            note_ = "not saved: this pose is not solved yet";
+            return;
+        }
         try {
             if (what == Saved::picture)
                 save_picture(path);
@@ -516,6 +523,8 @@ private:
             note_ = "saved " + path.string();
             if (what == Saved::baked && state().is_draft)
                 note_ += ", of the draft";
+            if (what == Saved::baked && !state().pose.is_rest())
+                note_ += ": values of this pose; a glTF keeps the file's own places";
         } catch (const std::exception& error) {
             note_ = error.what();
         }
