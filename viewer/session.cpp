@@ -463,9 +463,19 @@ void Session::save(const std::filesystem::path& path) const
     if (state_.layout)
         return save_map(path, mark);
     check_output(state_.path, path);
-    const Scene& scene = state_.model->mesh->scene;
+    const Scene scene = scene_to_write(path);
     write_scene(path, scene, std::span(occlusion()).first(scene.positions.size()),
                 {.mark = mark, .unbaked = state_.model->mesh->unbaked});
+}
+
+/// What the file itself holds has the places that it was read with: of another pose it is written
+/// anew, but for glTF, which keeps them.
+Scene Session::scene_to_write(const std::filesystem::path& path) const
+{
+    Scene scene = state_.model->mesh->scene;
+    if (!state_.pose.is_rest() && !is_gltf(type_of(path)))
+        scene.asset.reset();
+    return scene;
 }
 
 void Session::save_map(const std::filesystem::path& path, const std::string& mark) const
@@ -481,7 +491,7 @@ void Session::save_map(const std::filesystem::path& path, const std::string& mar
     check_output_with_map(state_.path, path);
     const OcclusionMap picture =
         occlusion_map_of(state_.layout->layout, state_.layout->uv_set, pages, MapDepth::byte);
-    static_cast<void>(write_scene_with_map(path, state_.model->mesh->scene, picture,
+    static_cast<void>(write_scene_with_map(path, scene_to_write(path), picture,
                                            {.mark = mark, .unbaked = state_.model->mesh->unbaked}));
 }
 

@@ -138,10 +138,11 @@ public:
     const std::vector<Occlusion>& occlusion() const { return occlusion_; }
 
     /// Writes the model with the answer at its vertices, the draft where there is no other: the
-    /// bytes that bake() writes for these settings. Of another pose the mark tells so; a glTF keeps
-    /// the file's own places. With a map, the model with it, or the picture
-    /// alone (.png, .tif). Something must be solved. Replaces what stands there. Throws as
-    /// check_output() and write_scene(), and InputError for a map of several pages.
+    /// bytes that bake() writes for these settings. Of another pose the mark tells so, and the file
+    /// is written anew, but for glTF, which keeps the places that it was read with. With a map, the
+    /// model with it, or the picture alone (.png, .tif). Something must be solved. Replaces what
+    /// stands there. Throws as check_output() and write_scene(), and InputError for a map of
+    /// several pages.
     void save(const std::filesystem::path& path) const;
 
     const SessionState& state() const { return state_; }
@@ -175,6 +176,7 @@ private:
     void solve_or_make();
     void start_solve();
     void start_reference();
+    Scene scene_to_write(const std::filesystem::path& path) const;
     void save_map(const std::filesystem::path& path, const std::string& mark) const;
     void measure();
 
