@@ -635,6 +635,7 @@ import cloud_views  # noqa: E402, F401
 import cube_views  # noqa: E402, F401
 import exact_views  # noqa: E402, F401
 import map_views  # noqa: E402, F401
+import moving_views  # noqa: E402, F401
 import screen_views  # noqa: E402, F401
 import viewer_views  # noqa: E402, F401
 import pixel_views  # noqa: E402, F401

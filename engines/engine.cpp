@@ -1,6 +1,6 @@
 #include "engines/engine.h"
 
-#include "engines/engine_options.h"
+#include "engines/options.h"
 #include "gpu/answers.h"
 #include "gpu/context.h"
 #include "gpu/gpu_disks.h"

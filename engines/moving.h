@@ -32,6 +32,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -81,10 +82,11 @@ struct MovingSettings : SolveSettings {
 
 /// What a frame took.
 struct FrameReport {
-    double place = 0.0;        ///< seconds: bodies and receivers to their places
-    double tree = 0.0;         ///< seconds: refitting or building
-    double solve = 0.0;        ///< seconds
-    std::uint64_t solved = 0;  ///< receivers that were answered anew
+    double place = 0.0;                   ///< seconds: bodies and receivers to their places
+    double tree = 0.0;                    ///< seconds: refitting or building
+    double solve = 0.0;                   ///< seconds
+    std::uint64_t solved = 0;             ///< receivers that were answered anew
+    std::optional<double> residual = {};  ///< disks: as in Solution
     float bound = 0.0f;  ///< no receiver that was left is off by more, besides the engine's error
 };
 

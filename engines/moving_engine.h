@@ -1,7 +1,6 @@
 /// moving_engine.h: what MovingScene and MovingReceivers ask of an engine.
 ///
-/// Internal to engines/; moving.h is its door. An engine that knows no motion is rebuilt in every
-/// frame (moving_rebuilt.h).
+/// Internal to engines/; moving.h is its door.
 #pragma once
 
 #include "engines/moving.h"

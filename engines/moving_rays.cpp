@@ -1,6 +1,6 @@
 #include "reference/moving_rays.h"
-#include "engines/engine_options.h"
 #include "engines/moving_engine.h"
+#include "engines/options.h"
 #include "surfels/stopwatch.h"
 
 #include <vector>

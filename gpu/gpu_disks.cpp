@@ -148,6 +148,23 @@ private:
     }
 };
 
+/// What the correcting passes have come to. It depends on the octree and on these options, not on
+/// who is asked, so it is where every later solve starts from: all that are left of two passes is
+/// one.
+struct Corrected {
+    DiskOptions of;
+    std::vector<Framebuffer> visibility;  ///< per side: FarVisibility of each record
+    std::vector<double> residuals;
+
+    bool serves(const DiskOptions& options) const
+    {
+        Definition asked = options.definition, had = of.definition;
+        asked.ground.reset();  // nothing that still counts has the ground beyond it
+        had.ground.reset();
+        return asked == had && options.opening == of.opening && options.passes == of.passes;
+    }
+};
+
 }  // namespace
 
 struct GpuDisks::Impl {
@@ -157,6 +174,7 @@ struct GpuDisks::Impl {
     TextureBuffer records_texture;
     TextureBuffer chunks;
     VertexArray empty;
+    mutable std::optional<Corrected> corrected;  ///< by the last solve
 
     Impl(const GlContext& in, const Octree& of)
         : context(in),
@@ -191,16 +209,14 @@ public:
           limited_(std::isfinite(options.definition.max_distance)),
           two_sided_(limited_ || scene.octree.two_sided_surfels < scene.octree.surfels.size())
     {
-        for (int side = 0; side < side_count(); ++side) {
-            visibility_.push_back(make_rows(scene.context, record_count(), {TexelFormat::rgba32f}));
-            visibility_.back().clear_color(kAllVisible);
-        }
     }
 
     GpuDiskResult solve(std::span<const Receiver> receivers, const Progress& progress)
     {
+        if (scene_.corrected && !scene_.corrected->serves(options_))
+            scene_.corrected.reset();
         std::vector<FarSide> sides;
-        for (int side = 0; side < side_count() && options_.passes > 1; ++side)
+        for (int side = 0; !scene_.corrected && side < side_count() && options_.passes > 1; ++side)
             sides.emplace_back(scene_.context, scene_.octree, scene_.records,
                                side == 0 ? 1.0f : -1.0f);
         const ReceiverGroups groups = group_receivers(receivers);
@@ -209,7 +225,26 @@ public:
             work += side.groups.leaves.size() * static_cast<std::uint64_t>(options_.passes - 1);
         ProgressMeter meter(progress, work);
 
-        std::vector<double> residuals;
+        if (scene_.corrected)
+            visibility_ = &scene_.corrected->visibility;
+        else
+            correct(sides, meter);
+        return {answer(groups, receivers, meter), scene_.corrected->residuals};
+    }
+
+private:
+    int side_count() const { return two_sided_ ? 2 : 1; }
+    std::size_t record_count() const { return scene_.records.records.size(); }
+
+    void correct(std::vector<FarSide>& sides, ProgressMeter& meter)
+    {
+        Corrected corrected{options_, {}, {}};
+        for (int side = 0; side < side_count(); ++side) {
+            corrected.visibility.push_back(
+                make_rows(scene_.context, record_count(), {TexelFormat::rgba32f}));
+            corrected.visibility.back().clear_color(kAllVisible);
+        }
+        visibility_ = &corrected.visibility;
         for (int pass = 1; pass < options_.passes; ++pass) {
             double change = 0.0;
             for (FarSide& side : sides) {
@@ -219,16 +254,13 @@ public:
             }
             average(sides);
             const auto count = static_cast<double>(sides.size() * scene_.octree.surfels.size());
-            residuals.push_back(count > 0.0 ? std::sqrt(change / count) : 0.0);
-            if (residuals.back() <= kSettled)
+            corrected.residuals.push_back(count > 0.0 ? std::sqrt(change / count) : 0.0);
+            if (corrected.residuals.back() <= kSettled)
                 break;
         }
-        return {answer(groups, receivers, meter), std::move(residuals)};
+        scene_.corrected = std::move(corrected);
+        visibility_ = &scene_.corrected->visibility;
     }
-
-private:
-    int side_count() const { return two_sided_ ? 2 : 1; }
-    std::size_t record_count() const { return scene_.records.records.size(); }
 
     std::string two_sided_definition() const
     {
@@ -253,11 +285,11 @@ private:
         program.set("u_records", scene_.records_texture);
         program.set("u_record_count", static_cast<int>(record_count()));
         program.set("u_opening", opening);
-        program.set("u_far_front", visibility_[0].color());
+        program.set("u_far_front", (*visibility_)[0].color());
         if (two_sided_) {
             const std::uint32_t from = limited_ ? 0 : scene_.records.two_sided_from;
             program.set("u_two_sided_from", static_cast<int>(from));
-            program.set("u_far_back", visibility_[1].color());
+            program.set("u_far_back", (*visibility_)[1].color());
         }
         if (limited_) {
             program.set("u_max_distance", max_distance);
@@ -314,7 +346,7 @@ private:
         for (std::size_t side = 0; side < sides.size(); ++side) {
             whole.set("u_far", sides[side].found.color());
             whole.set("u_chunks", sums.color(side));
-            draw_fullscreen(visibility_[side], whole, scene_.empty);
+            draw_fullscreen((*visibility_)[side], whole, scene_.empty);
         }
         scene_.context.finish("averaging visibility");
     }
@@ -348,7 +380,7 @@ private:
     DiskOptions options_;
     bool limited_;
     bool two_sided_;
-    std::vector<Framebuffer> visibility_;  ///< per side: FarVisibility of each record
+    const std::vector<Framebuffer>* visibility_ = nullptr;  ///< of Corrected, or what becomes one
 };
 
 }  // namespace

@@ -3,8 +3,9 @@
 /// What it measures and how is said in tree/disks/disks.h; this is the same computation, step by
 /// step, with all data on the device between its first and its last pass: the octree as one array
 /// of records (shaders/disk_record.glsl), groups of sixteen receivers that open the same nodes as
-/// on the CPU. Results agree with solve_disks to 1e-4 but where rounding tips the opening of a node
-/// (tests say how often).
+/// on the CPU. What the correcting passes come to is kept for the next solve with the same options,
+/// whoever is asked then: of two passes one is left, with the same answers. Results agree with
+/// solve_disks to 1e-4 but where rounding tips the opening of a node (tests say how often).
 #pragma once
 
 #include "gpu/objects.h"

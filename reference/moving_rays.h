@@ -39,7 +39,8 @@ public:
     /// positions: one per vertex of the geometry; others than the body's are not looked at. O(n).
     void deform(std::uint32_t body, std::span<const glm::vec3> positions);
 
-    /// As the bodies stand now; valid until one of them moves. Throws std::runtime_error where
+    /// As the bodies stand now; valid until one of them moves. For trace_occlusion alone: the
+    /// triangles of its hits are counted within each body. Throws std::runtime_error where
     /// Embree refuses.
     [[nodiscard]] const RayScene& now();
 

@@ -52,13 +52,22 @@ std::vector<Surfel> surfels_at_vertices(const Geometry& geometry)
     return surfels;
 }
 
-SurfelCloud surfels_of(const Geometry& geometry)
+double large_area(const Geometry& geometry)
 {
     double area = 0.0;
     for (const float each : geometry.areas)
         area += each;
     const double vertices = static_cast<double>(geometry.areas.size());
-    const double most = area * std::min(1.0 / kFewestSurfels, kLargeSurfel / vertices);
+    return area * std::min(1.0 / kFewestSurfels, kLargeSurfel / vertices);
+}
+
+SurfelCloud surfels_of(const Geometry& geometry)
+{
+    return surfels_of(geometry, large_area(geometry));
+}
+
+SurfelCloud surfels_of(const Geometry& geometry, double most)
+{
     const std::vector<LargeTriangle> large = large_triangles(geometry, most);
 
     // what the corners have left

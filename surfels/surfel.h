@@ -38,6 +38,12 @@ struct SurfelCloud {
 /// areas sum to the area of the mesh. O(n).
 [[nodiscard]] SurfelCloud surfels_of(const Geometry& geometry);
 
+/// The area above which a triangle of this geometry is large.
+[[nodiscard]] double large_area(const Geometry& geometry);
+
+/// surfels_of() for a part of a larger scene: `large` is that scene's.
+[[nodiscard]] SurfelCloud surfels_of(const Geometry& part, double large);
+
 inline constexpr std::uint32_t kFewestSurfels = 4096;
 inline constexpr double kLargeSurfel = 16.0;
 

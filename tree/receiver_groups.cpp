@@ -4,6 +4,7 @@
 #include "tree/part.h"
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <tbb/parallel_invoke.h>
 
@@ -242,6 +243,48 @@ private:
 };
 
 }  // namespace
+
+void place_groups(const ReceiverGroups& at_rest, const Placement& placement, const glm::mat3& frame,
+                  ReceiverGroups& groups)
+{
+    groups = at_rest;
+    if (placement == Placement{})
+        return;
+    const glm::dmat3 to_frame(frame);
+    const glm::dmat3 turn = to_frame * placement.rotation * glm::inverse(to_frame);
+    const glm::dvec3 translation = to_frame * placement.translation;
+    const auto place = [&](auto& position, auto& normal) {
+        const glm::dvec3 at(position[0], position[1], position[2]);
+        const glm::vec3 p(placement.scale * (turn * at) + translation);
+        const glm::vec3 n(turn * glm::dvec3(normal[0], normal[1], normal[2]));
+        for (int k = 0; k < 3; ++k) {
+            position[k] = p[k];
+            normal[k] = n[k];
+        }
+    };
+    const auto scale = static_cast<float>(placement.scale);
+    for_blocks(std::span(groups.groups), [&](std::span<ReceiverGroup> block, std::size_t) {
+        for (ReceiverGroup& group : block) {
+            place(group.center, group.axis);
+            group.radius *= scale;
+            group.rise *= scale;
+        }
+    });
+    for_blocks(std::span(groups.order), [&](std::span<std::uint32_t> block, std::size_t b) {
+        for (std::size_t i = b * kPartBlock; i < b * kPartBlock + block.size(); ++i) {
+            glm::vec3 position, normal;
+            for (std::size_t k = 0; k < 3; ++k) {
+                position[static_cast<int>(k)] = at_rest.position[k][i];
+                normal[static_cast<int>(k)] = at_rest.normal[k][i];
+            }
+            place(position, normal);
+            for (std::size_t k = 0; k < 3; ++k) {
+                groups.position[k][i] = position[static_cast<int>(k)];
+                groups.normal[k][i] = normal[static_cast<int>(k)];
+            }
+        }
+    });
+}
 
 ReceiverGroups group_receivers(std::span<const Receiver> receivers, const glm::mat3& frame)
 {

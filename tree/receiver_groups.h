@@ -6,6 +6,7 @@
 /// Laugh; It Runs. 1990). The masks hand what is not yet far enough down the tree.
 #pragma once
 
+#include "surfels/placement.h"
 #include "surfels/receiver.h"
 #include "tree/raw_vector.h"
 #include "tree/receiver_group.h"
@@ -38,6 +39,11 @@ struct ReceiverGroups {
 /// cores, same bytes for any number of threads.
 [[nodiscard]] ReceiverGroups group_receivers(std::span<const Receiver> receivers,
                                              const glm::mat3& frame = glm::mat3(1.0f));
+
+/// The groups of receivers that have moved as one: what group_receivers() found of them at rest,
+/// taken along. The cost is that of a copy.
+void place_groups(const ReceiverGroups& at_rest, const Placement& placement, const glm::mat3& frame,
+                  ReceiverGroups& groups);
 
 /// With v from `center` to a point, along = dot(v, axis) and across = |v - along * axis|, no
 /// receiver has the point higher above its tangent plane than along * cone_cos + across * cone_sin

@@ -3,7 +3,7 @@
 
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
                                     readers stated demo viewers atlas maps map_frontier
-                                    clouds clouds_pcv subdivide pixels origin cubes screen;
+                                    clouds clouds_pcv subdivide pixels origin cubes screen moving;
                                     default: all, about an hour on two quiet cores
 
 Every part is one file that says what command made it, of which version and commit, on what
@@ -450,6 +450,15 @@ def part_clouds_pcv(build):
     return {**provenance(build, "tests/bench/clouds/pcv.py"), "rows": rows}
 
 
+def part_moving(build):
+    """Frames of scenes that move; without the shared models generated ones stand in."""
+    folder = pathlib.Path("/nowhere") if TRIAL else SHARED
+    figures = json.loads(run(build / "bin/moving_tables", folder, shown="moving_tables MODELS"))
+    if figures.pop("generated") and not TRIAL:
+        raise Absent("no mountain.obj, FlightHelmet or spot.obj (SURFELAO_MODELS)")
+    return {**provenance(build, "moving_tables"), **figures}
+
+
 PIXEL_MODELS = ("bunny", "FlightHelmet", "stanford_dragon_res2", "pine", "data/room.obj")
 
 
@@ -508,7 +517,7 @@ PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scalin
          "map_frontier": part_map_frontier, "clouds": part_clouds,
          "clouds_pcv": part_clouds_pcv,
          "pixels": part_pixels, "origin": part_origin, "cubes": part_cubes,
-         "screen": part_screen,
+         "screen": part_screen, "moving": part_moving,
          "subdivide": part_subdivide}
 
 

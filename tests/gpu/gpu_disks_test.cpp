@@ -71,6 +71,25 @@ TEST(GpuDisks, CorrectedPassesEqualTheCpu)
     expect_twins(World(scenes::bumpy_sphere(12)), {.passes = 4}, "one-sided");
 }
 
+TEST(GpuDisks, LaterSolvesStartFromWhatIsCorrectedAndAnswerAlike)
+{
+    const World world(scenes::bumpy_sphere(8), true);
+    const GpuDisks engine(test_context(), world.octree);
+    const std::span<const Receiver> receivers = world.receivers;
+    DiskOptions near;
+    near.definition.max_distance = 0.3f;
+    for (const DiskOptions& options :
+         {DiskOptions{.passes = 3}, DiskOptions{.passes = 3}, near, near, DiskOptions{.passes = 1},
+          DiskOptions{.opening = 0.3f}, DiskOptions{.opening = 0.6f}, DiskOptions{}}) {
+        const DiskResult fresh = solve_on_gpu(world.octree, receivers, options);
+        // the first to ask may be another one
+        static_cast<void>(engine.solve(receivers.first(1), options));
+        const GpuDiskResult later = engine.solve(receivers, options);
+        EXPECT_TRUE(same_bytes(fresh.occlusion, read_answers(later.answers, receivers.size())));
+        EXPECT_EQ(fresh.residuals, later.residuals);
+    }
+}
+
 TEST(GpuDisks, MixedSidesEqualTheCpu)
 {
     expect_twins(World(scenes::bumpy_sphere(12), true), {.passes = 3}, "mixed sides");

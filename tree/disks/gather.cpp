@@ -268,6 +268,11 @@ HWY_INLINE void open_node(const Octree& octree, std::uint32_t index, DiskList& l
         list.open_nodes.items[list.open_nodes.count++] = child;
 }
 
+inline bool is_in(const NodeRange& range, std::uint32_t node)
+{
+    return node >= range.begin && node < range.end;
+}
+
 /// Fills list.nodes and list.surfels. One walk for the whole group, breadth first: the order does
 /// not depend on how many nodes are tested at once.
 void list_disks(const Octree& octree, const ReceiverGroup& group, const GatherSettings& settings,
@@ -278,10 +283,12 @@ void list_disks(const Octree& octree, const ReceiverGroup& group, const GatherSe
     for (IndexList* each : {&list.nodes, &list.surfels, &list.open_nodes, &list.near_surfels})
         each->count = 0;
 
-    // the roots of the two trees
-    list.open_nodes.room(2);
-    for (std::uint32_t root = 0; root < octree.nodes.size(); root = octree.nodes[root].next)
+    for (std::uint32_t root = 0; root < octree.nodes.size(); root = octree.nodes[root].next) {
+        if (is_in(settings.left_out[0], root) || is_in(settings.left_out[1], root))
+            continue;
+        list.open_nodes.room(1);
         list.open_nodes.items[list.open_nodes.count++] = root;
+    }
 
     const Vec one = hn::Set(tag, 1.0f);
     const Vec group_radius = hn::Set(tag, group.radius);

@@ -11,6 +11,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -31,10 +32,16 @@ struct DiskSum {
     glm::vec3 direction{0.0f};  ///< the same, each term times its direction
 };
 
+/// Of an octree.
+struct NodeRange {
+    std::uint32_t begin = 0, end = 0;
+};
+
 struct GatherSettings {
     Definition definition = {};
     float opening = 0.35f;
     bool all_two_sided = false;  ///< treat one-sided surfels as two-sided
+    NodeRange left_out[2] = {};  ///< trees whose root stands in one of them are not looked at
 };
 
 /// sums[i] for every receiver i that stands in one of these leaves of the groups.

@@ -14,7 +14,9 @@
 ///             i = i + 1;
 ///
 /// One-sided and two-sided surfels never share a node: the array holds two trees one after the
-/// other (either may be empty), and the walk above passes through both.
+/// other (either may be empty), and the walk above passes through both. Octrees of several bodies
+/// side by side (disk_forest.h) are walked alike: first the one-sided trees of all, then the
+/// two-sided ones.
 ///
 /// Based on:
 ///   Barnes, Hut. A Hierarchical O(N log N) Force-Calculation Algorithm. 1986

@@ -91,6 +91,14 @@ struct MaskShared {
     float irradiance[3];  ///< the sum of r (A.r) / (pi r^4) over them, A: area vectors
 };
 
+/// What a leaf group has found of some of the nodes, to be taken up together with others.
+struct MaskKept {
+    MaskShared shared;  ///< as of the group's centre
+    /// Per receiver what is covered of the faces, what is no sky as if it were, and what of it
+    /// sheets cover: kMaskFaces kMaskFaceWords words each.
+    alignas(64) std::uint32_t drawn[16][192];
+};
+
 /// Up to 16 receivers as columns.
 struct MaskReceivers {
     unsigned count;
@@ -117,6 +125,15 @@ struct MaskKernel {
     void (*solve)(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
                   std::size_t in_count, const MaskShared& from_above,
                   const MaskReceivers& receivers, MaskAnswers& answers, MaskScratch& scratch);
+    /// The same, but for the answers.
+    void (*keep)(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
+                 std::size_t in_count, const MaskShared& from_above, const MaskReceivers& receivers,
+                 MaskKept& kept, MaskScratch& scratch);
+    /// Finishes a leaf group of which some is kept; `in` is the rest. The same bits as solve() of
+    /// all, but for where receivers are left out because they are closed.
+    void (*solve_kept)(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
+                       std::size_t in_count, const MaskKept& kept, const MaskReceivers& receivers,
+                       MaskAnswers& answers, MaskScratch& scratch);
 };
 
 extern const MaskKernel kMaskKernelPortable;

@@ -24,6 +24,6 @@ void descend(const MaskWorld& world, const ReceiverGroup& group, const std::uint
 }
 }  // namespace
 
-constexpr MaskKernel kKernel = {SURFELAO_MASK_ISA_NAME, descend, solve};
+constexpr MaskKernel kKernel = {SURFELAO_MASK_ISA_NAME, descend, solve, keep, solve_kept};
 
 }  // namespace surfelao::SURFELAO_MASK_ISA

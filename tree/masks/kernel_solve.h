@@ -12,6 +12,9 @@
 namespace surfelao::SURFELAO_MASK_ISA {
 namespace {
 
+constexpr int kFaceWords = kMaskFaces * kMaskFaceWords;
+static_assert(sizeof(MaskKept::drawn[0]) == 2 * kFaceWords * sizeof(std::uint32_t));
+
 /// The receivers of a group, and where their masks begin.
 struct Receivers16 {
     Vector16 position, normal;
@@ -114,10 +117,12 @@ SURFELAO_MASK_INLINE void draw_near(const MaskWorld& world, const MaskBuffer<std
 }
 
 /// Draws the lists into the masks of `count` receivers. Those in nearly closed places are finished
-/// before all is drawn.
+/// before all is drawn. kept: something is in the masks already.
 void draw_lists(const MaskWorld& world, const MaskScratch& scratch, const Receivers16& receivers,
-                const float (*normals)[3], unsigned count, std::uint32_t* masks)
+                const float (*normals)[3], unsigned count, bool kept, std::uint32_t* masks)
 {
+    if (scratch.rectangles.count + scratch.sheets.count + scratch.triangles.count == 0)
+        return;
     Streams streams(world, masks);
     alignas(64) std::uint32_t active[kLanes] = {};
     for (unsigned i = 0; i < count; ++i)
@@ -128,6 +133,8 @@ void draw_lists(const MaskWorld& world, const MaskScratch& scratch, const Receiv
                 active[i] = 0;
         }
     };
+    if (kept && world.settings.fill)
+        leave_out_closed();
     std::size_t before_check = kMaskDrawnBetweenChecks;
     const auto draw_list = [&](const MaskBuffer<std::uint32_t>& list, auto& stream) {
         for (std::size_t begin = 0; begin < list.count;) {
@@ -157,9 +164,9 @@ struct Masks16 {
     alignas(64) std::uint32_t target[kLanes];  ///< where each mask begins in `drawn`
     float normals[kLanes][3];
 
-    /// All that is shared, and what is no sky as if it were covered.
+    /// All that is shared or kept, and what is no sky as if it were covered. kept: null for none.
     SURFELAO_MASK_INLINE Masks16(const MaskWorld& world, const MaskShared& shared,
-                                 const MaskReceivers& receivers)
+                                 const MaskReceivers& receivers, const MaskKept* kept)
     {
         const MaskRaster& raster = *world.raster;
         for (unsigned i = 0; i < kLanes; ++i) {
@@ -172,9 +179,17 @@ struct Masks16 {
             horizon(raster, normals[i], above);
             take_ground(raster, world.settings, receivers.above[i], above);
             std::uint32_t* closed = drawn + target[i];
-            for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
-                store(closed + w, load(shared.mask + w) | ~load(above + w));
-                store(closed + kMaskWords + w, load(shared.mask + kMaskWords + w));
+            for (int w = 0; w < kFaceWords; w += kLanes) {
+                const Int16 set = load(shared.mask + w);
+                const Int16 sheets = load(shared.mask + kMaskWords + w);
+                if (kept != nullptr) {
+                    const std::uint32_t* before = kept->drawn[i];
+                    store(closed + w, set | load(before + w));
+                    store(closed + kMaskWords + w, sheets | load(before + kFaceWords + w));
+                } else {
+                    store(closed + w, set | ~load(above + w));
+                    store(closed + kMaskWords + w, sheets);
+                }
             }
         }
     }
@@ -221,25 +236,31 @@ SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32
     return openness;
 }
 
-void solve(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
-           std::size_t in_count, const MaskShared& from_above, const MaskReceivers& receivers,
-           MaskAnswers& answers, MaskScratch& scratch)
+/// Opens the rest of what a leaf group is handed: far nodes are drawn into `shared`, the others
+/// listed.
+void open_rest(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
+               std::size_t in_count, MaskShared& shared, MaskScratch& scratch)
 {
-    const MaskRaster& raster = *world.raster;
-    MaskShared shared = from_above;
     scratch.sheets.count = 0;
     scratch.rectangles.count = 0;
     scratch.triangles.count = 0;
     start_frontier(scratch, in, in_count);
     walk<true>(world, group, nullptr, shared, scratch);
+}
 
-    Masks16 masks(world, shared, receivers);
-    const Receivers16 all_receivers = {
-        {load(receivers.position[0]), load(receivers.position[1]), load(receivers.position[2])},
-        {load(receivers.normal[0]), load(receivers.normal[1]), load(receivers.normal[2])},
-        load(masks.target)};
-    draw_lists(world, scratch, all_receivers, masks.normals, receivers.count, masks.drawn);
+Receivers16 receivers_of(const MaskReceivers& receivers, const Masks16& masks)
+{
+    return {{load(receivers.position[0]), load(receivers.position[1]), load(receivers.position[2])},
+            {load(receivers.normal[0]), load(receivers.normal[1]), load(receivers.normal[2])},
+            load(masks.target)};
+}
 
+/// What the masks are worth.
+void answer(const MaskWorld& world, const ReceiverGroup& group, const MaskShared& shared,
+            const Masks16& masks, const Receivers16& all_receivers, const MaskReceivers& receivers,
+            MaskAnswers& answers)
+{
+    const MaskRaster& raster = *world.raster;
     const Visible visible = visible_of(world, shared, group.axis);
     alignas(64) float changes[kLanes];
     store(changes, changes_at(shared, all_receivers));
@@ -265,6 +286,56 @@ void solve(const MaskWorld& world, const ReceiverGroup& group, const std::uint32
         answers.bent[1][i] = m[3] * n[0] + m[1] * n[1] + m[4] * n[2];
         answers.bent[2][i] = m[5] * n[0] + m[4] * n[1] + m[2] * n[2];
     }
+}
+
+void solve(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
+           std::size_t in_count, const MaskShared& from_above, const MaskReceivers& receivers,
+           MaskAnswers& answers, MaskScratch& scratch)
+{
+    MaskShared shared = from_above;
+    open_rest(world, group, in, in_count, shared, scratch);
+    Masks16 masks(world, shared, receivers, nullptr);
+    const Receivers16 all_receivers = receivers_of(receivers, masks);
+    draw_lists(world, scratch, all_receivers, masks.normals, receivers.count, false, masks.drawn);
+    answer(world, group, shared, masks, all_receivers, receivers, answers);
+}
+
+void keep(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
+          std::size_t in_count, const MaskShared& from_above, const MaskReceivers& receivers,
+          MaskKept& kept, MaskScratch& scratch)
+{
+    kept.shared = from_above;
+    open_rest(world, group, in, in_count, kept.shared, scratch);
+    Masks16 masks(world, kept.shared, receivers, nullptr);
+    draw_lists(world, scratch, receivers_of(receivers, masks), masks.normals, receivers.count,
+               false, masks.drawn);
+    for (unsigned i = 0; i < receivers.count; ++i) {
+        const std::uint32_t* drawn = masks.drawn + masks.target[i];
+        for (int w = 0; w < kFaceWords; w += kLanes) {
+            store(kept.drawn[i] + w, load(drawn + w));
+            store(kept.drawn[i] + kFaceWords + w, load(drawn + kMaskWords + w));
+        }
+    }
+}
+
+void solve_kept(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
+                std::size_t in_count, const MaskKept& kept, const MaskReceivers& receivers,
+                MaskAnswers& answers, MaskScratch& scratch)
+{
+    MaskShared shared{};
+    open_rest(world, group, in, in_count, shared, scratch);
+    Masks16 masks(world, shared, receivers, &kept);
+    const Receivers16 all_receivers = receivers_of(receivers, masks);
+    draw_lists(world, scratch, all_receivers, masks.normals, receivers.count, true, masks.drawn);
+    for (int w = 0; w < kMaskPairWords; w += kLanes)
+        store(shared.mask + w, load(shared.mask + w) | load(kept.shared.mask + w));
+    for (int i = 0; i < 3; ++i) {
+        shared.change[i] += kept.shared.change[i];
+        shared.irradiance[i] += kept.shared.irradiance[i];
+        for (int k = 0; k < 3; ++k)
+            shared.slope[i][k] += kept.shared.slope[i][k];
+    }
+    answer(world, group, shared, masks, all_receivers, receivers, answers);
 }
 
 }  // namespace

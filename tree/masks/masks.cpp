@@ -4,76 +4,18 @@
 #include "tree/masks/constants.h"
 #include "tree/masks/kernel.h"
 #include "tree/masks/limits.h"
-#include "tree/masks/raster.h"
+#include "tree/masks/solver.h"
 #include "tree/masks/tree.h"
 #include "tree/receiver_groups.h"
 
-#include <glm/geometric.hpp>
-
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <limits>
-#include <memory>
-#include <new>
 #include <string>
 
 namespace surfelao {
 
 namespace {
-
-/// 64-byte aligned zeros: lanes beyond the end are loaded, though never used.
-template <typename T>
-T* allocate_zeros(std::size_t count)
-{
-    const std::size_t bytes = (count * sizeof(T) + 63) / 64 * 64;
-    void* data = std::aligned_alloc(64, bytes);
-    if (data == nullptr)
-        throw std::bad_alloc();
-    return static_cast<T*>(std::memset(data, 0, bytes));
-}
-
-}  // namespace
-
-void reserve(MaskBuffer<std::uint32_t>& buffer, std::size_t count)
-{
-    if (count <= buffer.capacity)
-        return;
-    const std::size_t capacity = std::max<std::size_t>(2 * buffer.capacity, count + kMaskListSlack);
-    auto* data = allocate_zeros<std::uint32_t>(capacity);
-    std::copy_n(buffer.data, buffer.count, data);
-    const std::size_t kept = buffer.count;
-    release(buffer);
-    buffer = {data, kept, capacity};
-}
-void release(MaskBuffer<std::uint32_t>& buffer)
-{
-    std::free(buffer.data);
-    buffer = {};
-}
-
-namespace {
-
-const MaskKernel* kernel_of(MaskKernelSet set)
-{
-    switch (set) {
-        case MaskKernelSet::best:
-            return kernel_of(available_mask_kernels().front());
-#if defined(__x86_64__)
-        case MaskKernelSet::avx512:
-            return &kMaskKernelAvx512;
-        case MaskKernelSet::avx2:
-            return &kMaskKernelAvx2;
-#endif
-        default:
-            return &kMaskKernelPortable;
-    }
-}
 
 static_assert(static_cast<float>(kMaskFamily[0].quality) == MaskOptions::kCoarsest);
 static_assert(static_cast<float>(kMaskFamily[std::size(kMaskFamily) - 1].quality) ==
@@ -123,181 +65,23 @@ MaskSettings mask_settings(const MaskOptions& options)
     return settings;
 }
 
-namespace {
-
-/// Buffers of one thread: one list of nodes per level of the group tree on the way down.
-struct Workspace {
-    MaskScratch scratch;
-    std::vector<MaskBuffer<std::uint32_t>> lists;
-
-    Workspace() = default;
-    Workspace(const Workspace&) = delete;
-    Workspace& operator=(const Workspace&) = delete;
-    ~Workspace()
-    {
-        release(scratch.frontier);
-        release(scratch.sheets);
-        release(scratch.rectangles);
-        release(scratch.triangles);
-        for (MaskBuffer<std::uint32_t>& list : lists)
-            release(list);
-    }
-};
-
-class Solver {
-public:
-    Solver(const MaskTree& tree, std::span<const Receiver> receivers, const MaskOptions& options,
-           const Progress& progress)
-        : kernel_(*kernel_of(options.kernel)),
-          world_{reinterpret_cast<const float*>(tree.nodes.data()), &mask_raster(),
-                 mask_settings(options)},
-          has_triangles_(!tree.nodes.empty()),
-          receivers_(receivers),
-          groups_(group_receivers(receivers, kMaskFrame)),
-          limits_(distance_limits(options.definition)),
-          share_(range_of(options.share, groups_.leaves.size())),
-          skies_(options.definition, receivers),
-          progress_(progress, groups_.leaves.size() * limits_.size() / options.share.count),
-          answers_(receivers.size())
-    {
-    }
-
-    std::vector<Occlusion> run()
-    {
-        if (!groups_.groups.empty()) {
-            for (const float limit : limits_) {
-                world_.settings.max_distance = limit;
-                const std::uint32_t root = 0;
-                visit(0, &root, has_triangles_ ? 1 : 0, MaskShared{}, 0);
-            }
-        }
-        mark_unsolved();
-        const float weight = 1.0f / static_cast<float>(limits_.size());
-        tbb::parallel_for(std::size_t{0}, answers_.size(), [&](std::size_t i) {
-            Occlusion& answer = answers_[i];
-            if (answer == kUnsolved)
-                return;
-            answer.occlusion *= weight;
-            // a row vector times a rotation: turned back
-            answer.bent_normal =
-                bent_normal_of(answer.bent_normal * kMaskFrame, receivers_[i].normal);
-        });
-        return std::move(answers_);
-    }
-
-private:
-    /// Whether any of its leaves is one of the share: they stand in the order of their receivers.
-    bool is_shared(const ReceiverGroup& group) const
-    {
-        return group.begin < share_.end * kGroupSize && group.end > share_.begin * kGroupSize;
-    }
-
-    void mark_unsolved()
-    {
-        for (std::size_t leaf = 0; leaf < groups_.leaves.size(); ++leaf) {
-            const ReceiverGroup& group = groups_.groups[groups_.leaves[leaf]];
-            if (is_shared(group))
-                continue;
-            for (std::uint32_t i = group.begin; i < group.end; ++i)
-                answers_[groups_.order[i]] = kUnsolved;
-        }
-    }
-
-    void visit(std::uint32_t index, const std::uint32_t* in, std::size_t in_count,
-               const MaskShared& from_above, std::size_t level)
-    {
-        const ReceiverGroup& group = groups_.groups[index];
-        if (!is_shared(group))
-            return;
-        if (group.first_child == 0) {
-            solve_leaf(group, in, in_count, from_above);
-            return;
-        }
-        MaskShared shared = from_above;
-        const auto visit_child = [&](std::uint32_t child, const std::uint32_t* list,
-                                     std::size_t count) {
-            visit(group.first_child + child, list, count, shared, level + 1);
-        };
-        Workspace& workspace = workspaces_.local();
-        if (group.end - group.begin > kMaskParallelReceivers) {
-            // a thread that waits may take up other groups meanwhile: this list is nobody else's
-            MaskBuffer<std::uint32_t> list;
-            kernel_.descend(world_, group, in, in_count, list, shared, workspace.scratch);
-            const std::vector<std::uint32_t> kept(list.data, list.data + list.count);
-            release(list);
-            tbb::parallel_invoke([&] { visit_child(0, kept.data(), kept.size()); },
-                                 [&] { visit_child(1, kept.data(), kept.size()); });
-        } else {
-            if (workspace.lists.size() <= level)
-                workspace.lists.resize(level + 1);
-            kernel_.descend(world_, group, in, in_count, workspace.lists[level], shared,
-                            workspace.scratch);
-            const MaskBuffer<std::uint32_t> list = workspace.lists[level];
-            visit_child(0, list.data, list.count);
-            visit_child(1, list.data, list.count);
-        }
-    }
-
-    void solve_leaf(const ReceiverGroup& group, const std::uint32_t* in, std::size_t in_count,
-                    const MaskShared& from_above)
-    {
-        MaskReceivers columns{};
-        columns.count = group.end - group.begin;
-        for (std::size_t k = 0; k < 3; ++k) {
-            std::copy_n(&groups_.position[k][group.begin], columns.count, columns.position[k]);
-            std::copy_n(&groups_.normal[k][group.begin], columns.count, columns.normal[k]);
-        }
-        for (std::uint32_t i = 0; i < columns.count; ++i) {
-            const MaskSkies::Sky sky =
-                skies_.at(world_.settings.max_distance, groups_.order[group.begin + i]);
-            columns.sky[i] = sky.share;
-            columns.above[i] = sky.above;
-        }
-        MaskAnswers found{};
-        kernel_.solve(world_, group, in, in_count, from_above, columns, found,
-                      workspaces_.local().scratch);
-        for (std::uint32_t i = 0; i < columns.count; ++i) {
-            const std::uint32_t index = groups_.order[group.begin + i];
-            answers_[index].occlusion += found.occlusion[i];
-            answers_[index].bent_normal +=
-                glm::vec3(found.bent[0][i], found.bent[1][i], found.bent[2][i]);
-        }
-        progress_.add(1);
-    }
-
-    const MaskKernel& kernel_;
-    MaskWorld world_;
-    bool has_triangles_;
-    std::span<const Receiver> receivers_;
-    ReceiverGroups groups_;
-    std::vector<float> limits_;
-    ShareRange share_;  ///< of the leaves
-    MaskSkies skies_;
-    ProgressMeter progress_;
-    std::vector<Occlusion> answers_;
-    tbb::enumerable_thread_specific<Workspace> workspaces_;
-};
-
-}  // namespace
-
-std::vector<MaskKernelSet> available_mask_kernels()
+std::vector<Occlusion> solve_masks(const MaskNode* nodes, std::span<const std::uint32_t> roots,
+                                   std::span<const Receiver> receivers, const MaskOptions& options,
+                                   const Progress& progress)
 {
-    std::vector<MaskKernelSet> sets;
-#if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
-        __builtin_cpu_supports("avx512vnni"))
-        sets.push_back(MaskKernelSet::avx512);
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-        sets.push_back(MaskKernelSet::avx2);
-#endif
-    sets.push_back(MaskKernelSet::portable);
-    return sets;
-}
-
-std::string_view name_of(MaskKernelSet kernel)
-{
-    return kernel_of(kernel)->name;
+    const ReceiverGroups groups = group_receivers(receivers, kMaskFrame);
+    const MaskSkies skies(options.definition, receivers);
+    const std::vector<std::uint8_t> wanted = leaves_of(options.share, groups);
+    MaskSolver solver(options);
+    std::vector<Occlusion> answers(receivers.size());
+    for (std::size_t leaf = 0; leaf < wanted.size(); ++leaf) {
+        const ReceiverGroup& group = groups.groups[groups.leaves[leaf]];
+        for (std::uint32_t i = group.begin; wanted[leaf] == 0 && i < group.end; ++i)
+            answers[groups.order[i]] = kUnsolved;
+    }
+    ProgressMeter meter(progress, wanted.size() * solver.limits().size() / options.share.count);
+    solver.solve({nodes, roots, receivers, groups, skies, wanted}, meter, answers);
+    return answers;
 }
 
 std::vector<Occlusion> solve_masks(const MaskTree& tree, std::span<const Receiver> receivers,
@@ -307,7 +91,9 @@ std::vector<Occlusion> solve_masks(const MaskTree& tree, std::span<const Receive
     if (options.kernel != MaskKernelSet::best &&
         std::ranges::find(sets, options.kernel) == sets.end())
         throw SettingsError("masks: this processor has no " + std::string(name_of(options.kernel)));
-    return Solver(tree, receivers, options, progress).run();
+    const std::uint32_t root = 0;
+    return solve_masks(tree.nodes.data(), {&root, tree.nodes.empty() ? 0u : 1u}, receivers, options,
+                       progress);
 }
 
 }  // namespace surfelao

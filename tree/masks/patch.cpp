@@ -142,45 +142,35 @@ void set_rectangles(Columns& of)
     of.length_v = any ? length_v * shrink : zero;
 }
 
-/// Room between the middle and the cuts on both sides of each axis of the scene.
-struct Room {
+/// MaskRoom of as many patches as there are lanes.
+struct RoomColumns {
+    std::array<Vector, 3> axes;
     Vector below, above;
 };
 
-/// A vector of the mask frame along axis k of the scene.
-Float4 along_scene_axis(const Vector& v, std::size_t k)
+RoomColumns room_columns(std::span<const MaskPatchNode> nodes)
 {
-    const glm::vec3 axis = kMaskFrame[static_cast<int>(k)];
-    return axis.x * v[0] + axis.y * v[1] + axis.z * v[2];
-}
-
-/// Of up to as many nodes as there are lanes.
-Room room_of(std::span<const MaskPatchNode> nodes, const Vector& center)
-{
-    Vector low, high;
+    RoomColumns columns;
     for (std::size_t i = 0; i < kFloat4Lanes; ++i) {
-        const MaskCuts& cuts = *nodes[std::min(i, nodes.size() - 1)].cuts;
+        const MaskRoom& room = *nodes[std::min(i, nodes.size() - 1)].room;
         for (std::size_t k = 0; k < 3; ++k) {
-            low[k][i] = cuts.low[static_cast<int>(k)];
-            high[k][i] = cuts.high[static_cast<int>(k)];
+            const int axis = static_cast<int>(k);
+            columns.below[k][i] = room.below[axis];
+            columns.above[k][i] = room.above[axis];
+            for (std::size_t j = 0; j < 3; ++j)
+                columns.axes[k][j][i] = room.axes[axis][static_cast<int>(j)];
         }
     }
-    Room room;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Float4 at = along_scene_axis(center, k);
-        room.below[k] = at - low[k];
-        room.above[k] = high[k] - at;
-    }
-    return room;
+    return columns;
 }
 
 /// Lengthens a half axis of a rectangle by `rim` at the ends that are cut. Returns how far the
 /// middle moves.
-Vector grow_to_cuts(Vector& axis, const Room& room, Float4 rim)
+Vector grow_to_cuts(Vector& axis, const RoomColumns& room, Float4 rim)
 {
     Bool4 ahead{}, behind{};
     for (std::size_t k = 0; k < 3; ++k) {
-        const Float4 along = along_scene_axis(axis, k);
+        const Float4 along = dot(room.axes[k], axis);
         const Float4 reach = kMaskCutReach * absolute(along);
         ahead |= (along > 0.0f ? room.above[k] : room.below[k]) < reach;
         behind |= (along > 0.0f ? room.below[k] : room.above[k]) < reach;
@@ -399,6 +389,19 @@ void join(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right,
     patch.thickness = std::max({highest[0], highest[1], highest[2], highest[3]});
 }
 
+MaskRoom room_of(const MaskPatch& patch, const MaskCuts& cuts)
+{
+    MaskRoom room{kMaskFrame, {}, {}};
+    for (int k = 0; k < 3; ++k) {
+        const glm::vec3 axis = kMaskFrame[k];
+        const float at =
+            axis.x * patch.center.x + axis.y * patch.center.y + axis.z * patch.center.z;
+        room.below[k] = at - cuts.low[k];
+        room.above[k] = cuts.high[k] - at;
+    }
+    return room;
+}
+
 void show_patches(std::span<MaskPatchNode> nodes)
 {
     const Float4 zero = all_lanes(0.0f);
@@ -434,7 +437,7 @@ void show_patches(std::span<MaskPatchNode> nodes)
         const Vector axis = {of.axis_x, of.axis_y, of.axis_z};
         Vector along = axis * of.length_u;
         Vector across = half_cross(normal, axis) * (2.0f * of.length_v);
-        const Room room = room_of(nodes.subspan(begin, count), center);
+        const RoomColumns room = room_columns(nodes.subspan(begin, count));
         const Float4 depth =
             of.area > 0.0f ? kMaskBulgeDepth * most(zero, patch[4][3]) / of.area : zero;
         const Vector move =

@@ -59,11 +59,18 @@ struct MaskCuts {
     glm::vec3 high{std::numeric_limits<float>::infinity()};
 };
 
+/// The room between a patch's centre and the cuts about it.
+struct MaskRoom {
+    glm::mat3 axes;          ///< across which it was cut: columns, unit, in the mask frame
+    glm::vec3 below, above;  ///< along each of them; infinite where nothing was cut
+};
+[[nodiscard]] MaskRoom room_of(const MaskPatch& patch, const MaskCuts& cuts);
+
 /// A patch and the node that shows it.
 struct MaskPatchNode {
     MaskPatch* patch;
     MaskNode* node;
-    const MaskCuts* cuts;  ///< of inner nodes
+    const MaskRoom* room;  ///< of inner nodes
     bool may_be_whole;     ///< set by show_patches: make_whole is to be asked
 };
 

@@ -23,12 +23,14 @@ public:
     {
     }
 
-    RawVector<MaskTile> run()
+    RawVector<MaskTile> run(MaskPairs pairs)
     {
         tiles_.reserve(count_);
-        pair_next();
-        if (has_flat_edges())
-            pair_others();
+        if (pairs == MaskPairs::found) {
+            pair_next();
+            if (has_flat_edges())
+                pair_others();
+        }
         for (std::uint32_t t = 0; t < count_; ++t) {
             const glm::uvec3 v = geometry_.triangles[t];
             if (taken_[t] == 0)
@@ -133,21 +135,11 @@ private:
             return;
         const glm::uvec4 v(corner(s, side % 3 + 1), corner(s, side % 3 + 2), corner(s, side),
                            corner(t, other % 3 + 2));
-        const glm::vec3 a = geometry_.positions[v.x], b = geometry_.positions[v.y],
-                        c = geometry_.positions[v.z], d = geometry_.positions[v.w];
-        const glm::vec3 normal = glm::cross(c - a, d - b);
-        const float area = glm::length(normal);
-        const float across = glm::length(d - b);
-        const float slack =
-            std::min(kMaskPairSlack * std::max(glm::length(c - a), across), kMaskPairSlackLength);
-        const auto beside = [&](glm::vec3 before, glm::vec3 at, glm::vec3 after) {
-            return glm::dot(glm::cross(at - before, after - at), normal) < -slack * across * area;
-        };
-        if (std::abs(glm::dot(a - b + c - d, normal)) > 2.0f * slack * area || beside(d, a, b) ||
-            beside(b, c, d))
+        const MaskTile tile{v, {s, t}};
+        if (!is_flat(tile, geometry_.positions))
             return;
         taken_[s] = taken_[t] = 1;
-        tiles_.push_back({v, {s, t}});
+        tiles_.push_back(tile);
     }
 
     const Geometry& geometry_;
@@ -159,9 +151,28 @@ private:
 
 }  // namespace
 
-RawVector<MaskTile> tiles_of(const Geometry& geometry, std::span<const glm::vec3> normals)
+bool is_flat(const MaskTile& tile, std::span<const glm::vec3> positions)
 {
-    return Tiler(geometry, normals).run();
+    const glm::uvec4 v = tile.corners;
+    if (v.z == v.w)
+        return true;
+    const glm::vec3 a = positions[v.x], b = positions[v.y], c = positions[v.z], d = positions[v.w];
+    const glm::vec3 normal = glm::cross(c - a, d - b);
+    const float area = glm::length(normal);
+    const float across = glm::length(d - b);
+    const float slack =
+        std::min(kMaskPairSlack * std::max(glm::length(c - a), across), kMaskPairSlackLength);
+    const auto beside = [&](glm::vec3 before, glm::vec3 at, glm::vec3 after) {
+        return glm::dot(glm::cross(at - before, after - at), normal) < -slack * across * area;
+    };
+    return !(std::abs(glm::dot(a - b + c - d, normal)) > 2.0f * slack * area || beside(d, a, b) ||
+             beside(b, c, d));
+}
+
+RawVector<MaskTile> tiles_of(const Geometry& geometry, std::span<const glm::vec3> normals,
+                             MaskPairs pairs)
+{
+    return Tiler(geometry, normals).run(pairs);
 }
 
 }  // namespace surfelao

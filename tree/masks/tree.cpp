@@ -5,6 +5,7 @@
 #include "tree/masks/constants.h"
 #include "tree/masks/masks.h"
 #include "tree/masks/patch.h"
+#include "tree/masks/refit.h"
 #include "tree/masks/solids.h"
 #include "tree/masks/tiles.h"
 #include "tree/masks/winding.h"
@@ -20,6 +21,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <string>
 #include <vector>
@@ -140,6 +142,7 @@ struct Bundle {
     std::array<float, 12 * kStride> corners;      ///< columns, as in MaskCorners
     std::array<MaskPatch, kNodes> patches;
     std::array<MaskCuts, kNodes> cuts;
+    std::array<MaskRoom, kMaskBundle> rooms;
     std::array<MaskPatchNode, kMaskBundle> shown;
 };
 
@@ -152,31 +155,80 @@ void cut(const Plane& plane, MaskCuts& left, MaskCuts& right)
     }
 }
 
+/// How the cuts about a patch have turned with it since it was built. left, right: the patches of
+/// its children. No cuts where a patch does not tell how it has turned.
+MaskRoom turned_room(const MaskPlan& plan, std::size_t index, std::size_t first_child,
+                     const MaskPatch& patch, const MaskPatch& left, const MaskPatch& right)
+{
+    const MaskPlanNode& rest = plan.nodes[index];
+    const auto across = [](glm::vec3 apart, glm::vec3 normal) {
+        return apart - glm::dot(apart, normal) * normal;
+    };
+    const glm::vec3 then =
+        across(plan.nodes[first_child + 1].center - plan.nodes[first_child].center, rest.normal);
+    const glm::vec3 now = across(right.center - left.center, patch.normal);
+    const float then_length = glm::length(then), now_length = glm::length(now);
+    if (!(then_length > 0.0f && now_length > 0.0f))
+        return {kMaskFrame, glm::vec3(std::numeric_limits<float>::infinity()),
+                glm::vec3(std::numeric_limits<float>::infinity())};
+    const glm::vec3 u = then / then_length, v = now / now_length;
+    const glm::mat3 from(u, glm::cross(rest.normal, u), rest.normal);
+    const glm::mat3 to(v, glm::cross(patch.normal, v), patch.normal);
+    const float growth = now_length / then_length;
+    return {to * glm::transpose(from) * kMaskFrame, growth * rest.room_below,
+            growth * rest.room_above};
+}
+
 class Builder {
 public:
-    explicit Builder(const Geometry& geometry) : geometry_(geometry), solid_(small_solids(geometry))
+    /// plan: becomes how it is built; null where nobody asks.
+    Builder(const Geometry& geometry, MaskPairs pairs, MaskPlan* plan)
+        : geometry_(geometry), pairs_(pairs), made_(plan), solid_(small_solids(geometry))
     {
+    }
+
+    /// Follows a plan.
+    Builder(const Geometry& form, const MaskPlan& plan)
+        : geometry_(form), tiles_(plan.tiles), followed_(&plan), order_(plan.order)
+    {
+        // solids are few: what is closed may be seen from its middle no longer
+        solid_ = plan.has_solids ? small_solids(form)
+                                 : std::vector<std::uint8_t>(form.triangles.size(), 0);
     }
 
     RawVector<MaskNode> build()
     {
-        const std::size_t triangles = geometry_.triangles.size();
-        if (triangles == 0)
+        if (geometry_.triangles.empty())
             return {};
+        if (followed_ == nullptr)
+            make_keys();
+        const std::size_t count = tiles_.size();
+        turn_positions();
+        nodes_.resize(2 * count - 1);
+        if (made_ != nullptr)
+            made_->nodes.resize(nodes_.size());
+        build_node(0, 1, 0, count, 0, {});
+        if (made_ != nullptr) {
+            made_->tiles = std::move(tiles_);
+            made_->order = std::move(order_);
+            made_->has_solids = std::ranges::any_of(solid_, [](std::uint8_t s) { return s != 0; });
+        }
+        return std::move(nodes_);
+    }
+
+private:
+    void make_keys()
+    {
+        const std::size_t triangles = geometry_.triangles.size();
         RawVector<glm::vec3> normals;
         normals.resize(geometry_.triangles.size());
         for_blocks(std::span(normals), [&](std::span<glm::vec3> block, std::size_t i) {
             for (std::size_t t = 0; t < block.size(); ++t)
                 block[t] = normal_of(i * kPartBlock + t);
         });
-        tiles_ = tiles_of(geometry_, normals);
+        tiles_ = tiles_of(geometry_, normals, pairs_);
         const std::size_t count = tiles_.size();
         check_mask_tiles(count, triangles);
-        positions_.resize(geometry_.positions.size());
-        for_blocks(std::span(positions_), [&](std::span<glm::vec3> block, std::size_t i) {
-            for (std::size_t v = 0; v < block.size(); ++v)
-                block[v] = kMaskFrame * geometry_.positions[i * kPartBlock + v];
-        });
         for (RawVector<Key>& side : keys_)
             side.resize(count);
         for_blocks(std::span(keys_[0]), [&](std::span<Key> block, std::size_t i) {
@@ -184,12 +236,17 @@ public:
                 block[t] = key_of(i * kPartBlock + t, normals);
         });
         order_.resize(count);
-        nodes_.resize(2 * count - 1);
-        build_node(0, 1, 0, count, 0, {});
-        return std::move(nodes_);
     }
 
-private:
+    void turn_positions()
+    {
+        positions_.resize(geometry_.positions.size());
+        for_blocks(std::span(positions_), [&](std::span<glm::vec3> block, std::size_t i) {
+            for (std::size_t v = 0; v < block.size(); ++v)
+                block[v] = kMaskFrame * geometry_.positions[i * kPartBlock + v];
+        });
+    }
+
     /// Zero where a triangle has no area.
     glm::vec3 normal_of(std::size_t triangle) const
     {
@@ -223,7 +280,9 @@ private:
             return build_bundle(index, first, begin, end, side, cuts);
 
         MaskCuts left_cuts = cuts, right_cuts = cuts;
-        const std::size_t middle = split(begin, end, side, left_cuts, right_cuts);
+        const std::size_t middle = followed_ != nullptr
+                                       ? begin + followed_->nodes[index].below
+                                       : split(begin, end, side, left_cuts, right_cuts);
         const std::size_t left_first = first + 2;
         const std::size_t right_first = left_first + 2 * (middle - begin - 1);
         MaskPatch left, right;
@@ -242,7 +301,9 @@ private:
 
         MaskPatch patch;
         join(patch, left, right);
-        MaskPatchNode shown{&patch, &nodes_[index], &cuts, false};
+        const MaskRoom room = room_at(index, first, patch, left, right, cuts);
+        note(index, patch, &room, middle - begin);
+        MaskPatchNode shown{&patch, &nodes_[index], &room, false};
         show_patches({&shown, 1});
         if (shown.may_be_whole) {
             const std::size_t stride = count + MaskCorners::kSlack;
@@ -254,6 +315,26 @@ private:
         }
         nodes_[index].links |= static_cast<std::uint32_t>(first);
         return patch;
+    }
+
+    /// About node `index`, whose children stand from `first_child` on.
+    MaskRoom room_at(std::size_t index, std::size_t first_child, const MaskPatch& patch,
+                     const MaskPatch& left, const MaskPatch& right, const MaskCuts& cuts) const
+    {
+        return followed_ != nullptr
+                   ? turned_room(*followed_, index, first_child, patch, left, right)
+                   : room_of(patch, cuts);
+    }
+
+    /// Into the plan. room: null for a leaf.
+    void note(std::size_t index, const MaskPatch& patch, const MaskRoom* room, std::size_t below)
+    {
+        if (made_ == nullptr)
+            return;
+        const glm::vec3 none(0.0f);
+        made_->nodes[index] = {patch.center, patch.normal, room != nullptr ? room->below : none,
+                               room != nullptr ? room->above : none,
+                               static_cast<std::uint32_t>(below)};
     }
 
     /// Parts keys [begin, end) of one side into the other side. Returns where the second part
@@ -311,12 +392,18 @@ private:
         // memory is asked for long before it is needed: triangles stand anywhere
         for (std::size_t k = 0; k < 2 * (count - 1); ++k)
             __builtin_prefetch(&nodes_[first + k], 1);
-        for (std::size_t i = 0; i < count; ++i) {
-            bundle.keys[0][i] = keys_[side][begin + i];
-            __builtin_prefetch(&tiles_[bundle.keys[0][i].tile]);
-        }
+        const auto place = [&](std::size_t k) { return k == 0 ? index : first + k - 1; };
         std::uint32_t* const order = order_.data() + begin;
-        const std::size_t inner_count = split_bundle(bundle, count, order);
+        std::size_t inner_count = 0;
+        if (followed_ != nullptr) {
+            inner_count = follow_bundle(bundle, count, place);
+        } else {
+            for (std::size_t i = 0; i < count; ++i) {
+                bundle.keys[0][i] = keys_[side][begin + i];
+                __builtin_prefetch(&tiles_[bundle.keys[0][i].tile]);
+            }
+            inner_count = split_bundle(bundle, count, order);
+        }
         for (std::size_t i = 0; i < count; ++i) {
             const glm::uvec4 t = tiles_[order[i]].corners;
             for (int corner = 0; corner < 4; ++corner)
@@ -329,22 +416,28 @@ private:
             std::fill_n(bundle.corners.data() + column * Bundle::kStride + count,
                         MaskCorners::kSlack, 0.0f);
         const MaskCorners corners{bundle.corners.data(), Bundle::kStride, count};
-        const auto place = [&](std::size_t k) { return k == 0 ? index : first + k - 1; };
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t k = bundle.leaf[i];
             bundle.shown[i] = {&bundle.patches[k], &nodes_[place(k)], nullptr, false};
         }
         set_tiles({bundle.shown.data(), count}, corners);
-        for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t i = 0; i < count; ++i) {
             bundle.shown[i].node->links |= is_solid(order[i]) ? kMaskSolid : 0;
+            note(place(bundle.leaf[i]), *bundle.shown[i].patch, nullptr, 0);
+        }
 
         // children before their parents
         for (std::size_t i = inner_count; i-- > 0;) {
             const std::size_t k = bundle.inner[i];
             const Bundle::Node node = bundle.nodes[k];
-            join(bundle.patches[k], bundle.patches[node.first_child],
-                 bundle.patches[node.first_child + 1], corners.part(node.begin, node.end));
-            bundle.shown[i] = {&bundle.patches[k], &nodes_[place(k)], &bundle.cuts[k], false};
+            const MaskPatch &left = bundle.patches[node.first_child],
+                            &right = bundle.patches[node.first_child + 1];
+            join(bundle.patches[k], left, right, corners.part(node.begin, node.end));
+            bundle.rooms[i] = room_at(place(k), place(node.first_child), bundle.patches[k], left,
+                                      right, bundle.cuts[k]);
+            note(place(k), bundle.patches[k], &bundle.rooms[i],
+                 bundle.nodes[node.first_child].end - node.begin);
+            bundle.shown[i] = {&bundle.patches[k], &nodes_[place(k)], &bundle.rooms[i], false};
         }
         show_patches({bundle.shown.data(), inner_count});
         for (std::size_t i = 0; i < inner_count; ++i) {
@@ -397,8 +490,34 @@ private:
         return inner_count;
     }
 
+    /// The nodes over the bundle's tiles as in the plan. Returns how many are not tiles.
+    template <class Place>
+    std::size_t follow_bundle(Bundle& bundle, std::size_t count, const Place& place) const
+    {
+        std::size_t node_count = 1;
+        std::size_t inner_count = 0;
+        bundle.nodes[0] = {0, static_cast<std::uint8_t>(count), 0, 0};
+        for (std::size_t k = 0; k < node_count; ++k) {
+            Bundle::Node& node = bundle.nodes[k];
+            if (node.end - node.begin == 1) {
+                bundle.leaf[node.begin] = static_cast<std::uint8_t>(k);
+                continue;
+            }
+            const auto middle =
+                static_cast<std::uint8_t>(node.begin + followed_->nodes[place(k)].below);
+            node.first_child = static_cast<std::uint8_t>(node_count);
+            bundle.inner[inner_count++] = static_cast<std::uint8_t>(k);
+            bundle.nodes[node_count++] = {node.begin, middle, 0, 0};
+            bundle.nodes[node_count++] = {middle, node.end, 0, 0};
+        }
+        return inner_count;
+    }
+
     const Geometry& geometry_;
+    MaskPairs pairs_ = MaskPairs::found;
     RawVector<MaskTile> tiles_;
+    MaskPlan* made_ = nullptr;            ///< of this tree
+    const MaskPlan* followed_ = nullptr;  ///< of an earlier one
     std::vector<std::uint8_t> solid_;     ///< one per triangle
     RawVector<glm::vec3> positions_;      ///< in the mask frame
     std::array<RawVector<Key>, 2> keys_;  ///< to and fro from level to level
@@ -427,11 +546,45 @@ std::shared_ptr<const MaskTree> build_mask_tree(const Geometry& geometry)
     if (is_winding_mixed(geometry)) {
         Geometry alike = geometry;
         wind_alike(alike);
-        tree->nodes = Builder(alike).build();
+        tree->nodes = Builder(alike, MaskPairs::found, nullptr).build();
     } else {
-        tree->nodes = Builder(geometry).build();
+        tree->nodes = Builder(geometry, MaskPairs::found, nullptr).build();
     }
     return tree;
+}
+
+namespace {
+
+/// In blocks: the same sum for any number of threads.
+double sum_of_radii(std::span<const MaskNode> nodes)
+{
+    std::vector<double> sums(nodes.size() / kPartBlock + 1, 0.0);
+    for_blocks(nodes, [&](std::span<const MaskNode> block, std::size_t i) {
+        for (const MaskNode& node : block)
+            sums[i] += node.radius;
+    });
+    return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+}  // namespace
+
+RawVector<MaskNode> build_mask_nodes(const Geometry& geometry, MaskPairs pairs, MaskPlan& plan)
+{
+    RawVector<MaskNode> nodes = Builder(geometry, pairs, &plan).build();
+    plan.radii = sum_of_radii(nodes);
+    return nodes;
+}
+
+std::optional<RawVector<MaskNode>> refit_mask_nodes(const MaskPlan& plan, const Geometry& form)
+{
+    for (const MaskTile& tile : plan.tiles) {
+        if (!is_flat(tile, form.positions))
+            return std::nullopt;
+    }
+    RawVector<MaskNode> nodes = Builder(form, plan).build();
+    if (sum_of_radii(nodes) > kMaskRefitGrowth * plan.radii)
+        return std::nullopt;
+    return nodes;
 }
 
 }  // namespace surfelao

@@ -1,17 +1,19 @@
-#include "engines/engine_options.h"
+#include "engines/options.h"
 
 #include "surfels/errors.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace surfelao {
 namespace {

@@ -1,4 +1,4 @@
-/// engine_options.h: what is asked, in the words of each engine.
+/// options.h: what the engines behind the door are asked, said in their own words.
 ///
 /// Internal to engines/.
 #pragma once
@@ -14,7 +14,7 @@
 
 namespace surfelao {
 
-/// Throws std::runtime_error where the processor lacks the instructions asked for.
+/// Throws std::runtime_error where the processor lacks them.
 [[nodiscard]] MaskKernelSet kernel_set_of(Instructions instructions);
 [[nodiscard]] RayScene::Isa isa_of(Instructions instructions);
 

@@ -1,0 +1,104 @@
+/// solver.h: groups of receivers against the nodes of one tree or of several.
+///
+/// Internal to the mask engine: solve_masks, forests and receivers with a memory share it.
+#pragma once
+
+#include "surfels/occlusion.h"
+#include "surfels/progress.h"
+#include "surfels/receiver.h"
+#include "tree/masks/kernel.h"
+#include "tree/masks/limits.h"
+#include "tree/masks/masks.h"
+#include "tree/masks/tree.h"
+#include "tree/raw_vector.h"
+#include "tree/receiver_groups.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace surfelao {
+
+/// The kernel of a set; null never.
+[[nodiscard]] const MaskKernel* kernel_of(MaskKernelSet set);
+
+/// Buffers of one thread: one list of nodes per level of the group tree on the way down.
+struct MaskWorkspace {
+    MaskScratch scratch;
+    std::vector<MaskBuffer<std::uint32_t>> lists;
+    std::vector<std::uint32_t> roots;
+
+    MaskWorkspace() = default;
+    MaskWorkspace(const MaskWorkspace&) = delete;
+    MaskWorkspace& operator=(const MaskWorkspace&) = delete;
+    ~MaskWorkspace();
+};
+
+/// Lists of roots, one per leaf group.
+struct MaskLeafRoots {
+    std::vector<std::uint32_t> begin;  ///< leaves + 1 of them, into roots
+    std::vector<std::uint32_t> roots;
+
+    [[nodiscard]] std::span<const std::uint32_t> of(std::size_t leaf) const
+    {
+        return std::span(roots).subspan(begin[leaf], begin[leaf + 1] - begin[leaf]);
+    }
+};
+
+/// What is asked.
+struct MaskQuestion {
+    const MaskNode* nodes;
+    std::span<const std::uint32_t> roots;  ///< of the trees that all groups see
+    std::span<const Receiver> receivers;
+    const ReceiverGroups& groups;          ///< of these receivers, in the mask frame
+    const MaskSkies& skies;                ///< of these receivers
+    std::span<const std::uint8_t> wanted;  ///< one per leaf group: whether it is asked
+    const MaskLeafRoots* leaf_roots =
+        nullptr;  ///< what each leaf group sees besides; null: nothing
+};
+
+class MaskSolver {
+public:
+    /// Throws as solve_masks.
+    explicit MaskSolver(const MaskOptions& options);
+
+    [[nodiscard]] const std::vector<float>& limits() const { return limits_; }
+
+    /// Writes the answers of the receivers of the leaf groups that are wanted. meter: counts leaf
+    /// groups times limits.
+    void solve(const MaskQuestion& question, ProgressMeter& meter, std::span<Occlusion> answers);
+
+    /// The same in two steps: what of the roots that all groups see, and the rest. kept: limits
+    /// times leaf groups, leaf groups of one limit side by side.
+    void keep(const MaskQuestion& question, ProgressMeter& meter, std::span<MaskKept> kept);
+    void solve_kept(const MaskQuestion& question, std::span<const MaskKept> kept,
+                    ProgressMeter& meter, std::span<Occlusion> answers);
+
+private:
+    template <class AtLeaf>
+    class Descent;
+
+    [[nodiscard]] MaskWorld world_at(const MaskQuestion& question, float limit) const;
+    void finish(const MaskQuestion& question, const ReceiverGroup& leaf,
+                std::span<Occlusion> answers) const;
+
+    const MaskKernel& kernel_;
+    MaskSettings settings_;
+    std::vector<float> limits_;
+    tbb::enumerable_thread_specific<MaskWorkspace> workspaces_;
+};
+
+/// As solve_masks of masks.h, of the trees at these roots.
+[[nodiscard]] std::vector<Occlusion> solve_masks(const MaskNode* nodes,
+                                                 std::span<const std::uint32_t> roots,
+                                                 std::span<const Receiver> receivers,
+                                                 const MaskOptions& options,
+                                                 const Progress& progress);
+
+/// One per leaf group: whether it is one of the share.
+[[nodiscard]] std::vector<std::uint8_t> leaves_of(const Share& share, const ReceiverGroups& groups);
+
+}  // namespace surfelao
