@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/engine_options.h"
+#include "cli/frame_options.h"
 #include "cli/part_options.h"
 #include "cli/pixel_options.h"
 #include "cli/read_options.h"
@@ -32,6 +33,7 @@ struct CompareOptions {
     std::vector<std::string> inputs;
     std::optional<std::string> output;
     ReadOptions reading;
+    FrameOptions frames;
     bool overwrite = false;
     bool frontier = false;
     std::vector<std::string> engines;  ///< empty: default_engines()

@@ -228,14 +228,19 @@ void pose_nodes(std::vector<tinygltf::Node>& nodes, const GltfAnimation& animati
     }
 }
 
+std::string pose_text(const GltfAnimation& animation, double seconds)
+{
+    const std::string name =
+        animation.name.empty() ? std::string() : " \"" + shortened(animation.name) + '"';
+    return numbered("animation", animation.number) + name + " at " + exact(seconds) + " s";
+}
+
 std::string pose_model(tinygltf::Model& model, const AccessorResolver& resolver,
                        const Moment& moment)
 {
     const GltfAnimation animation = read_animation(model, resolver, moment.animation);
     pose_nodes(model.nodes, animation, moment.seconds);
-    const std::string name =
-        animation.name.empty() ? std::string() : " \"" + shortened(animation.name) + '"';
-    return numbered("animation", animation.number) + name + " at " + exact(moment.seconds) + " s";
+    return pose_text(animation, moment.seconds);
 }
 
 }  // namespace surfelao

@@ -67,6 +67,9 @@ struct GltfAnimation {
 /// that it does not move stay as they are. O(channels * log keys).
 void pose_nodes(std::vector<tinygltf::Node>& nodes, const GltfAnimation& animation, double seconds);
 
+/// "animation 0 "Walk" at 1.5 s"
+[[nodiscard]] std::string pose_text(const GltfAnimation& animation, double seconds);
+
 /// Both. Returns what was played, for notes.
 std::string pose_model(tinygltf::Model& model, const AccessorResolver& resolver,
                        const Moment& moment);

@@ -470,7 +470,8 @@ private:
 
 }  // namespace
 
-Scene read_gltf(const fs::path& path, std::string contents, const std::optional<Moment>& moment)
+Scene read_gltf(const fs::path& path, std::string contents, const std::optional<Moment>& moment,
+                bool is_played)
 {
     const auto asset = std::make_shared<GltfAsset>();
     load_gltf_asset(path, std::move(contents), *asset);
@@ -480,6 +481,7 @@ Scene read_gltf(const fs::path& path, std::string contents, const std::optional<
         text = geometry_text(*asset->document, path, animations);
     tinygltf::Model model = parse_model(*asset, text);
     asset->moment = moment;
+    asset->is_played = is_played || moment;
     std::string played;
     if (moment)
         played = pose_model(model, AccessorResolver(*asset), *moment);

@@ -331,10 +331,6 @@ struct Motion::Impl {
         }
         const Extent extent = extent_of(pose.positions);
         pose.is_gone = extent.size <= kRounding * extent.farthest;
-        if (pose.is_gone) {
-            pose.positions = {};
-            return;
-        }
         std::optional<NormalMatrix> normal_matrix;
         for (std::size_t v = 0; v < vertices.normals.size(); ++v) {
             if (v == 0 || part.skin)
@@ -364,7 +360,7 @@ struct Motion::Impl {
             const glm::dmat4& now = world[part.mover];
             const glm::dmat4& rest = world_at_rest[part.mover];
             poses[p].is_gone = leaves_nothing(now);
-            if (now != rest && !poses[p].is_gone)
+            if (now != rest)
                 poses[p].from_rest = now * glm::inverse(rest);
         }
         return poses;
@@ -405,6 +401,11 @@ Motion& Motion::operator=(Motion&&) noexcept = default;
 const std::string& Motion::name() const
 {
     return impl_->name;
+}
+
+std::string Motion::text_at(double seconds) const
+{
+    return pose_text(impl_->animation, seconds);
 }
 
 double Motion::first_seconds() const

@@ -26,11 +26,11 @@ struct PartPose {
     /// From where the part stands at rest to where it is now, in world units. The identity where it
     /// is deformed. May be sheared, and flat.
     glm::dmat4 from_rest{1.0};
-    /// There is nothing of it: a scale of zero, in two directions at least.
+    /// There is nothing of it: a scale of zero, in two directions at least. It stands where that
+    /// brings it.
     bool is_gone = false;
     /// Of parts that deform (Motion::deforms): world positions and normals (of unit length, zero or
-    /// empty where the file has none), one per vertex of the part. Empty for others, and where it
-    /// is gone.
+    /// empty where the file has none), one per vertex of the part. Empty for others.
     std::vector<glm::dvec3> positions = {};
     std::vector<glm::vec3> normals = {};
 };
@@ -50,6 +50,8 @@ public:
 
     /// "Walk"; "1" where it has no name.
     [[nodiscard]] const std::string& name() const;
+    /// "animation 0 "Walk" at 1.5 s"
+    [[nodiscard]] std::string text_at(double seconds) const;
     [[nodiscard]] double first_seconds() const;  ///< of its first key
     [[nodiscard]] double last_seconds() const;   ///< of its last one
 

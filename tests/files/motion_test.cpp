@@ -137,7 +137,7 @@ TEST(Motion, IsWhatTheFileIsAtTheMoment)
     const Stage stage = full_stage();
     const Scene rest = stage.rest();
     const Motion motion(rest, "play");
-    for (const double seconds : {1.25, 2.0, 2.9, 7.0}) {
+    for (const double seconds : {1.0, 1.25, 2.0, 2.9, 7.0}) {
         const Scene wanted = stage.read_at(seconds);
         const std::vector<PartPose> poses = motion.at(seconds);
         EXPECT_LT(farthest_apart(posed(rest, poses), wanted.positions), 1e-12) << seconds;
@@ -204,7 +204,6 @@ TEST(Motion, WhatHasNoScaleIsGone)
     EXPECT_TRUE(motion.at(3.0)[0].is_gone);
     const Motion all(full_stage().rest());
     EXPECT_TRUE(all.at(1.0)[4].is_gone);
-    EXPECT_TRUE(all.at(1.0)[4].positions.empty());
     EXPECT_FALSE(all.at(1.1)[4].is_gone);
 }
 
