@@ -40,6 +40,8 @@ public:
     void play() { mover_.player().toggle(); }
     void undo() { mover_.undo(); }
     bool deselect();
+    /// The part that the scene's vertex is of.
+    void select_vertex(std::uint32_t vertex) { mover_.select_vertex(vertex); }
 
 private:
     struct Drag {

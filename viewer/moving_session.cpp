@@ -61,7 +61,7 @@ public:
     {
         const std::span<const Occlusion> answers = receivers_->occlusion();
         const std::size_t asked = target_.receivers().size();
-        std::vector<Occlusion> values = target_.values(answers.first(asked));
+        std::vector<Occlusion> values = target_.values_locally(answers.first(asked));
         const auto ground = answers.subspan(asked);
         values.insert(values.end(), ground.begin(), ground.end());
         return values;
@@ -151,10 +151,7 @@ struct MovingSession::Built {
         frame.pose_s = pose_s;
         frame.receivers = rough.count();
         frame.values = rough_values;
-        for (std::size_t i = 0; i < well_values.size(); ++i) {
-            if (rough_values[i] == rough_then[i])
-                frame.values[i] = well_values[i];
-        }
+        keep_untouched(frame.values);
         rough_frame = std::move(frame);
     }
 
@@ -181,11 +178,21 @@ struct MovingSession::Built {
         frame.report = whole->solve(progress);
         frame.receivers = whole->count();
         frame.values = whole->values();
+        keep_untouched(frame.values);
         remember(frame.values);
         frame.posed = std::make_shared<const Model>(posed_model(base, bodies, now));
         frame.at_points =
             scene.solve(frame.posed->point_receivers, question.engine, progress).occlusion;
         frame.is_whole = true;
+    }
+
+    /// values: of the pose at hand, which was solved roughly.
+    void keep_untouched(std::vector<Occlusion>& values) const
+    {
+        for (std::size_t i = 0; i < well_values.size(); ++i) {
+            if (rough_values[i] == rough_then[i])
+                values[i] = well_values[i];
+        }
     }
 
     /// values: good ones of the pose at hand, which was solved roughly.

@@ -5,8 +5,8 @@
 /// pose by then, so that a slow engine shows fewer poses and none of them late. A frame is handed
 /// over whole: shape and values are of one pose.
 ///
-/// While something moves, vertices whose rough answer is what it was at the last pose that was
-/// solved well keep that pose's values: what nothing touches does not change its look.
+/// Vertices whose rough answer is what it was at the last pose that was solved well keep that
+/// pose's values, to the bit, roughly or well: what nothing touches does not change its look.
 #pragma once
 
 #include "engines/moving.h"

@@ -385,8 +385,11 @@ void Panel::widgets(PanelState& state, const CellView& left, const CellView* rig
         else
             histogram(session);
     }
-    if (shown_state.model && ImGui::CollapsingHeader("Parts"))
-        edit_parts(shown_state.model->mesh->scene, state.left.settings.parts);
+    if (shown_state.model && ImGui::CollapsingHeader("Parts")) {
+        if (const auto vertex =
+                edit_parts(shown_state.model->mesh->scene, state.left.settings.parts))
+            motion.select_vertex(*vertex);
+    }
     if (ImGui::CollapsingHeader("Show", ImGuiTreeNodeFlags_DefaultOpen)) {
         input.view_changed |= view_widgets(state);
         ImGui::SameLine();
