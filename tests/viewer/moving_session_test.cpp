@@ -88,6 +88,14 @@ TEST_F(TwoPieces, AreFoundAndPickedByTheRayOfAPixel)
     EXPECT_EQ(under(0.9f * movables->list[0].high + 0.1f * movables->list[0].middle()), 0u);
     EXPECT_EQ(under(movables->list[0].low), 1u) << "the box stands before this corner";
     EXPECT_EQ(under(glm::dvec3(0.0, 1.0, 0.0)), Movables::kNone);
+    // the nearer one, from below and from above
+    const auto along_y = [&](double from) {
+        const SightRay ray{{0.03, from, 0.02}, {0.0, from < 0.0 ? 1.0 : -1.0, 0.0}};
+        const auto triangle = triangle_under(geometry.positions, geometry.triangles, ray);
+        return triangle ? movables->of_vertex[geometry.triangles[*triangle].x] : Movables::kNone;
+    };
+    EXPECT_EQ(along_y(-2.0), 0u);
+    EXPECT_EQ(along_y(2.0), 1u);
 }
 
 // A file's objects are told apart also where they touch; what shares vertices is one.
