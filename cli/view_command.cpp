@@ -125,7 +125,8 @@ void add_view_command(CLI::App& app, Work& work)
 {
     const auto options = std::make_shared<ViewCommandOptions>();
     CLI::App* command = app.add_subcommand(
-        "view", "A window: orbit, engines, settings, display modes, comparison with rays");
+        "view",
+        "A window: orbit, engines, settings, display modes, comparison with rays, parts that move");
     command
         ->add_option("IN", options->input,
                      std::string(kMeshOrCloud) + "; without one, drop files on the window")

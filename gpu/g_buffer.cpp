@@ -15,7 +15,7 @@ namespace {
 /// What is nearer than that share of the farthest is not seen.
 constexpr float kNearest = 1e-6f;
 
-std::vector<glm::vec4> as_texels(const std::vector<glm::vec3>& values)
+std::vector<glm::vec4> as_texels(std::span<const glm::vec3> values)
 {
     std::vector<glm::vec4> texels;
     texels.reserve(values.size());
@@ -28,6 +28,15 @@ template <class T>
 std::span<const T> view_of(const std::vector<T>& values)
 {
     return values;
+}
+
+/// Of a ball about the origin that holds them.
+float ball_radius_of(std::span<const glm::vec3> points)
+{
+    float radius = 0.0f;
+    for (const glm::vec3& p : points)
+        radius = std::max(radius, glm::length(p));
+    return radius;
 }
 
 void set_view(Program& program, const View& view)
@@ -84,8 +93,14 @@ DrawnMesh::DrawnMesh(const GlContext& context, const Geometry& geometry, const S
       index_count_(3 * geometry.triangles.size())
 {
     vertices_.indices(triangles_.buffer());
-    for (const glm::vec3& p : geometry.positions)
-        radius_ = std::max(radius_, glm::length(p));
+    radius_ = ball_radius_of(geometry.positions);
+}
+
+void DrawnMesh::move(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals)
+{
+    positions_.update(0, view_of(as_texels(positions)));
+    normals_.update(0, view_of(as_texels(normals)));
+    radius_ = ball_radius_of(positions);
 }
 
 GBuffer::GBuffer(const GlContext& context, int width, int height)

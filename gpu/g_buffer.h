@@ -24,6 +24,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace surfelao {
@@ -62,6 +63,9 @@ struct PixelRay {
 class DrawnMesh {
 public:
     DrawnMesh(const GlContext& context, const Geometry& geometry, const Surface& surface);
+
+    /// The same triangles elsewhere. positions: one per vertex; normals: one per wedge.
+    void move(std::span<const glm::vec3> positions, std::span<const glm::vec3> normals);
 
 private:
     friend class GBuffer;

@@ -24,24 +24,15 @@ CellView::Changes CellView::update()
     Changes changes;
     static_cast<Session::Changes&>(changes) = session_.update();
     const SessionState& state = session_.state();
-    if (changes.model) {
-        forget_shot();
-        cubes_.forget();
-        maps_asked_.reset();
-        projector_.reset();
-        map_weights_.clear();
-        mesh_.reset();
-        layout_.reset();
-        paint_.reset();
-        renderer_.set_model(*state.model);
-    }
-    if (changes.occlusion) {
+    if (changes.model || changes.pose)
+        take_model(changes);
+    if (changes.occlusion && !is_moved()) {
         renderer_.set_occlusion(session_.occlusion());
         take_map();
     }
-    if (changes.reference && state.map_reference)
+    if (changes.reference && state.map_reference && !is_moved())
         renderer_.set_map_reference(*state.map_reference);
-    else if (changes.reference)
+    else if (changes.reference && !is_moved())
         renderer_.set_reference(state.reference);
     if (pixels_.update() && !pixels_.answers().picture.empty()) {
         picture_.emplace(upload(pixels_.answers()));
@@ -66,6 +57,61 @@ CellView::Changes CellView::update()
     if (changes.occlusion || changes.pixels || has_rays)
         is_measured_ = false;
     return changes;
+}
+
+/// The session's model is shown again, or another one.
+void CellView::take_model(const Session::Changes& changes)
+{
+    const SessionState& state = session_.state();
+    moved_.reset();
+    forget_shot();
+    cubes_.forget();
+    maps_asked_.reset();
+    projector_.reset();
+    map_weights_.clear();
+    mesh_.reset();
+    layout_.reset();
+    drawn_ = state.model;
+    renderer_.set_model(*drawn_);
+    // triangles that a pose has left out take their paint with them
+    const std::size_t triangles = drawn_->geometry().triangles.size();
+    if (!changes.pose || (paint_ && paint_->triangles.size() != triangles))
+        paint_.reset();
+    if (paint_)
+        renderer_.set_paint(*paint_);
+}
+
+void CellView::show_moved(const std::shared_ptr<const Model>& base,
+                          const std::shared_ptr<const MovingFrame>& frame, bool has_values)
+{
+    if (drawn_ != base) {
+        drawn_ = base;
+        mesh_.reset();
+        renderer_.set_model(*base);
+        if (paint_)
+            renderer_.set_paint(*paint_);
+    }
+    if (layout_)
+        renderer_.forget_layout();
+    layout_.reset();
+    moved_ = frame;
+    moved_has_values_ = has_values;
+    renderer_.set_shape(frame->shape);
+    if (has_values)
+        renderer_.set_occlusion(frame->values);
+    if (mesh_)
+        mesh_->move(frame->shape.positions, frame->shape.wedge_normals);
+    forget_shot();
+}
+
+std::span<const glm::vec3> CellView::positions() const
+{
+    return moved_ ? moved_->shape.positions : session_.state().model->geometry().positions;
+}
+
+bool CellView::has_values() const
+{
+    return has_pixels() || (moved_ ? moved_has_values_ : session_.state().is_solved);
 }
 
 /// The answer's map, or that it has none.
@@ -99,11 +145,12 @@ Texture2D CellView::upload(const PixelAnswers& found) const
 bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, const PixelRays& rays,
                     Colors colors)
 {
-    const std::shared_ptr<const Model>& model = session_.state().model;
+    const std::shared_ptr<const Model>& model = is_moved() ? drawn_ : session_.state().model;
     const Shot shot{model, camera, size};
-    const bool rests = shot == shot_;
-    bool has_changed = !rests && has_pixels();
-    if (!rests) {
+    const bool is_same = shot == shot_;
+    const bool rests = is_same && !is_moved();
+    bool has_changed = !is_same && has_pixels();
+    if (!is_same) {
         forget_shot();
         shot_ = shot;
     }
@@ -117,7 +164,7 @@ bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, co
         has_changed |= forget_screen();
     if (where != Where::cube_maps)
         has_changed |= forget_projection();
-    if (where == Where::cube_maps) {
+    if (where == Where::cube_maps && !is_moved()) {
         ask_maps(cell.settings.engine);
         has_changed |= project(rests);
         shows_holes_ = colors == Colors::coverage;
@@ -194,8 +241,11 @@ void CellView::forget_coverage()
 const GBuffer& CellView::drawn()
 {
     const auto [width, height] = shot_.size;
-    if (!mesh_)
+    if (!mesh_) {
         mesh_.emplace(context_, shot_.model->geometry(), shot_.model->mesh->surface);
+        if (moved_)
+            mesh_->move(moved_->shape.positions, moved_->shape.wedge_normals);
+    }
     if (!g_buffer_ || g_buffer_->width() != width || g_buffer_->height() != height)
         g_buffer_.emplace(context_, width, height);
     if (!is_drawn_)
@@ -237,12 +287,22 @@ PixelQuestion CellView::question_for(const EngineSettings& engine)
             .engine = engine};
 }
 
+/// By the session; null where whoever asks prepares an engine of its own: the GPU's, and that of a
+/// pose that the session has not solved itself.
+std::shared_ptr<const Prepared> CellView::prepared_for(const EngineSettings& engine) const
+{
+    const std::shared_ptr<const Prepared>& prepared = session_.state().prepared;
+    const bool is_shared =
+        engine.device != Device::gpu && prepared && prepared->choice() == EngineChoice(engine);
+    return is_shared ? prepared : nullptr;
+}
+
 /// By the session. The GPU's engine is not shared.
 bool CellView::is_prepared(const EngineSettings& engine) const
 {
     const SessionState& state = session_.state();
-    if (engine.device == Device::gpu)
-        return state.is_solved;
+    if (engine.device == Device::gpu || !state.pose.is_rest())
+        return state.is_solved && !state.is_draft;
     return state.prepared && state.prepared->choice() == EngineChoice(engine);
 }
 
@@ -252,7 +312,7 @@ void CellView::ask_pixels(EngineSettings engine)
     if (asked_ == engine || !is_prepared(engine))
         return;
     PixelQuestion question = question_for(engine);
-    question.prepared = engine.device == Device::gpu ? nullptr : session_.state().prepared;
+    question.prepared = prepared_for(engine);
     pixels_.solve(std::move(question));
     was_cancelled_ = false;
     asked_ = engine;
@@ -267,8 +327,7 @@ void CellView::ask_maps(EngineSettings engine)
     if (projector_)
         projector_->clear();
     map_weights_.clear();
-    cubes_.ask(
-        {shot_.model, engine, engine.device == Device::gpu ? nullptr : session_.state().prepared});
+    cubes_.ask({shot_.model, engine, prepared_for(engine)});
 }
 
 std::string CellView::add_map()
@@ -343,7 +402,7 @@ void CellView::ask_holes(EngineSettings engine)
     }
     if (std::ranges::all_of(question.triangles, [](std::uint32_t seen) { return seen == 0; }))
         return;
-    question.prepared = engine.device == Device::gpu ? nullptr : session_.state().prepared;
+    question.prepared = prepared_for(engine);
     holes_.solve(std::move(question));
 }
 

@@ -9,6 +9,7 @@
 #include "viewer/base_paint.h"
 #include "viewer/cell.h"
 #include "viewer/cube_session.h"
+#include "viewer/moving_session.h"
 #include "viewer/pixel_session.h"
 #include "viewer/renderer.h"
 #include "viewer/session.h"
@@ -53,6 +54,17 @@ public:
     };
     [[nodiscard]] Changes update();
 
+    /// From now on a model whose parts move is shown, until the session has another pose or model.
+    /// base: that the frame is of. has_values: the frame's are this cell's. What pixels see by
+    /// themselves is asked again once it rests; methods of the picture follow each frame.
+    void show_moved(const std::shared_ptr<const Model>& base,
+                    const std::shared_ptr<const MovingFrame>& frame, bool has_values);
+    bool is_moved() const { return moved_ != nullptr; }
+    /// Positions that are shown. A model must be there.
+    std::span<const glm::vec3> positions() const;
+    /// At vertices, in a map, or at pixels: there is something to show.
+    bool has_values() const;
+
     /// Once a frame, before it is drawn. A model must be there. True where other values lie on the
     /// pixels than before. colors: that are drawn; Colors::radius has values of its own. Throws
     /// std::runtime_error where the device refuses, SettingsError for settings out of their ranges.
@@ -78,7 +90,8 @@ public:
     /// By rays, where the values shown lie.
     bool has_reference() const
     {
-        return has_pixels() ? rays_picture_.has_value() : session_.state().has_reference();
+        return has_pixels() ? rays_picture_.has_value()
+                            : !is_moved() && session_.state().has_reference();
     }
     const std::optional<PixelError>& pixel_error() const { return error_; }
     const PixelAnswers& pixels() const { return pixels_.answers(); }
@@ -106,6 +119,7 @@ private:
     const GBuffer& drawn();
     [[nodiscard]] PixelValues pixel_values() const;
     [[nodiscard]] PixelQuestion question_for(const EngineSettings& engine);
+    void take_model(const Session::Changes& changes);
     void forget_shot();
     bool forget_picture();
     bool forget_screen();
@@ -113,6 +127,7 @@ private:
     void forget_coverage();
     [[nodiscard]] bool project(bool rests);
     void ask_maps(EngineSettings engine);
+    [[nodiscard]] std::shared_ptr<const Prepared> prepared_for(const EngineSettings& engine) const;
     [[nodiscard]] bool is_prepared(const EngineSettings& engine) const;
     void measure_coverage();
     void ask_holes(EngineSettings engine);
@@ -129,6 +144,10 @@ private:
     Renderer renderer_;
     std::shared_ptr<const ModelLayout> layout_;  ///< that the renderer has
     std::optional<BasePaint> paint_;             ///< of the model; empty until it is wanted
+
+    std::shared_ptr<const MovingFrame> moved_;  ///< null: the session's model is shown
+    bool moved_has_values_ = false;
+    std::shared_ptr<const Model> drawn_;  ///< that the renderer has
 
     Shot shot_;
     std::optional<DrawnMesh> mesh_;  ///< of the model; empty until it is wanted

@@ -31,6 +31,8 @@ char sign_of(int key, int scancode)
             return Panel::kEscape;
         case GLFW_KEY_TAB:
             return Panel::kTab;
+        case GLFW_KEY_SPACE:
+            return Panel::kSpace;
         case GLFW_KEY_KP_ADD:
             return '+';
         case GLFW_KEY_KP_SUBTRACT:

@@ -39,7 +39,7 @@ void switch_beside(PanelState& state, Beside beside)
 }
 
 /// One key that the widgets leave to the picture.
-void press(char key, PanelState& state, PanelInput& input)
+void press(char key, PanelState& state, MotionPanel& motion, PanelInput& input)
 {
     input.view_changed |= std::string_view("1234567890ATGWS").find(key) != std::string_view::npos;
     switch (key) {
@@ -80,7 +80,13 @@ void press(char key, PanelState& state, PanelInput& input)
             input.close = true;
             break;
         case Panel::kEscape:
-            input.cancel = true;
+            input.cancel = !motion.deselect();
+            break;
+        case Panel::kSpace:
+            motion.play();
+            break;
+        case 'Z':
+            motion.undo();
             break;
         case Panel::kTab:
             state.is_hidden = !state.is_hidden;
@@ -196,7 +202,8 @@ Cell right_cell(const PanelState& state)
 }
 
 PanelInput Panel::build(PanelState& state, const CellView& left_view, const CellView* right_view,
-                        const PanelFigures& figures, std::string_view keys)
+                        const PanelFigures& figures, MotionPanel& motion, const MotionView& moved,
+                        std::string_view keys)
 {
     const Session& session = left_view.session();
     ImGui_ImplOpenGL3_NewFrame();
@@ -206,7 +213,7 @@ PanelInput Panel::build(PanelState& state, const CellView& left_view, const Cell
     if (!ImGui::GetIO().WantTextInput) {
         for (const char key : keys) {
             if (!state.question)
-                press(key, state, input);
+                press(key, state, motion, input);
             else if (input.reply == SaveReply::none)
                 input.reply = reply_of(key, *state.question);
         }
@@ -219,7 +226,7 @@ PanelInput Panel::build(PanelState& state, const CellView& left_view, const Cell
         input.covered = beside ? kWidth * scale / display.x : 0.0f;
         ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
         ImGui::SetNextWindowSize(ImVec2(kWidth * scale, beside ? display.y : 0.0f));
-        widgets(state, left_view, right_view, figures, input);
+        widgets(state, left_view, right_view, figures, motion, input);
     }
     if (state.shows_help)
         help_window(state.shows_help);
@@ -236,7 +243,8 @@ PanelInput Panel::build(PanelState& state, const CellView& left_view, const Cell
     if (state.beside != Beside::nothing)
         place_labels(line, label_of(state.left, left_view).c_str(),
                      right_label(state, left_view, right_view).c_str());
-    mouse(state, input, line, left);
+    if (state.question || !motion.mouse(moved))
+        mouse(state, input, line, left);
     if (input.view_changed && needs_reference(state))
         state.wants_reference = true;
     ImGui::Render();
@@ -343,7 +351,7 @@ void name_model(const SessionState& state)
 }  // namespace
 
 void Panel::widgets(PanelState& state, const CellView& left, const CellView* right,
-                    const PanelFigures& figures, PanelInput& input)
+                    const PanelFigures& figures, MotionPanel& motion, PanelInput& input)
 {
     const Session& session = left.session();
     const SessionState& shown_state = session.state();
@@ -377,8 +385,11 @@ void Panel::widgets(PanelState& state, const CellView& left, const CellView* rig
         else
             histogram(session);
     }
-    if (shown_state.model && ImGui::CollapsingHeader("Parts"))
-        edit_parts(shown_state.model->mesh->scene, state.left.settings.parts);
+    if (shown_state.model && ImGui::CollapsingHeader("Parts")) {
+        if (const auto vertex =
+                edit_parts(shown_state.model->mesh->scene, state.left.settings.parts))
+            motion.select_vertex(*vertex);
+    }
     if (ImGui::CollapsingHeader("Show", ImGuiTreeNodeFlags_DefaultOpen)) {
         input.view_changed |= view_widgets(state);
         ImGui::SameLine();
@@ -386,6 +397,8 @@ void Panel::widgets(PanelState& state, const CellView& left, const CellView* rig
     }
     if (ImGui::CollapsingHeader("Compare", ImGuiTreeNodeFlags_DefaultOpen))
         compare_widgets(state, left, right, input);
+    if (shown_state.model)
+        motion.widgets(figures.frame_ms);
     if (ImGui::CollapsingHeader("Save")) {
         ImGui::InputText("##picture", state.picture_path, sizeof state.picture_path);
         ImGui::SameLine();

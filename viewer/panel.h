@@ -3,6 +3,7 @@
 
 #include "viewer/cell.h"
 #include "viewer/cell_view.h"
+#include "viewer/motion_panel.h"
 #include "viewer/view_options.h"
 
 #include <glm/vec2.hpp>
@@ -97,18 +98,20 @@ public:
     Panel& operator=(const Panel&) = delete;
 
     /// Takes the input that came since the last call and lays the widgets out. right: null where
-    /// there is none of its own. keys: pressed since then, in order: capital letters, digits,
+    /// there is none of its own. moved: what motion shows.
+    /// keys: pressed since then, in order: capital letters, digits,
     /// signs, and the two below.
     PanelInput build(PanelState& state, const CellView& left, const CellView* right,
-                     const PanelFigures& figures, std::string_view keys);
-    static constexpr char kEscape = 27, kTab = 9;
+                     const PanelFigures& figures, MotionPanel& motion, const MotionView& moved,
+                     std::string_view keys);
+    static constexpr char kEscape = 27, kTab = 9, kSpace = ' ';
 
     /// Draws what build() laid out onto the window.
     void draw();
 
 private:
     void widgets(PanelState& state, const CellView& left, const CellView* right,
-                 const PanelFigures& figures, PanelInput& input);
+                 const PanelFigures& figures, MotionPanel& motion, PanelInput& input);
     void solver_widgets(PanelState& state, const Model* model);
     void compare_widgets(PanelState& state, const CellView& left, const CellView* right,
                          PanelInput& input);

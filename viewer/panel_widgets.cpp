@@ -35,7 +35,11 @@ constexpr const char* kHelp[][2] = {
     {"S", "the right cell side by side on or off"},
     {"C", "with cube maps: one where the eye is"},
     {"G", "shadow on the ground on or off"},
-    {"Esc", "cancel what runs in the background"},
+    {"click", "select the part under the mouse"},
+    {"drag its gizmo", "move it: arrows, rings, square"},
+    {"Z", "undo the last move"},
+    {"space", "play or pause the animation"},
+    {"Esc", "deselect; else cancel what runs in the background"},
     {"Tab", "hide or show the panel"},
     {"P", "save the picture"},
     {"B", "save the baked file"},
@@ -144,15 +148,16 @@ bool edit_texels(TexelSettings& texels)
     return apply;
 }
 
-void edit_parts(const Scene& scene, PartChoice& parts)
+std::optional<std::uint32_t> edit_parts(const Scene& scene, PartChoice& parts)
 {
+    std::optional<std::uint32_t> clicked;
     int clear = static_cast<int>(parts.clear);
     if (ImGui::Combo("glass", &clear, "solid\0open\0cut by alpha\0"))
         parts.clear = static_cast<ClearSurfaces>(clear);
     std::vector<PartTick> ticks = part_ticks(scene, parts);
     if (ticks.empty()) {
         ImGui::TextDisabled("no part of it has a name");
-        return;
+        return clicked;
     }
     constexpr float kRowsShown = 9.5f;
     const float row = ImGui::GetFrameHeightWithSpacing();
@@ -160,7 +165,7 @@ void edit_parts(const Scene& scene, PartChoice& parts)
     constexpr ImGuiTableFlags kFlags =
         ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerV;
     if (!ImGui::BeginTable("parts", 3, kFlags, ImVec2(0.0f, height)))
-        return;
+        return clicked;
     ImGui::TableSetupScrollFreeze(0, 1);
     ImGui::TableSetupColumn("part", ImGuiTableColumnFlags_WidthStretch);
     ImGui::TableSetupColumn("occludes", ImGuiTableColumnFlags_WidthFixed);
@@ -175,7 +180,10 @@ void edit_parts(const Scene& scene, PartChoice& parts)
             ImGui::PushID(i);
             ImGui::TableNextRow();
             ImGui::TableNextColumn();
-            ImGui::TextUnformatted(tick.name.c_str());
+            if (ImGui::Selectable(tick.name.c_str())) {
+                const Label& label = *parting_labels(scene)[static_cast<std::size_t>(i)];
+                clicked = scene.triangles[label.ranges.front().first].x;
+            }
             if (ImGui::IsItemHovered())
                 ImGui::SetTooltip("%s, %llu triangles", tick.name.c_str(),
                                   static_cast<unsigned long long>(tick.triangles));
@@ -188,9 +196,9 @@ void edit_parts(const Scene& scene, PartChoice& parts)
     }
     ImGui::EndTable();
     const bool is_any_baked = std::ranges::any_of(ticks, &PartTick::is_baked);
-    if (ticks == before || !is_any_baked)
-        return;
-    parts = choice_of(ticks, std::move(parts));
+    if (ticks != before && is_any_baked)
+        parts = choice_of(ticks, std::move(parts));
+    return clicked;
 }
 
 bool view_widgets(PanelState& state)

@@ -4,6 +4,7 @@
 
 #include "viewer/panel.h"
 
+#include <cstdint>
 #include <optional>
 
 namespace surfelao {
@@ -22,8 +23,8 @@ bool edit_target(TargetSettings& target);
 bool edit_texels(TexelSettings& texels);
 
 /// The parts of the model's scene with two ticks each, and what light goes through. The last part
-/// that is baked stays so.
-void edit_parts(const Scene& scene, PartChoice& parts);
+/// that is baked stays so. A vertex of the part whose name was clicked, if one was.
+std::optional<std::uint32_t> edit_parts(const Scene& scene, PartChoice& parts);
 
 /// How the model is shown. True when anything changed.
 bool view_widgets(PanelState& state);

@@ -47,7 +47,7 @@ std::vector<const Label*> innermost(const Scene& scene, LabelKind kind)
 
 }  // namespace
 
-std::vector<PartTick> part_ticks(const Scene& scene, const PartChoice& choice)
+std::vector<const Label*> parting_labels(const Scene& scene)
 {
     std::vector<const Label*> labels;
     for (const LabelKind kind : {LabelKind::node, LabelKind::object, LabelKind::group,
@@ -56,8 +56,13 @@ std::vector<PartTick> part_ticks(const Scene& scene, const PartChoice& choice)
         if (of_kind.size() > labels.size())
             labels = std::move(of_kind);
     }
+    return labels;
+}
+
+std::vector<PartTick> part_ticks(const Scene& scene, const PartChoice& choice)
+{
     std::vector<PartTick> ticks;
-    for (const Label* label : labels) {
+    for (const Label* label : parting_labels(scene)) {
         PartTick& tick = ticks.emplace_back();
         tick.name = label->name;
         tick.triangles = triangle_count(*label);

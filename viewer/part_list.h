@@ -17,7 +17,10 @@ struct PartTick {
 };
 
 /// The labels of one kind, none of which lies within another: of nodes, objects, groups, meshes and
-/// materials those that tell most parts apart. Ticked as `choice` says. O(labels).
+/// materials those that tell most parts apart. They live in the scene. O(labels).
+[[nodiscard]] std::vector<const Label*> parting_labels(const Scene& scene);
+
+/// Those, ticked as `choice` says.
 [[nodiscard]] std::vector<PartTick> part_ticks(const Scene& scene, const PartChoice& choice);
 
 /// `choice` with the names of these ticks in place of its patterns.

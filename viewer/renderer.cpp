@@ -54,7 +54,8 @@ struct Upload {
     }
     Upload(const GlContext& context, const Model& model, const std::vector<glm::vec4>& own)
         : positions(texels(context, model.geometry().positions)),
-          surfels(texels(context, surfel_texels(model))),
+          surfel_values(surfel_texels(model)),
+          surfels(texels(context, surfel_values)),
           wedge_normals(texels(context, model.mesh->surface.normals)),
           extra_vertices(context, TexelFormat::r32ui,
                          view(at_least_one(model.mesh->surface.extra_vertices))),
@@ -71,14 +72,35 @@ struct Upload {
     {
         triangles.indices(corners.buffer());
         vertex_count = model.geometry().positions.size();
-        for (const glm::vec3& p : model.seen)
-            radius = std::max(radius, glm::length(p));
-        radius = std::max({radius, glm::length(ground.corner),
-                           glm::length(ground.corner + ground.axis_x + ground.axis_y),
-                           glm::length(ground.corner + ground.axis_x),
-                           glm::length(ground.corner + ground.axis_y)});
-        if (!model.splat_radii.empty())
-            radius += *std::max_element(model.splat_radii.begin(), model.splat_radii.end());
+        radius = radius_of(model.seen, model.splat_radii);
+    }
+
+    /// Of a ball about the origin that holds all that is drawn.
+    float radius_of(const std::vector<glm::vec3>& seen, const std::vector<float>& splat_radii) const
+    {
+        float most = 0.0f;
+        for (const glm::vec3& p : seen)
+            most = std::max(most, glm::length(p));
+        most = std::max({most, glm::length(ground.corner),
+                         glm::length(ground.corner + ground.axis_x + ground.axis_y),
+                         glm::length(ground.corner + ground.axis_x),
+                         glm::length(ground.corner + ground.axis_y)});
+        if (!splat_radii.empty())
+            most += *std::max_element(splat_radii.begin(), splat_radii.end());
+        return most;
+    }
+
+    void move(const ModelShape& shape)
+    {
+        SURFELAO_CHECK(shape.positions.size() == vertex_count);
+        for (std::size_t v = 0; v < shape.normals.size(); ++v)
+            surfel_values[v] = glm::vec4(shape.normals[v], surfel_values[v].w);
+        positions.update(0, view(padded(shape.positions)));
+        surfels.update(0, view(surfel_values));
+        wedge_normals.update(0, view(padded(shape.wedge_normals)));
+        if (!shape.splat_radii.empty())
+            radii.update(0, view(shape.splat_radii));
+        radius = radius_of(shape.positions, shape.splat_radii);
     }
 
     template <class T>
@@ -90,13 +112,17 @@ struct Upload {
     {
         return {context, TexelFormat::rgba32f, view(at_least_one(values))};
     }
+    static std::vector<glm::vec4> padded(const std::vector<glm::vec3>& values)
+    {
+        std::vector<glm::vec4> texels;
+        texels.reserve(values.size());
+        for (const glm::vec3& value : values)
+            texels.emplace_back(value, 0.0f);
+        return texels;
+    }
     static TextureBuffer texels(const GlContext& context, const std::vector<glm::vec3>& values)
     {
-        std::vector<glm::vec4> padded;
-        padded.reserve(values.size());
-        for (const glm::vec3& value : values)
-            padded.emplace_back(value, 0.0f);
-        return texels(context, padded);
+        return texels(context, padded(values));
     }
     /// One per vertex: the surfel's own normal, and its level.
     static std::vector<glm::vec4> surfel_texels(const Model& model)
@@ -129,7 +155,9 @@ struct Upload {
         return values;
     }
 
-    TextureBuffer positions, surfels, wedge_normals, extra_vertices, occlusion;
+    TextureBuffer positions;
+    std::vector<glm::vec4> surfel_values;  ///< what lies in the next
+    TextureBuffer surfels, wedge_normals, extra_vertices, occlusion;
     std::optional<TextureBuffer> reference;
     TextureBuffer splats, paint;
     bool has_paint;
@@ -137,7 +165,7 @@ struct Upload {
     VertexArray triangles;
     std::size_t vertex_count = 0, index_count, splat_count;
     ShadowSquare ground;
-    float radius = 0.0f;  ///< of a ball about the origin that holds all that is drawn
+    float radius = 0.0f;  ///< radius_of()
     std::optional<Texture2D> ground_occlusion;
     std::vector<glm::vec2> ground_values =
         std::vector<glm::vec2>(kGroundReceivers, glm::vec2(0.0f));
@@ -386,6 +414,11 @@ void Renderer::set_model(const Model& model)
     impl_->upload.emplace(impl_->context, model);
     impl_->split.set_model(model);
     impl_->upload_ground();
+}
+
+void Renderer::set_shape(const ModelShape& shape)
+{
+    impl_->upload->move(shape);
 }
 
 void Renderer::set_occlusion(std::span<const Occlusion> occlusion)

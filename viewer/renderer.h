@@ -11,6 +11,7 @@
 #include "viewer/base_paint.h"
 #include "viewer/model.h"
 #include "viewer/model_map.h"
+#include "viewer/model_pose.h"
 #include "viewer/pixel_values.h"
 #include "viewer/view_options.h"
 
@@ -34,6 +35,9 @@ public:
     /// Uploads a model, which is unoccluded until told otherwise. Throws when it is larger than the
     /// device's buffers.
     void set_model(const Model& model);
+
+    /// Its vertices elsewhere, in the same number. The ground stays.
+    void set_shape(const ModelShape& shape);
 
     /// Model::answer_count() values. Without a reference, the result stands in for it.
     void set_occlusion(std::span<const Occlusion> occlusion);

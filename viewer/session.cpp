@@ -15,27 +15,13 @@
 #include <utility>
 
 namespace surfelao {
-namespace {
-
-constexpr int kDraftShare = 16;  // of the rays
-
-/// The rough answer's settings; the same ones where the engine has none rougher.
-EngineSettings draft_of(EngineSettings settings)
-{
-    if (settings.engine == Engine::rays)
-        settings.rays = std::max(1u, settings.rays / kDraftShare);
-    else
-        settings.quality = std::min(settings.quality, kDraft);
-    return settings;
-}
-
-}  // namespace
 
 struct Session::Made {
     std::uint64_t number = 0;
     std::string failure;  ///< if not empty, the rest is
     std::shared_ptr<const Scene> scene;
     std::shared_ptr<const Model> model;
+    PoseName pose = {};
     double seconds = 0.0;
 };
 
@@ -143,6 +129,7 @@ void Session::open(const Session& other, const SessionSettings& settings)
     made->number = ++solve_number_;
     made->scene = other.scene_;
     made->model = shown.model;
+    made->pose = shown.pose;
     solver_.cancel();
     const std::lock_guard lock(mailbox_);
     made_ = std::move(made);
@@ -328,6 +315,40 @@ void Session::start_reference()
         });
 }
 
+void Session::give_up()
+{
+    ++solve_number_;
+    ++trace_number_;
+    solver_.cancel();
+    tracer_.cancel();
+}
+
+void Session::take_pose(std::shared_ptr<const Model> posed, const PoseName& name,
+                        ModelAnswer answer, bool is_whole)
+{
+    SURFELAO_CHECK(state_.model && !making_ && answer.values.size() == posed->answer_count());
+    ++solve_number_;
+    solver_.cancel();
+    state_.model = std::move(posed);
+    state_.pose = name;
+    state_.prepared.reset();
+    was_cancelled_ = false;
+    occlusion_ = std::move(answer.values);
+    at_points_ = std::move(answer.at_points);
+    solved_with_ = settings_;
+    solved_with_.engine.definition = definition();
+    state_.is_solved = true;
+    state_.is_draft = !is_whole;
+    state_.build_s.reset();
+    state_.solve_s = answer.seconds;
+    state_.message.clear();
+    ++state_.answer_count;
+    has_other_pose_ = true;
+    start_reference();
+    if (!is_whole)
+        start_solve();
+}
+
 void Session::solve_again()
 {
     if (state_.model && !making_)
@@ -345,7 +366,7 @@ void Session::cancel()
 void Session::measure()
 {
     state_.error.reset();
-    if (state_.is_solved && !state_.layout && !state_.reference.empty() &&
+    if (state_.is_solved && !state_.layout && !state_.reference.empty() && !at_points_.empty() &&
         !truth_.truth.points.empty() && solved_with_.max_distance == settings_.max_distance &&
         solved_with_.ground == settings_.ground)
         state_.error = error_of(*state_.model, truth_, occlusion_, at_points_);
@@ -365,6 +386,7 @@ Session::Changes Session::update()
         failure = std::exchange(failure_, {});
     }
     Changes changes;
+    changes.pose = changes.occlusion = std::exchange(has_other_pose_, false);
     if (made && made->number == solve_number_ && making_) {
         const Making making = *std::exchange(making_, std::nullopt);
         state_.message = made->failure;
@@ -374,6 +396,7 @@ Session::Changes Session::update()
             state_.path = making.path;
             state_.model = made->model;
             state_.parts = making.parts;
+            state_.pose = made->pose;
             state_.read_s = made->seconds;
             state_.is_solved = false;
             state_.layout.reset();
@@ -432,12 +455,27 @@ void Session::save(const std::filesystem::path& path) const
     made.target = solved_with_.target;
     made.texels = solved_with_.texels;
     made.parts = solved_with_.parts;
+    if (!state_.pose.is_rest()) {
+        made.reading.moment = state_.pose.moment;
+        made.frame = state_.model->geometry().frame;
+    }
+    const std::string mark = mark_of(made) + (state_.pose.by_hand ? " moved" : "");
     if (state_.layout)
-        return save_map(path, mark_of(made));
+        return save_map(path, mark);
     check_output(state_.path, path);
-    const Scene& scene = state_.model->mesh->scene;
+    const Scene scene = scene_to_write(path);
     write_scene(path, scene, std::span(occlusion()).first(scene.positions.size()),
-                {.mark = mark_of(made), .unbaked = state_.model->mesh->unbaked});
+                {.mark = mark, .unbaked = state_.model->mesh->unbaked});
+}
+
+/// What the file itself holds has the places that it was read with: of another pose it is written
+/// anew, but for glTF, which keeps them.
+Scene Session::scene_to_write(const std::filesystem::path& path) const
+{
+    Scene scene = state_.model->mesh->scene;
+    if (!state_.pose.is_rest() && !is_gltf(type_of(path)))
+        scene.asset.reset();
+    return scene;
 }
 
 void Session::save_map(const std::filesystem::path& path, const std::string& mark) const
@@ -453,7 +491,7 @@ void Session::save_map(const std::filesystem::path& path, const std::string& mar
     check_output_with_map(state_.path, path);
     const OcclusionMap picture =
         occlusion_map_of(state_.layout->layout, state_.layout->uv_set, pages, MapDepth::byte);
-    static_cast<void>(write_scene_with_map(path, state_.model->mesh->scene, picture,
+    static_cast<void>(write_scene_with_map(path, scene_to_write(path), picture,
                                            {.mark = mark, .unbaked = state_.model->mesh->unbaked}));
 }
 

@@ -38,11 +38,19 @@ struct SessionSettings {
     bool operator==(const SessionSettings&) const = default;
 };
 
+/// What has moved a model.
+struct PoseName {
+    std::optional<Moment> moment = {};  ///< of an animation
+    bool by_hand = false;
+    [[nodiscard]] bool is_rest() const { return !moment && !by_hand; }
+};
+
 /// A picture of the session for one frame.
 struct SessionState {
     std::filesystem::path path;          ///< of the model shown
     std::shared_ptr<const Model> model;  ///< null until a file was read
     PartChoice parts;                    ///< that it was made with
+    PoseName pose;                       ///< that it is in
     bool is_solved = false;              ///< there is an answer: Session::occlusion()
     bool is_draft = false;               ///< it is the rough one
     std::vector<Occlusion> reference;    ///< empty until it was traced for the same definition
@@ -100,6 +108,15 @@ public:
     /// 0: no more.
     void want_reference(std::uint32_t rays);
 
+    /// The same model in another pose (viewer/model_pose.h), with an answer at its vertices. It
+    /// stays until the model is made anew. is_whole: the answer is of the last settings; else it is
+    /// solved with them. A model must be there, and none be in the making.
+    void take_pose(std::shared_ptr<const Model> posed, const PoseName& name, ModelAnswer answer,
+                   bool is_whole);
+
+    /// Stops what is solved and traced, and drops what it has found: another pose is on its way.
+    void give_up();
+
     /// Stops solving and tracing; the last answers stay.
     void cancel();
 
@@ -110,6 +127,7 @@ public:
     struct Changes {
         bool file = false;   ///< the model is of another file
         bool model = false;  ///< of another file, or made anew for other targets
+        bool pose = false;   ///< or the same in another pose
         bool occlusion = false;
         bool reference = false;
     };
@@ -120,15 +138,18 @@ public:
     const std::vector<Occlusion>& occlusion() const { return occlusion_; }
 
     /// Writes the model with the answer at its vertices, the draft where there is no other: the
-    /// bytes that bake() writes for these settings. With a map, the model with it, or the picture
-    /// alone (.png, .tif). Something must be solved. Replaces what stands there. Throws as
-    /// check_output() and write_scene(), and InputError for a map of several pages.
+    /// bytes that bake() writes for these settings. Of another pose the mark tells so, and the file
+    /// is written anew, but for glTF, which keeps the places that it was read with. With a map, the
+    /// model with it, or the picture alone (.png, .tif). Something must be solved. Replaces what
+    /// stands there. Throws as check_output() and write_scene(), and InputError for a map of
+    /// several pages.
     void save(const std::filesystem::path& path) const;
 
     const SessionState& state() const { return state_; }
     const SessionSettings& settings() const { return settings_; }
     /// What the settings ask of the model, which must be there.
     [[nodiscard]] Definition definition() const;
+    bool making() const { return making_.has_value(); }  ///< another model
     bool opening() const { return making_.has_value() && !making_->scene; }
     bool was_cancelled() const { return was_cancelled_; }  ///< the last solving, before its end
     bool solving() const { return solver_.busy(); }
@@ -155,6 +176,7 @@ private:
     void solve_or_make();
     void start_solve();
     void start_reference();
+    Scene scene_to_write(const std::filesystem::path& path) const;
     void save_map(const std::filesystem::path& path, const std::string& mark) const;
     void measure();
 
@@ -162,6 +184,7 @@ private:
     std::uint32_t reference_rays_ = 0;
     std::optional<Making> making_;
     bool was_cancelled_ = false;
+    bool has_other_pose_ = false;  ///< since the last update()
     SessionState state_;
     std::shared_ptr<const Scene> scene_;  ///< of the model, as it was read
     ModelTruth truth_;                    ///< but its reference, which is in state_

@@ -4,11 +4,14 @@
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
 namespace surfelao {
 namespace {
+
+constexpr std::uint32_t kDraftShare = 16;  // of the rays
 
 /// A stage of a longer work, which takes it from one share of the whole to another.
 Progress stage(const Progress& whole, double from, double to)
@@ -49,6 +52,15 @@ bool is_same(const SurfacePoint& a, const SurfacePoint& b)
 }
 
 }  // namespace
+
+EngineSettings draft_of(EngineSettings settings)
+{
+    if (settings.engine == Engine::rays)
+        settings.rays = std::max(1u, settings.rays / kDraftShare);
+    else
+        settings.quality = std::min(settings.quality, kDraft);
+    return settings;
+}
 
 Prepared prepare(const Model& model, const EngineChoice& choice)
 {

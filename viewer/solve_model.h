@@ -29,6 +29,9 @@ struct ModelAnswer {
     double seconds = 0.0;              ///< with the fit
 };
 
+/// The rough answer's settings; the same ones where the engine has none rougher.
+[[nodiscard]] EngineSettings draft_of(EngineSettings settings);
+
 /// What occludes in the model, for an engine. Throws as prepare() of engines/engine.h.
 [[nodiscard]] Prepared prepare(const Model& model, const EngineChoice& choice);
 

@@ -6,6 +6,8 @@
 #include "surfels/stopwatch.h"
 #include "viewer/atlas_picture.h"
 #include "viewer/cell_view.h"
+#include "viewer/motion_panel.h"
+#include "viewer/mover.h"
 #include "viewer/native_window.h"
 #include "viewer/output_files.h"
 #include "viewer/render.h"
@@ -26,6 +28,7 @@ namespace {
 constexpr int kMostSamples = 32;       // a view at rest is done then
 constexpr double kPollSeconds = 0.03;  // while something runs in the background
 constexpr double kIdleSeconds = 0.5;
+constexpr double kMovingSeconds = 0.004;  // while something moves: little beside a picture
 constexpr int kEchoFrames = 4;  // after an event: widgets take some until they stand still
 
 /// Where a picture goes.
@@ -77,6 +80,7 @@ public:
           inbox_(window),
           context_(adopt_context(window)),
           left_(context_),
+          motion_panel_(mover_),
           panel_state_(options.panel),
           panel_(window, content_scale(window))
     {
@@ -86,6 +90,7 @@ public:
             files_.add_input(path);
         panel_state_.wants_reference |= needs_reference(panel_state_);
         left_.session().solve(panel_state_.left.settings);
+        mover_.begin_at(options.reading.moment);
         if (!options.input.empty())
             left_.session().open(options.input, options.up, options.reading);
     }
@@ -115,8 +120,10 @@ private:
             glfwPollEvents();
             echo_frames_ = std::max(0, echo_frames_ - 1);
         } else {
-            const bool is_busy = left_.is_busy() || (right_ && right_->is_busy());
-            const double timeout = is_busy ? kPollSeconds : kIdleSeconds;
+            const bool is_busy =
+                left_.is_busy() || (right_ && right_->is_busy()) || mover_.is_busy();
+            const bool moves = left_.is_moved() || mover_.player().is_playing;
+            const double timeout = moves ? kMovingSeconds : is_busy ? kPollSeconds : kIdleSeconds;
             const double start = glfwGetTime();
             glfwWaitEventsTimeout(timeout);
             if (glfwGetTime() - start < timeout)
@@ -127,6 +134,7 @@ private:
         PartChoice& parts =
             panel_state_.left.settings.parts;  // names are of the file that is shown
         parts.exclude = parts.receivers = {};
+        mover_.begin_at({});
         left_.session().open(std::exchange(inbox_.path, {}), options_.up,
                              panel_state_.left.settings);
     }
@@ -148,12 +156,26 @@ private:
                                    (state().path.filename().string() + " - surfelao").c_str());
                 frame_all();
             }
-            take_right(changes.model);
-            if (changes.model || changes.occlusion || changes.reference || changes.pixels)
+            take_right(changes.model || changes.pose);
+            take_moved(changes.file);
+            if (changes.model || changes.pose || changes.occlusion || changes.reference ||
+                changes.pixels)
                 restart();
         } catch (const std::exception& error) {
             note_ = error.what();
         }
+    }
+
+    /// A frame of what moves is shown by both cells: the right one has no values of it unless its
+    /// methods ask the picture alone.
+    void take_moved(bool is_other_file)
+    {
+        if (!mover_.update(left_.session(), is_other_file, glfwGetTime()))
+            return;
+        left_.show_moved(mover_.base(), mover_.shown(), true);
+        if (right_ && right_->session().state().model)
+            right_->show_moved(mover_.base(), mover_.shown(), false);
+        restart();
     }
 
     /// The right cell is there where it is wanted, with the left one's model.
@@ -193,7 +215,8 @@ private:
     CellView& view_of_pane(const Pane& pane) { return pane.as.right ? *right_ : left_; }
 
     bool shows_atlas() const { return panel_state_.shows_atlas && state().layout; }
-    int most_samples() const { return shows_atlas() ? 1 : kMostSamples; }
+    /// What moves leaves its time to the engine.
+    int most_samples() const { return shows_atlas() || left_.is_moved() ? 1 : kMostSamples; }
 
     void frame_all()
     {
@@ -286,8 +309,9 @@ private:
     bool frame(int width, int height)
     {
         take_results();
-        const PanelInput input = panel_.build(panel_state_, left_, right_ ? &*right_ : nullptr,
-                                              figures(), std::exchange(inbox_.keys, {}));
+        const PanelInput input =
+            panel_.build(panel_state_, left_, right_ ? &*right_ : nullptr, figures(), motion_panel_,
+                         motion_view(), std::exchange(inbox_.keys, {}));
         const int covered = static_cast<int>(input.covered * static_cast<float>(width));
         const bool is_first = panes_.empty();
         lay_out({covered, 0, width - covered, height});
@@ -315,14 +339,33 @@ private:
     ViewOptions shown_view(bool of_right) const
     {
         const CellView& cell = of_right ? *right_ : left_;
-        const SessionState& found = cell.session().state();
         ViewOptions view =
             options_for(of_right ? right_cell(panel_state_) : panel_state_.left, panel_state_.view);
-        const bool has_values = found.is_solved || cell.has_pixels() ||
-                                view.colors == Colors::levels || view.colors == Colors::textured ||
+        if (cell.is_moved() && needs_reference(view))
+            view.colors = Colors::visibility;
+        const bool has_values = cell.has_values() || view.colors == Colors::levels ||
+                                view.colors == Colors::textured ||
                                 (view.colors == Colors::rays && cell.has_reference());
         if (!has_values)
             view.colors = Colors::normals;
+        return view;
+    }
+
+    /// Each place once: pictures of a wipe lie over each other.
+    MotionView motion_view() const
+    {
+        MotionView view{.camera = camera_, .pictures = {}, .positions = {}, .triangles = {}};
+        if (!has_view() || shows_atlas())
+            return view;
+        for (const Pane& pane : panes_) {
+            const bool is_new = std::ranges::none_of(
+                view.pictures, [&](const Rect& place) { return place.x == pane.as.place.x; });
+            if (is_new)
+                view.pictures.push_back(pane.as.place);
+        }
+        view.positions = left_.positions();
+        const Model& model = left_.is_moved() ? *mover_.base() : *state().model;
+        view.triangles = model.geometry().triangles;
         return view;
     }
 
@@ -467,6 +510,10 @@ private:
             note_ = what == Saved::picture ? "there is no picture yet" : "nothing is solved yet";
             return;
         }
+        if (what == Saved::baked && left_.is_moved()) {
+            note_ = "not saved: this pose is not solved yet";
+            return;
+        }
         try {
             if (what == Saved::picture)
                 save_picture(path);
@@ -476,6 +523,8 @@ private:
             note_ = "saved " + path.string();
             if (what == Saved::baked && state().is_draft)
                 note_ += ", of the draft";
+            if (what == Saved::baked && !state().pose.is_rest())
+                note_ += ": values of this pose; a glTF keeps the file's own places";
         } catch (const std::exception& error) {
             note_ = error.what();
         }
@@ -514,6 +563,8 @@ private:
     GlContext context_;
     CellView left_;
     std::optional<CellView> right_;
+    Mover mover_;
+    MotionPanel motion_panel_;
     PanelState panel_state_;
     Panel panel_;
     Camera camera_;

@@ -7,6 +7,7 @@
 #include "image/image_file.h"
 #include "scenes.h"
 #include "temporary_folder.h"
+#include "window_driver.h"
 
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
@@ -23,27 +24,6 @@
 
 namespace surfelao {
 namespace {
-
-class Window : public testing::Test {
-protected:
-    void SetUp() override
-    {
-        if (!std::getenv("DISPLAY"))
-            GTEST_SKIP() << "there is no display";
-    }
-};
-
-/// A box, as a file of its own for each test.
-std::filesystem::path box_file()
-{
-    const std::filesystem::path path =
-        std::filesystem::path(testing::TempDir()) /
-        (std::string("surfelao_window_") +
-         testing::UnitTest::GetInstance()->current_test_info()->name() + ".ply");
-    const Scene box = scenes::box({0, 0, 0}, {1, 1, 1}, 4);
-    write_scene(path, box, std::vector<Occlusion>(box.positions.size()));
-    return path;
-}
 
 bool is_light(const glm::vec4& pixel)
 {
@@ -69,27 +49,6 @@ Extent light_columns(const Image& image)
     return extent;
 }
 
-/// A key goes down and up again before the next frame.
-void press(int key)
-{
-    GLFWwindow* window = glfwGetCurrentContext();
-    const GLFWkeyfun callback = glfwSetKeyCallback(window, nullptr);
-    glfwSetKeyCallback(window, callback);
-    const int scancode = glfwGetKeyScancode(key);
-    callback(window, key, scancode, GLFW_PRESS, 0);
-    callback(window, key, scancode, GLFW_RELEASE, 0);
-}
-
-/// The left button goes down there and is let go a call later.
-void click(double x, double y, int action)
-{
-    GLFWwindow* window = glfwGetCurrentContext();
-    glfwSetCursorPos(window, x, y);
-    const GLFWmousebuttonfun callback = glfwSetMouseButtonCallback(window, nullptr);
-    glfwSetMouseButtonCallback(window, callback);
-    callback(window, GLFW_MOUSE_BUTTON_LEFT, action, 0);
-}
-
 void drop(const std::filesystem::path& path)
 {
     GLFWwindow* window = glfwGetCurrentContext();
@@ -102,12 +61,6 @@ void drop(const std::filesystem::path& path)
 
 /// Answers that one model and one setting bring; moving brings none.
 constexpr std::uint64_t kDraftAndWhole = 2;
-
-double share(const Image& image, auto condition)
-{
-    return static_cast<double>(std::count_if(image.pixels.begin(), image.pixels.end(), condition)) /
-           static_cast<double>(image.pixels.size());
-}
 
 // Light pixels are the box, saturated blue ones belong to the widgets.
 TEST_F(Window, ShowsTheModelAndTheWidgetsAndMovesWithoutSolving)
