@@ -21,7 +21,7 @@ function(surfelao_unity target)
         UNITY_BUILD ${SURFELAO_UNITY}
         UNITY_BUILD_BATCH_SIZE 10)  # a unit takes 5 to 15 s; larger ones leave cores idle
     # meant for headers; in a unit every source is one
-    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()
 
 # surfelao_folder(name [UNITY] SOURCES ... HEADERS ...): the static library of one folder.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the fuzzers and runs each for SECONDS (default 60); with NAMES only those (gltf solve ...).
-# What they learn stays in build/fuzz/corpus, findings in build/fuzz/findings. Exit 1 on a finding.
+# What they learn stays in build/dev/fuzz/corpus, findings in build/dev/fuzz/findings. Exit 1 on a finding.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
@@ -14,23 +14,23 @@ if [ ${#names[@]} = 0 ]; then
     done
 fi
 
-cmake --preset fuzz >/dev/null
-cmake --build --preset fuzz | tail -n 1
-./build/fuzz/bin/fuzz_seeds build/fuzz/seeds
+cmake --preset dev >/dev/null
+cmake --build build/dev --target fuzz | tail -n 1
+./build/dev/bin/fuzz_seeds build/dev/fuzz/seeds
 
-mkdir -p build/fuzz/findings
+mkdir -p build/dev/fuzz/findings
 
 # one reader or engine; its line tells what came of it
 fuzz() {
     local name=$1
-    local corpus=build/fuzz/corpus/$name log=build/fuzz/$name.log
-    mkdir -p "$corpus" "build/fuzz/seeds/$name"
+    local corpus=build/dev/fuzz/corpus/$name log=build/dev/fuzz/$name.log
+    mkdir -p "$corpus" "build/dev/fuzz/seeds/$name"
     local options=(-max_total_time="$seconds" -timeout=10 -rss_limit_mb=4096 -max_len=65536
-        -artifact_prefix="build/fuzz/findings/$name-" -print_final_stats=1)
+        -artifact_prefix="build/dev/fuzz/findings/$name-" -print_final_stats=1)
     if [ -f "tests/fuzz/$name.dict" ]; then
         options+=(-dict="tests/fuzz/$name.dict")
     fi
-    if ./build/fuzz/bin/fuzz_"$name" "${options[@]}" "$corpus" "build/fuzz/seeds/$name" \
+    if ./build/dev/bin/fuzz_"$name" "${options[@]}" "$corpus" "build/dev/fuzz/seeds/$name" \
         >"$log" 2>&1; then
         echo "$name: $(grep -o 'number_of_executed_units: [0-9]*' "$log" | grep -o '[0-9]*') runs, no findings"
     else
