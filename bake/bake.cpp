@@ -1,6 +1,7 @@
 #include "bake/bake.h"
 
 #include "bake/grid_job.h"
+#include "bake/moving_bake.h"
 #include "bake/notes.h"
 #include "bake/peak_memory.h"
 #include "bake/point_job.h"
@@ -387,6 +388,8 @@ std::string mark_of(const BakeSettings& settings)
         add(":", frame->centre.y);
         add(":", frame->centre.z);
         add(":", frame->diagonal);
+        if (is_for_bodies(settings))
+            add(" moving=", kMovingTolerance);
     }
     if (settings.subdivide)
         add(" subdivide=", *settings.subdivide);

@@ -106,6 +106,18 @@ struct GridReport {
     std::uint64_t bytes = 0;   ///< of the cells, as they stand in the file
 };
 
+/// What a receiver that is left as it was may be off by, of the moved things that it does not
+/// follow (MovingSettings::tolerance): an eighth of the masks' error at draft.
+inline constexpr float kMovingTolerance = 0.002f;
+
+/// Of a frame of a sequence (moving_bake.h), besides BakeSeconds.
+struct MotionReport {
+    double pose = 0.0;         ///< seconds: from the keys to where everything is
+    double place = 0.0;        ///< seconds: bodies and receivers to their places
+    std::uint64_t solved = 0;  ///< receivers that were answered anew
+    float bound = 0.0f;        ///< FrameReport::bound
+};
+
 struct BakeReport {
     BakeSettings settings;
     std::uint64_t vertices = 0;
@@ -130,6 +142,7 @@ struct BakeReport {
     std::optional<GridReport> grid;
     std::optional<PointReport> points;
     std::optional<SubdivisionReport> subdivision;
+    std::optional<MotionReport> motion;
     std::vector<Trial> trials;       ///< of settings.error
     bool is_met = false;             ///< settings.error is kept
     std::uint64_t solved = 0;        ///< of a part: receivers of its share
@@ -165,7 +178,8 @@ struct BatchEntry {
 /// engine, settings, seconds{read, subdivide, surfels, tree, solve, fit, write, total}, receivers,
 /// corners_from_file, replaced_corners, peak_rss_bytes, residual, mean_occlusion, misfit{rms,
 /// share}, error, asked, texels, points, subdivision{tolerance, old_vertices, old_triangles,
-/// rounds, asked}, notes. What an engine or a target does not have is null. Failed: input, output,
+/// rounds, asked}, motion{pose, place, tree, solve, fit, write, solved, bound} (seconds but for the
+/// last two), notes. What an engine or a target does not have is null. Failed: input, output,
 /// error. Skipped: input, output, skipped. A list of such objects for several files.
 [[nodiscard]] std::string json_of(std::span<const BatchEntry> batch);
 

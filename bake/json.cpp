@@ -4,6 +4,7 @@
 #include "bake/frontier.h"
 #include "bake/grid_job.h"
 #include "bake/info.h"
+#include "bake/moving_compare.h"
 #include "surfels/labels.h"
 #include "surfels/number_text.h"
 
@@ -236,6 +237,11 @@ Json json_of(const BatchEntry& entry)
     json["grid"] = report.grid ? json_of(report, *report.grid) : Json();
     json["points"] = report.points ? json_of(*report.points) : Json();
     json["subdivision"] = report.subdivision ? json_of(report, *report.subdivision) : Json();
+    if (const auto& motion = report.motion)
+        json["motion"] = {{"pose", motion->pose},     {"place", motion->place},
+                          {"tree", seconds.tree},     {"solve", seconds.solve},
+                          {"fit", seconds.fit},       {"write", seconds.write},
+                          {"solved", motion->solved}, {"bound", motion->bound}};
     if (const auto& part = report.settings.share)
         json["part"] = {{"share", part->share.index + 1},
                         {"shares", part->share.count},
@@ -495,6 +501,44 @@ std::string grid_notes_of(const BakeReport& report)
     json["inside"] = report.grid->inside;
     json["error"] = json_of(report.error);
     return json.dump();
+}
+
+std::string json_of(const MovingComparison& comparison)
+{
+    Json rows = Json::array();
+    for (const MovingRow& row : comparison.rows)
+        rows.push_back({{"engine", name_of(row.engine.engine)},
+                        {"setting", setting_of(row.engine)},
+                        {"smoothed", row.is_smoothed},
+                        {"rmse", row.rmse},
+                        {"bias", row.bias},
+                        {"p95", row.p95},
+                        {"max", row.max},
+                        {"flicker", {{"rms", row.flicker_rms}, {"max", row.flicker_max}}},
+                        {"untouched_max", row.untouched_max},
+                        {"ms",
+                         {{"place", row.place_ms},
+                          {"tree", row.tree_ms},
+                          {"solve", row.solve_ms},
+                          {"fit", row.fit_ms},
+                          {"frame", row.total_ms()}}},
+                        {"solved", row.solved},
+                        {"rmse_by_frame", row.rmse_by_frame}});
+    const Json json = {{"input", comparison.settings.input.string()},
+                       {"animation", comparison.animation},
+                       {"seconds", comparison.settings.seconds},
+                       {"vertices", comparison.vertices},
+                       {"triangles", comparison.triangles},
+                       {"bodies", comparison.bodies},
+                       {"receivers", comparison.receivers},
+                       {"points", comparison.points},
+                       {"still_points", comparison.still_points},
+                       {"untouched", comparison.untouched},
+                       {"reference_rays", comparison.settings.reference_rays},
+                       {"pose_ms", comparison.pose_ms},
+                       {"threads", comparison.threads},
+                       {"rows", rows}};
+    return json.dump(2) + '\n';
 }
 
 }  // namespace surfelao

@@ -77,6 +77,15 @@ int corner_count(const FitCell& cell)
 
 }  // namespace
 
+namespace {
+
+/// Right sides of the normal equations, and values: to begin with the means of the answers around.
+struct Channels {
+    std::array<Eigen::VectorXd, kChannels> right, values;
+};
+
+}  // namespace
+
 struct VertexFit::Impl {
     const Geometry& geometry;
     const Surface& surface;
@@ -132,6 +141,8 @@ struct VertexFit::Impl {
 
     glm::dvec4 row_of(std::uint32_t cell, int corner) const;
     void make_matrix();
+    Channels channels_of(std::span<const Occlusion> answers) const;
+    std::vector<Occlusion> values_of(const Channels& channels) const;
 };
 
 /// What a cell adds to the row of one of its corners: an entry for each corner.
@@ -239,23 +250,22 @@ std::vector<std::uint32_t> VertexFit::unused_vertices() const
     return unused;
 }
 
-std::vector<Occlusion> VertexFit::solve(std::span<const Occlusion> answers) const
+Channels VertexFit::Impl::channels_of(std::span<const Occlusion> answers) const
 {
-    const Impl& impl = *impl_;
-    const auto count = static_cast<std::ptrdiff_t>(impl.unknown_count);
-    std::array<Eigen::VectorXd, kChannels> right, solution;
+    const auto count = static_cast<std::ptrdiff_t>(unknown_count);
+    Channels channels;
     for (std::size_t channel = 0; channel < kChannels; ++channel) {
-        right[channel].resize(count);
-        solution[channel].resize(count);
+        channels.right[channel].resize(count);
+        channels.values[channel].resize(count);
     }
-    in_blocks(impl.unknown_count, [&](std::size_t unknown) {
+    in_blocks(unknown_count, [&](std::size_t unknown) {
         glm::dvec4 sum(0.0);
         double weights = 0.0;
-        for (const std::uint32_t at : impl.corners[unknown]) {
-            impl.for_each_sample(at / 4, [&](std::uint32_t s) {
+        for (const std::uint32_t at : corners[unknown]) {
+            for_each_sample(at / 4, [&](std::uint32_t s) {
                 const Occlusion& answer = answers[s];
-                const double weight = static_cast<double>(impl.samples.areas[s]) *
-                                      impl.weights_of(s)[static_cast<int>(at % 4)];
+                const double weight =
+                    static_cast<double>(samples.areas[s]) * weights_of(s)[static_cast<int>(at % 4)];
                 sum += weight *
                        glm::dvec4((1.0f - answer.occlusion) * answer.bent_normal, answer.occlusion);
                 weights += weight;
@@ -263,24 +273,22 @@ std::vector<Occlusion> VertexFit::solve(std::span<const Occlusion> answers) cons
         }
         for (int channel = 0; channel < kChannels; ++channel) {
             const auto c = static_cast<std::size_t>(channel);
-            right[c][static_cast<std::ptrdiff_t>(unknown)] = sum[channel];
-            solution[c][static_cast<std::ptrdiff_t>(unknown)] = sum[channel] / weights;
+            channels.right[c][static_cast<std::ptrdiff_t>(unknown)] = sum[channel];
+            channels.values[c][static_cast<std::ptrdiff_t>(unknown)] = sum[channel] / weights;
         }
     });
-    tbb::parallel_for(std::size_t{0}, right.size(), [&](std::size_t channel) {
-        Solver solver;
-        solver.setTolerance(kTolerance);
-        solver.setMaxIterations(kMostSteps);
-        solver.compute(impl.matrix);
-        solution[channel] = solver.solveWithGuess(right[channel], solution[channel]).eval();
-    });
+    return channels;
+}
 
-    std::vector<Occlusion> values(impl.unknowns.size());
+std::vector<Occlusion> VertexFit::Impl::values_of(const Channels& channels) const
+{
+    const auto& solution = channels.values;
+    std::vector<Occlusion> values(unknowns.size());
     in_blocks(values.size(), [&](std::size_t v) {
-        values[v].bent_normal = impl.surface.normals[v];
-        if (impl.unknowns[v] == kUnused)
+        values[v].bent_normal = surface.normals[v];
+        if (unknowns[v] == kUnused)
             return;
-        const auto unknown = static_cast<std::ptrdiff_t>(impl.unknowns[v]);
+        const auto unknown = static_cast<std::ptrdiff_t>(unknowns[v]);
         values[v].occlusion = static_cast<float>(std::clamp(solution[3][unknown], 0.0, 1.0));
         const glm::dvec3 bent(solution[0][unknown], solution[1][unknown], solution[2][unknown]);
         const double length = glm::length(bent);
@@ -288,6 +296,53 @@ std::vector<Occlusion> VertexFit::solve(std::span<const Occlusion> answers) cons
             values[v].bent_normal = glm::vec3(bent / length);
     });
     return values;
+}
+
+std::vector<Occlusion> VertexFit::solve(std::span<const Occlusion> answers) const
+{
+    Channels channels = impl_->channels_of(answers);
+    tbb::parallel_for(std::size_t{0}, channels.right.size(), [&](std::size_t channel) {
+        Solver solver;
+        solver.setTolerance(kTolerance);
+        solver.setMaxIterations(kMostSteps);
+        solver.compute(impl_->matrix);
+        channels.values[channel] =
+            solver.solveWithGuess(channels.right[channel], channels.values[channel]).eval();
+    });
+    return impl_->values_of(channels);
+}
+
+std::vector<Occlusion> VertexFit::solve_locally(std::span<const Occlusion> answers) const
+{
+    Channels channels = impl_->channels_of(answers);
+    const Matrix& matrix = impl_->matrix;
+    const Eigen::VectorXd inverse = matrix.diagonal().cwiseInverse();
+    // rows over their diagonal: the sums of their entries bound all eigenvalues (Gershgorin)
+    double largest = 0.0;
+    for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+        double sum = 0.0;
+        for (Matrix::InnerIterator entry(matrix, row); entry; ++entry)
+            sum += std::abs(entry.value());
+        largest = std::max(largest, sum * inverse[row]);
+    }
+    const double middle = 0.5 * largest * (1.0 + kLocalSpectrum);
+    const double half = 0.5 * largest * (1.0 - kLocalSpectrum);
+    tbb::parallel_for(std::size_t{0}, channels.right.size(), [&](std::size_t channel) {
+        Eigen::VectorXd& x = channels.values[channel];
+        Eigen::VectorXd rest = channels.right[channel] - matrix * x;
+        Eigen::VectorXd step = inverse.cwiseProduct(rest) / middle;
+        double rho = half / middle;
+        for (int i = 1;; ++i) {
+            x += step;
+            if (i == kLocalSteps)
+                break;
+            rest -= matrix * step;
+            const double next = 1.0 / (2.0 * middle / half - rho);
+            step = next * rho * step + (2.0 * next / half) * inverse.cwiseProduct(rest);
+            rho = next;
+        }
+    });
+    return impl_->values_of(channels);
 }
 
 }  // namespace surfelao

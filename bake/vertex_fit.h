@@ -78,6 +78,12 @@ inline constexpr float kSampleShift[2] = {0.013f, 0.007f};
 /// A bent vector shorter than this has no direction: the normal stands in.
 inline constexpr float kLeastBent = 1e-4f;
 
+/// Of solve_locally(). LOCAL_FIGURES
+inline constexpr int kLocalSteps = 16;
+/// Least eigenvalue that the steps are made for, as a share of the largest: what lies below are
+/// patterns that the samples hardly see, and that their answers hardly hold.
+inline constexpr double kLocalSpectrum = 1.0 / 15.0;
+
 /// The normal equations of a mesh, solved for any answers at its samples.
 class VertexFit {
 public:
@@ -94,6 +100,12 @@ public:
     /// their normal. O(n): some ten steps of conjugate gradients. Same bytes for any number of
     /// threads.
     [[nodiscard]] std::vector<Occlusion> solve(std::span<const Occlusion> answers) const;
+
+    /// The same by kLocalSteps steps of the Chebyshev iteration, whose coefficients are known
+    /// before (Golub, Varga. Chebyshev Semi-Iterative Methods. Numer. Math. 3. 1961): the value of
+    /// a vertex depends on the samples within kLocalSteps + 1 edges, and on nothing else to the
+    /// last bit. For frames of an animation: where no answer changes no value does.
+    [[nodiscard]] std::vector<Occlusion> solve_locally(std::span<const Occlusion> answers) const;
 
     /// Vertices that no triangle with an area uses, rising.
     [[nodiscard]] std::vector<std::uint32_t> unused_vertices() const;

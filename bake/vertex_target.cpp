@@ -76,36 +76,56 @@ std::string text_of(const TargetSettings& settings)
 }
 
 VertexTarget::VertexTarget(std::shared_ptr<const Mesh> mesh, const TargetSettings& settings)
-    : mesh_(std::move(mesh))
+    : mesh_(std::move(mesh)), settings_(settings)
+{
+    const Surface& surface = mesh_->surface;
+    if (settings.values == VertexValues::fit) {
+        fit_.emplace(mesh_->geometry, surface, settings.normals);
+        for (const std::uint32_t vertex : fit_->unused_vertices()) {
+            if (surface.normals[vertex] != glm::vec3(0.0f))
+                lone_.push_back(vertex);
+        }
+    }
+    follow_mesh();
+}
+
+void VertexTarget::follow_mesh()
 {
     const Geometry& geometry = mesh_->geometry;
     const Surface& surface = mesh_->surface;
-    const Offset offset = offset_of(settings, geometry.frame);
-    if (settings.values == VertexValues::point) {
+    const Offset offset = offset_of(settings_, geometry.frame);
+    if (!fit_) {
         receivers_ = receivers_at_wedges(geometry, surface, offset);
         return;
     }
-    fit_.emplace(geometry, surface, settings.normals);
     receivers_ = receivers_at(geometry, surface, fit_->samples().points, offset);
-    for (const std::uint32_t vertex : fit_->unused_vertices()) {
+    for (const std::uint32_t vertex : lone_) {
         const glm::vec3 normal = surface.normals[vertex];
-        if (normal == glm::vec3(0.0f))
-            continue;
         const float height = offset.value_or(kMostOffset);
-        lone_.push_back(vertex);
         receivers_.push_back({geometry.positions[vertex] + height * normal, normal, height});
     }
+}
+
+std::vector<Occlusion> VertexTarget::with_lone(std::vector<Occlusion> values,
+                                               std::span<const Occlusion> answers) const
+{
+    for (std::size_t i = 0; i < lone_.size(); ++i)
+        values[lone_[i]] = answers[answers.size() - lone_.size() + i];
+    return values;
 }
 
 std::vector<Occlusion> VertexTarget::values(std::span<const Occlusion> answers) const
 {
     if (!fit_)
         return mean_of_wedges(answers);
-    const std::size_t samples = answers.size() - lone_.size();
-    std::vector<Occlusion> values = fit_->solve(answers.first(samples));
-    for (std::size_t i = 0; i < lone_.size(); ++i)
-        values[lone_[i]] = answers[samples + i];
-    return values;
+    return with_lone(fit_->solve(answers.first(answers.size() - lone_.size())), answers);
+}
+
+std::vector<Occlusion> VertexTarget::values_locally(std::span<const Occlusion> answers) const
+{
+    if (!fit_)
+        return mean_of_wedges(answers);
+    return with_lone(fit_->solve_locally(answers.first(answers.size() - lone_.size())), answers);
 }
 
 /// Of the samples in each triangle.

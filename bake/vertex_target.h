@@ -79,6 +79,12 @@ public:
     /// have no normal get occlusion 0 and no bent normal. O(n).
     [[nodiscard]] std::vector<Occlusion> values(std::span<const Occlusion> answers) const;
 
+    /// The same, but a value depends on the answers around it alone (VertexFit::solve_locally).
+    [[nodiscard]] std::vector<Occlusion> values_locally(std::span<const Occlusion> answers) const;
+
+    /// The receivers anew, in their order: the mesh's positions and normals have changed.
+    void follow_mesh();
+
     /// Empty for VertexValues::point, which asks nothing between the vertices. answers and values:
     /// as in values(). O(n), no rays.
     [[nodiscard]] std::optional<Misfit> misfit(std::span<const Occlusion> answers,
@@ -98,9 +104,12 @@ private:
     struct Residuals;
     Residuals residuals(std::span<const Occlusion> answers,
                         std::span<const Occlusion> values) const;
+    std::vector<Occlusion> with_lone(std::vector<Occlusion> values,
+                                     std::span<const Occlusion> answers) const;
     std::vector<Occlusion> mean_of_wedges(std::span<const Occlusion> answers) const;
 
     std::shared_ptr<const Mesh> mesh_;
+    TargetSettings settings_;
     std::vector<Receiver> receivers_;
     std::optional<VertexFit> fit_;
     std::vector<std::uint32_t> lone_;  ///< fit: vertices that only triangles without area use;

@@ -1,157 +1,14 @@
 #include "bake/world.h"
 
-#include "bake/cut_out.h"
+#include "bake/roles.h"
 #include "files/scene_io.h"
 #include "surfels/errors.h"
-#include "surfels/labels.h"
-#include "surfels/number_text.h"
 
 #include <algorithm>
-#include <cmath>
-#include <initializer_list>
 #include <utility>
 
 namespace surfelao {
 namespace {
-
-/// What the triangles of a scene do; empty lists: all of them.
-struct Roles {
-    std::vector<bool> occlude, baked;
-    CutOut cut;  ///< of what occludes
-
-    [[nodiscard]] bool occludes(std::size_t triangle) const
-    {
-        return occlude.empty() || occlude[triangle];
-    }
-    [[nodiscard]] bool is_baked(std::size_t triangle) const
-    {
-        return baked.empty() || baked[triangle];
-    }
-};
-
-using Scenes = std::span<const Scene>;
-
-/// Throws for the first pattern that means nothing in any of the scenes.
-void check_found(const std::vector<std::string>& patterns, const std::vector<bool>& found,
-                 std::initializer_list<Scenes> scenes, const char* option)
-{
-    const auto missing = std::ranges::find(found, false);
-    if (missing == found.end())
-        return;
-    const std::string& pattern = patterns[static_cast<std::size_t>(missing - found.begin())];
-    std::string files, near;
-    std::vector<Label> labels;
-    for (const Scenes list : scenes) {
-        for (const Scene& scene : list) {
-            files += (files.empty() ? "" : ", ") + scene.name;
-            labels.insert(labels.end(), scene.labels.begin(), scene.labels.end());
-        }
-    }
-    const std::string fault = files + ": " + option + " " + pattern + " means no part of it";
-    if (labels.empty())
-        throw InputError(fault + ": nothing there has a name");
-    for (const std::string& name : names_near(labels, pattern))
-        near += (near.empty() ? "" : ", ") + name;
-    throw InputError(fault + (near.empty() ? "" : " (near it: " + near + ")") +
-                     "; surfelao info lists all names");
-}
-
-std::vector<Roles> roles_of(Scenes inputs, Scenes others, const PartChoice& choice)
-{
-    std::vector<bool> excluded(choice.exclude.size(), false);
-    std::vector<bool> received(choice.receivers.size(), false);
-    std::vector<Roles> roles;
-    const auto look_at = [&](const Scene& scene, bool is_input) {
-        Roles& own = roles.emplace_back();
-        if (!choice.exclude.empty()) {
-            own.occlude = triangles_called(scene, choice.exclude, excluded);
-            own.occlude.flip();
-        }
-        if (!is_input)
-            return;
-        own.baked = own.occlude;
-        if (!choice.receivers.empty())
-            own.baked = triangles_called(scene, choice.receivers, received);
-        if (choice.alone)
-            own.occlude = own.baked;
-    };
-    for (const Scene& scene : inputs)
-        look_at(scene, true);
-    for (const Scene& scene : others)
-        look_at(scene, false);
-    check_found(choice.exclude, excluded, {inputs, others}, "--exclude");
-    check_found(choice.receivers, received, {inputs}, "--receivers");
-    return roles;
-}
-
-/// "material Glass", "materials Glass, Water and 3 more"
-std::string materials_text(const BaseColors& colors, const std::vector<bool>& which)
-{
-    constexpr std::size_t kNamed = 3;
-    std::string names;
-    std::size_t count = 0;
-    for (std::size_t m = 0; m < which.size(); ++m) {
-        if (!which[m] || ++count > kNamed)
-            continue;
-        const std::string& name = colors.materials[m].name;
-        names += (names.empty() ? "" : ", ") + (name.empty() ? "without a name" : name);
-    }
-    if (count > kNamed)
-        names += " and " + std::to_string(count - kNamed) + " more";
-    return (count == 1 ? "material " : "materials ") + names;
-}
-
-std::string cut_text(const CutOut& cut, const std::string& materials)
-{
-    const std::string pieces = count_text(cut.pieces.size(), "piece");
-    return "holes by the alpha of " + materials + " occlude nothing: " + pieces +
-           (cut.pieces.size() == 1 ? " occludes" : " occlude") + " in place of " +
-           count_text(cut.triangles.size(), "triangle") +
-           (cut.is_coarse ? ", the most there may be: coarser than the picture" : "");
-}
-
-/// Takes from what occludes where light goes through, and says so.
-void open_materials(const Scene& scene, ClearSurfaces clear, Roles& roles,
-                    std::vector<std::string>& notes)
-{
-    if (!scene.asset || !scene.asset->has_openings())
-        return;
-    BaseColors colors = scene.asset->base_colors();
-    for (BaseColor& material : colors.materials) {
-        if (material.opacity == Opacity::clear && clear == ClearSurfaces::cut)
-            material.opacity = Opacity::cut;
-    }
-    if (colors.triangles.size() != scene.triangles.size())
-        return;
-    std::vector<bool> clears(colors.materials.size(), false), cuts(colors.materials.size(), false);
-    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
-        const std::uint32_t material = colors.triangles[t];
-        const Opacity opacity = colors.materials[material].opacity;
-        if (opacity == Opacity::solid || !roles.occludes(t))
-            continue;
-        (opacity == Opacity::cut ? cuts : clears)[material] = true;
-        if (opacity == Opacity::cut || clear == ClearSurfaces::solid)
-            continue;
-        if (roles.baked.empty())
-            roles.baked = std::vector<bool>(scene.triangles.size(), true);
-        if (roles.occlude.empty())
-            roles.occlude = std::vector<bool>(scene.triangles.size(), true);
-        roles.occlude[t] = false;
-    }
-    if (std::ranges::find(clears, true) != clears.end())
-        notes.push_back(materials_text(colors, clears) +
-                        (clear == ClearSurfaces::open
-                             ? ", which light goes through, occludes nothing"
-                             : ", which light goes through, occludes as if it were solid "
-                               "(--transparent open: not at all; cut: where its alpha is at "
-                               "least half)"));
-    if (std::ranges::find(cuts, true) == cuts.end())
-        return;
-    roles.cut = cut_out(scene, colors, roles.occlude);
-    if (!roles.cut.triangles.empty())
-        notes.push_back(cut_text(roles.cut, materials_text(colors, cuts)));
-    notes.insert(notes.end(), roles.cut.notes.begin(), roles.cut.notes.end());
-}
 
 /// Puts triangles together that are to occlude.
 class OccluderScene {
@@ -192,17 +49,6 @@ private:
 
     Scene scene_;
 };
-
-/// Scene triangles that neither occlude nor are baked; empty: there are none.
-std::vector<bool> left_out_of(const Roles& own, std::size_t count)
-{
-    if (own.occlude.empty() && own.baked.empty())
-        return {};
-    std::vector<bool> left_out(count);
-    for (std::size_t t = 0; t < count; ++t)
-        left_out[t] = !own.occludes(t) && !own.is_baked(t);
-    return left_out;
-}
 
 /// Of what the inputs bake or what occludes in them.
 Frame common_frame(std::span<const Scene> inputs, std::span<const std::vector<bool>> left_out)
@@ -354,22 +200,6 @@ Mesh mesh_of(Scene scene, const NormalSettings& normals, const PartChoice& choic
     return std::move(
         make_world(std::move(input), read_all(choice.occluders, reading), normals, choice, frame)
             .meshes.front());
-}
-
-Box box_of_moments(const std::filesystem::path& input, std::span<const Moment> moments,
-                   const PartChoice& choice, const ReadOptions& reading)
-{
-    Box all;
-    for (const Moment& moment : moments) {
-        ReadOptions at = reading;
-        at.moment = moment;
-        const Scene scene = read_scene(input, at);
-        const std::vector<Roles> roles = roles_of({&scene, 1}, {}, choice);
-        const Box box = box_of(scene, left_out_of(roles.front(), scene.triangles.size()));
-        all.include(box.low);
-        all.include(box.high);
-    }
-    return all;
 }
 
 Mesh read_mesh(const std::filesystem::path& input, const NormalSettings& normals,

@@ -72,12 +72,6 @@ struct BakeWorld {
 [[nodiscard]] Mesh mesh_of(Scene scene, const NormalSettings& normals, const PartChoice& choice,
                            const ReadOptions& reading = {}, const std::optional<Frame>& frame = {});
 
-/// The box of all that is there at any of these moments: what moves is measured alike from first to
-/// last in its frame. Reads the file once a moment. Throws as read_scene().
-[[nodiscard]] Box box_of_moments(const std::filesystem::path& input,
-                                 std::span<const Moment> moments, const PartChoice& choice,
-                                 const ReadOptions& reading = {});
-
 /// Of a single input.
 [[nodiscard]] Mesh read_mesh(const std::filesystem::path& input, const NormalSettings& normals,
                              const PartChoice& choice, const ReadOptions& reading = {});

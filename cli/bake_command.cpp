@@ -1,6 +1,7 @@
 #include "cli/bake_command.h"
 
 #include "bake/bake.h"
+#include "bake/moving_bake.h"
 #include "cli/bake_text.h"
 #include "cli/commands.h"
 #include "cli/engine_options.h"
@@ -237,6 +238,65 @@ void add_written(const BatchEntry& entry, std::vector<fs::path>& written)
                        entry.report->texels->written.end());
 }
 
+std::string label_of(const std::vector<Job>& jobs, std::size_t job)
+{
+    return std::to_string(job + 1) + "/" + std::to_string(jobs.size()) + " " +
+           jobs[job].input.filename().string() + " ";
+}
+
+/// Frames of one animation, in one go; false when it failed.
+bool run_sequence(const std::vector<Job>& jobs, std::span<const BakeSettings> settings, bool resume,
+                  bool quiet, std::span<BatchEntry> entries, std::vector<fs::path>& written)
+{
+    std::optional<ProgressBar> bar(label_of(jobs, 0));
+    std::size_t next = 0;
+    try {
+        bake_frames(
+            settings, resume,
+            [&](std::size_t frame, std::optional<BakeReport> report) {
+                BatchEntry& entry = entries[frame];
+                bar.reset();
+                entry.report = std::move(report);
+                if (entry.report)
+                    add_written(entry, written);
+                if (!quiet && entry.report)
+                    print_report(*entry.report);
+                else if (!quiet)
+                    std::cout << entry.output.string() << ": finished before, skipped\n";
+                next = frame + 1;
+                if (next < jobs.size())
+                    bar.emplace(label_of(jobs, next));
+            },
+            [&](std::string_view stage, double done) { return bar->update(stage, done); });
+        return true;
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const SettingsError& error) {
+        throw UsageError(error.what());
+    } catch (const std::exception& error) {
+        std::cerr << "surfelao: " << error.what() << '\n';
+        for (BatchEntry& entry : entries.subspan(next))
+            entry.error = error.what();
+    }
+    return false;
+}
+
+/// Tells what was written; the exit code.
+int finish(const BakeOptions& options, std::span<const BatchEntry> entries,
+           std::vector<fs::path>& written, std::size_t failed)
+{
+    const bool quiet = options.json == "-";
+    if (options.json)
+        write_report(*options.json, json_of(entries));
+    if (options.json && !quiet)
+        written.emplace_back(*options.json);
+    print_written(written, quiet);
+    if (failed > 0 && entries.size() > 1)
+        std::cerr << "surfelao: " << failed << " of " << entries.size()
+                  << (options.frames.frames ? " frames failed\n" : " files failed\n");
+    return failed > 0 ? kFailed : kDone;
+}
+
 int run(const BakeOptions& options, const std::vector<Job>& jobs)
 {
     check_report(options.json);
@@ -257,6 +317,16 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
         entry.output = job.output;
     }
     std::vector<fs::path> written;
+    if (options.frames.frames && is_for_bodies(settings_for(options, jobs.front()))) {
+        std::vector<BakeSettings> settings;
+        for (const Job& job : jobs)
+            settings.push_back(settings_for(options, job));
+        failed = run_sequence(jobs, settings, options.resume, quiet, entries, written)
+                     ? 0
+                     : static_cast<std::size_t>(std::ranges::count_if(
+                           entries, [](const BatchEntry& entry) { return !entry.error.empty(); }));
+        return finish(options, entries, written, failed);
+    }
     const std::optional<Box> box = box_of_frames(frames_of(options), options.inputs.front(),
                                                  part_choice_of(options.parts), options.reading);
     const std::size_t step = options.together ? jobs.size() : 1;
@@ -273,9 +343,8 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
                     std::cout << entry.input.string() << ": finished before, skipped\n";
             continue;
         }
-        const std::string label = std::to_string(first + 1) + "/" + std::to_string(jobs.size()) +
-                                  " " + jobs[first].input.filename().string() + " ";
-        if (!run_jobs(settings, ask, options.overwrite, batch && step == 1 ? label : "", of_run)) {
+        if (!run_jobs(settings, ask, options.overwrite,
+                      batch && step == 1 ? label_of(jobs, first) : "", of_run)) {
             failed += step;
             continue;
         }
@@ -285,15 +354,7 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
                 print_report(*entry.report);
         }
     }
-    if (options.json)
-        write_report(*options.json, json_of(entries));
-    if (options.json && !quiet)
-        written.emplace_back(*options.json);
-    print_written(written, quiet);
-    if (failed > 0 && batch)
-        std::cerr << "surfelao: " << failed << " of " << jobs.size()
-                  << (options.frames.frames ? " frames failed\n" : " files failed\n");
-    return failed > 0 ? kFailed : kDone;
+    return finish(options, entries, written, failed);
 }
 
 /// Throws UsageError for what cannot be done in shares.

@@ -1,5 +1,6 @@
 #include "bake/compare.h"
 #include "bake/frontier.h"
+#include "bake/moving_compare.h"
 #include "bake/surface_error.h"
 #include "cli/commands.h"
 #include "cli/compare_options.h"
@@ -74,6 +75,24 @@ FrontierSettings frontier_settings(const CompareOptions& options)
     settings.inputs.assign(options.inputs.begin(), options.inputs.end());
     for (const std::string& engine : engines_of_scene(options))
         settings.engines.push_back(engine_of(engine));
+    return settings;
+}
+
+MovingCompareSettings moving_settings(const CompareOptions& options)
+{
+    const CompareSettings common = compare_settings(options);
+    MovingCompareSettings settings;
+    settings.input = common.input;
+    settings.seconds = seconds_of(options.frames, options.inputs);
+    settings.candidates = common.candidates;
+    settings.max_distance = common.max_distance;
+    settings.kernel = common.kernel;
+    settings.ground = common.ground;
+    settings.target = common.target;
+    settings.parts = common.parts;
+    settings.reading = common.reading;
+    settings.sample = options.sample.value_or(kMovingSample);
+    settings.reference_rays = options.reference_rays.value_or(kMovingRays);
     return settings;
 }
 
@@ -181,6 +200,18 @@ int run_at_grid(const CompareOptions& options, std::vector<fs::path>& written)
     return kDone;
 }
 
+int run_frames(const CompareOptions& options, std::vector<fs::path>& written)
+{
+    const MovingComparison comparison = [&] {
+        ProgressBar bar;
+        return compare_frames(moving_settings(options), [&](std::string_view stage, double done) {
+            return bar.update(stage, done);
+        });
+    }();
+    print_or_write(options, comparison, written);
+    return kDone;
+}
+
 /// What goes into the folder of -o without having been named by the user.
 std::vector<fs::path> own_names(const CompareOptions& options)
 {
@@ -207,12 +238,27 @@ int run(const CompareOptions& options)
     if (options.threads)
         limit.emplace(*options.threads);
     std::vector<fs::path> written;
-    const int code = is_at_pixels(options.texels) ? run_at_pixels(options, written)
-                     : is_at_grid(options.texels) ? run_at_grid(options, written)
-                     : options.frontier           ? run_frontier(options, written)
-                                                  : run_compare(options, written);
+    const int code = options.frames.frames          ? run_frames(options, written)
+                     : is_at_pixels(options.texels) ? run_at_pixels(options, written)
+                     : is_at_grid(options.texels)   ? run_at_grid(options, written)
+                     : options.frontier             ? run_frontier(options, written)
+                                                    : run_compare(options, written);
     print_written(written, options.json == "-" || options.csv == "-");
     return code;
+}
+
+/// Throws UsageError for what does not go with --frames.
+void check_frames(const CompareOptions& options)
+{
+    if (!options.frames.frames)
+        return;
+    if (seconds_of(options.frames, options.inputs).size() < 2)
+        throw UsageError("compare --frames needs two frames at least.");
+    if (options.texels.at.value_or("vertices") != "vertices" || options.frontier ||
+        options.output || options.subdivide || options.devices != std::vector<std::string>{"cpu"})
+        throw UsageError(
+            "--frames compares values at vertices on the CPU, in a table: it goes with neither "
+            "--at nor --frontier, -o, --subdivide or --devices.");
 }
 
 /// Contradictions, before any work.
@@ -236,6 +282,7 @@ void check(const CompareOptions& options)
         throw UsageError("--json and --csv cannot both go to standard output.");
     check_pixel_table(options);
     check_grid_table(options);
+    check_frames(options);
     if (!is_at_pixels(options.texels) && !is_at_grid(options.texels)) {
         const CompareSettings settings = compare_settings(options);
         for (const EngineSettings& candidate : settings.candidates)
@@ -300,6 +347,9 @@ void add_compare_command(CLI::App& app, Work& work)
                      "written")
         ->type_name("DIR");
     add_read_options(*command, options->reading);
+    add_frame_options(*command, options->frames,
+                      "glTF: frames A to B of an animation, frame N at N / fps seconds: each "
+                      "engine goes through them with bodies that move, beside rays");
     add_overwrite_option(*command, options->overwrite);
     command->add_flag(
         "--frontier", options->frontier,

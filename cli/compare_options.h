@@ -3,6 +3,7 @@
 
 #include "bake/grid_compare.h"
 #include "cli/engine_options.h"
+#include "cli/frame_options.h"
 #include "cli/grid_bake_options.h"
 #include "cli/part_options.h"
 #include "cli/pixel_options.h"
@@ -34,6 +35,7 @@ struct CompareOptions {
     std::vector<std::string> inputs;
     std::optional<std::string> output;
     ReadOptions reading;
+    FrameOptions frames;
     bool overwrite = false;
     bool frontier = false;
     std::vector<std::string> engines;  ///< empty: default_engines()

@@ -43,17 +43,34 @@ std::string name_of_frame(const NamePattern& pattern, std::uint32_t frame)
     return pattern.before + number + pattern.after;
 }
 
+struct FrameRange {
+    std::uint32_t first = 0, last = 0;
+};
+
+FrameRange range_of(const FrameOptions& options, std::span<const std::string> inputs)
+{
+    const FileType type = type_of(inputs.front());
+    if (inputs.size() != 1 || (type != FileType::gltf && type != FileType::glb))
+        throw UsageError("--frames is for a single .gltf or .glb.");
+    const char* const end = options.frames->data() + options.frames->size();
+    FrameRange range;
+    const auto one = std::from_chars(options.frames->data(), end, range.first);
+    const bool has_second = one.ec == std::errc() && one.ptr != end && *one.ptr == ':';
+    const auto two = has_second ? std::from_chars(one.ptr + 1, end, range.last) : one;
+    if (!has_second || two.ec != std::errc() || two.ptr != end || range.first > range.last ||
+        range.last > kLastFrame || range.last - range.first >= kMostFrames)
+        throw UsageError("--frames: \"" + *options.frames +
+                         "\" is not A:B with whole numbers A up to B.");
+    return range;
+}
+
 }  // namespace
 
-void add_frame_options(CLI::App& command, FrameOptions& options)
+void add_frame_options(CLI::App& command, FrameOptions& options, const std::string& help)
 {
-    CLI::Option* const frames =
-        command
-            .add_option("--frames", options.frames,
-                        "glTF: frames A to B of an animation, frame N at N / fps seconds, each a "
-                        "file: -o f.%04d.png. All are measured in one frame of reference")
-            ->type_name("A:B")
-            ->excludes(command.get_option("--time"));
+    CLI::Option* const frames = command.add_option("--frames", options.frames, help)
+                                    ->type_name("A:B")
+                                    ->excludes(command.get_option("--time"));
     command.add_option("--fps", options.fps, "Frames a second")
         ->check(CLI::Range(1e-3, 1e4))
         ->needs(frames)
@@ -61,27 +78,27 @@ void add_frame_options(CLI::App& command, FrameOptions& options)
         ->capture_default_str();
 }
 
+std::vector<double> seconds_of(const FrameOptions& options, std::span<const std::string> inputs)
+{
+    std::vector<double> seconds;
+    if (!options.frames)
+        return seconds;
+    const FrameRange range = range_of(options, inputs);
+    for (std::uint32_t frame = range.first; frame <= range.last; ++frame)
+        seconds.push_back(static_cast<double>(frame) / options.fps);
+    return seconds;
+}
+
 std::vector<FrameFile> frames_of(const FrameOptions& options, std::span<const std::string> inputs,
                                  const std::string& pattern, const ReadOptions& reading)
 {
     if (!options.frames)
         return {};
-    const FileType type = type_of(inputs.front());
-    if (inputs.size() != 1 || (type != FileType::gltf && type != FileType::glb))
-        throw UsageError("--frames is for a single .gltf or .glb.");
+    const FrameRange range = range_of(options, inputs);
     const std::string animation = reading.moment.value_or(Moment{}).animation;
-    const char* const end = options.frames->data() + options.frames->size();
-    std::uint32_t first = 0, last = 0;
-    const auto one = std::from_chars(options.frames->data(), end, first);
-    const bool has_second = one.ec == std::errc() && one.ptr != end && *one.ptr == ':';
-    const auto two = has_second ? std::from_chars(one.ptr + 1, end, last) : one;
-    if (!has_second || two.ec != std::errc() || two.ptr != end || first > last ||
-        last > kLastFrame || last - first >= kMostFrames)
-        throw UsageError("--frames: \"" + *options.frames +
-                         "\" is not A:B with whole numbers A up to B.");
     const NamePattern name = pattern_of(pattern);
     std::vector<FrameFile> files;
-    for (std::uint32_t frame = first; frame <= last; ++frame)
+    for (std::uint32_t frame = range.first; frame <= range.last; ++frame)
         files.push_back(
             {{static_cast<double>(frame) / options.fps, animation}, name_of_frame(name, frame)});
     return files;

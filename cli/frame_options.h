@@ -1,7 +1,7 @@
 /// frame_options.h: the options of frames of an animation, and the files that they become.
 #pragma once
 
-#include "bake/world.h"
+#include "bake/moving_world.h"
 #include "files/scene_io.h"
 
 #include <filesystem>
@@ -22,8 +22,19 @@ struct FrameOptions {
     double fps = 24.0;
 };
 
+/// What becomes of frames that are files.
+inline constexpr const char* kFramesAreFiles =
+    "glTF: frames A to B of an animation, frame N at N / fps seconds, each a file: -o f.%04d.png. "
+    "All are measured in one frame of reference";
+
 /// --frames, --fps
-void add_frame_options(CLI::App& command, FrameOptions& options);
+void add_frame_options(CLI::App& command, FrameOptions& options,
+                       const std::string& help = kFramesAreFiles);
+
+/// Of the frames; empty where none are asked for. Throws UsageError for a range that is none, and
+/// for inputs that are not a single glTF.
+[[nodiscard]] std::vector<double> seconds_of(const FrameOptions& options,
+                                             std::span<const std::string> inputs);
 
 /// A frame: when, and where its result goes.
 struct FrameFile {

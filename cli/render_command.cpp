@@ -1,3 +1,5 @@
+#include "bake/bake.h"
+#include "bake/moving_world.h"
 #include "bake/texel_layout.h"
 #include "cli/commands.h"
 #include "cli/output.h"
@@ -84,14 +86,66 @@ bool needs_answer(Colors colors)
            colors != Colors::density;
 }
 
+/// Frames whose values at vertices come of a scene that is kept from one to the next.
+class FrameSequence {
+public:
+    FrameSequence(const RenderCommandOptions& options, std::span<const double> seconds)
+        : world_(options.input, seconds, target_settings_of(options.surface, options.show.up),
+                 part_choice_of(options.parts), options.reading),
+          engine_(settings_of(options.engine)),
+          scene_(world_.scene_for(engine_)),
+          receivers_(world_.receivers_for(scene_, settings_for(options))),
+          values_(world_)
+    {
+    }
+
+    void pose(double seconds)
+    {
+        world_.pose(seconds);
+        world_.place(scene_, receivers_);
+    }
+    [[nodiscard]] const Scene& scene() const { return world_.scene(); }
+
+    /// Of the scene's vertices, then of further receivers.
+    [[nodiscard]] std::vector<Occlusion> solve(std::span<const Receiver> more,
+                                               const Progress& progress)
+    {
+        receivers_.solve(progress);
+        std::vector<Occlusion> values = values_.of(receivers_.occlusion());
+        const std::vector<Occlusion> found = scene_.solve(more, engine_).occlusion;
+        values.insert(values.end(), found.begin(), found.end());
+        return values;
+    }
+
+private:
+    MovingSettings settings_for(const RenderCommandOptions& options)
+    {
+        engine_.definition = definition_of(distance_limit_of(options.measure),
+                                           kernel_of(options.measure), world_.frame());
+        MovingSettings settings;
+        static_cast<SolveSettings&>(settings) = engine_;
+        settings.tolerance = kMovingTolerance;
+        return settings;
+    }
+
+    MovingWorld world_;
+    EngineSettings engine_;
+    MovingScene scene_;
+    MovingReceivers receivers_;
+    MovingValues values_;
+};
+
 using MakeProgress = std::function<Progress(const char*)>;
 
-void solve_for(const Model& model, const EngineSettings& engine, const ViewOptions& view,
-               std::uint32_t rays, const MakeProgress& stage, Shown& shown)
+/// sequence: null, or where it stands in the model's pose.
+void solve_for(const Model& model, FrameSequence* sequence, const EngineSettings& engine,
+               const ViewOptions& view, std::uint32_t rays, const MakeProgress& stage, Shown& shown)
 {
     Stopwatch watch;
     shown.occlusion.resize(model.answer_count());
-    if (needs_answer(view.colors))
+    if (needs_answer(view.colors) && sequence != nullptr)
+        shown.occlusion = sequence->solve(model.ground_receivers, stage("solve"));
+    else if (needs_answer(view.colors))
         shown.occlusion = solve_model(prepare(model, engine), model, engine,
                                       {.ground = shows_ground(view)}, stage("solve"))
                               .values;
@@ -156,7 +210,8 @@ void tell(const RenderCommandOptions& options, const Model& model, const EngineS
     print_written(written, false);
 }
 
-int run(const RenderCommandOptions& options)
+/// sequence: null, or of the frame that the options ask for.
+int run(const RenderCommandOptions& options, FrameSequence* sequence)
 {
     check_image_output(options.output);
     std::optional<ThreadLimit> limit;
@@ -181,7 +236,9 @@ int run(const RenderCommandOptions& options)
     Stopwatch watch;
     const TargetSettings target = target_settings_of(options.surface, options.show.up);
     const UpAxis up = up_axis_of(options.show);
-    const Model model = model_of(read_scene(options.input, options.reading), up, target,
+    Scene scene =
+        sequence != nullptr ? sequence->scene() : read_scene(options.input, options.reading);
+    const Model model = model_of(std::move(scene), up, target,
                                  {.parts = part_choice_of(options.parts),
                                   .ground = ground_plane_of(options.measure, options.show.up),
                                   .reading = options.reading,
@@ -204,7 +261,7 @@ int run(const RenderCommandOptions& options)
     if (texels)
         solve_map_for(model, *texels, engine, picture.view, rays, stage, shown);
     else
-        solve_for(model, engine, picture.view, rays, stage, shown);
+        solve_for(model, sequence, engine, picture.view, rays, stage, shown);
     watch.lap();
     picture.data = shown.data();
     const Image image =
@@ -221,16 +278,24 @@ int run(const RenderCommandOptions& options)
 /// One picture, or one for each frame, at pixels or not.
 int run_frames(const RenderCommandOptions& options, bool asks_pixels)
 {
+    std::optional<FrameSequence> sequence;
     const auto run_one = [&](const RenderCommandOptions& one) {
-        return asks_pixels ? render_pixels(one) : run(one);
+        return asks_pixels ? render_pixels(one) : run(one, sequence ? &*sequence : nullptr);
     };
     const std::vector<FrameFile> frames = frames_of(options);
     if (frames.empty())
         return run_one(options);
+    // what moves is kept from frame to frame where values at vertices are shown
+    if (!asks_pixels && !shown_texels_of(options.texels) &&
+        settings_of(options.engine).device == Device::cpu &&
+        !ground_plane_of(options.measure, options.show.up))
+        sequence.emplace(options, seconds_of(options.frames, {&options.input, 1}));
     RenderCommandOptions one = options;
     one.box = box_of_frames(frames, options.input, part_choice_of(options.parts), options.reading);
     for (const FrameFile& frame : frames) {
         one.reading.moment = frame.moment;
+        if (sequence)
+            sequence->pose(frame.moment.seconds);
         one.output = frame.output.string();
         if (const int code = run_one(one); code != kDone)
             return code;

@@ -1,5 +1,6 @@
 #include "engines/engine.h"
 
+#include "engines/engine_options.h"
 #include "gpu/answers.h"
 #include "gpu/context.h"
 #include "gpu/gpu_disks.h"
@@ -14,9 +15,6 @@
 #include "tree/disks/disks.h"
 #include "tree/masks/masks.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -29,23 +27,6 @@
 
 namespace surfelao {
 namespace {
-
-/// Between the named qualities the opening changes geometrically.
-float opening_at(float quality)
-{
-    return quality <= kGood ? kDraftOpening * std::pow(kGoodOpening / kDraftOpening, quality)
-                            : kGoodOpening * std::pow(kBestOpening / kGoodOpening, quality - kGood);
-}
-
-MaskKernelSet kernel_set_of(Instructions instructions)
-{
-    if (instructions == Instructions::all)
-        return MaskKernelSet::best;
-    const std::vector<MaskKernelSet> available = available_mask_kernels();
-    if (std::find(available.begin(), available.end(), MaskKernelSet::avx2) == available.end())
-        throw std::runtime_error("this processor has no AVX2");
-    return MaskKernelSet::avx2;
-}
 
 std::string name_of_quality(float quality)
 {
@@ -173,9 +154,7 @@ Prepared prepare_with(const Geometry& geometry, const EngineChoice& choice,
             break;
         }
         case Engine::rays:
-            impl->rays.emplace(geometry, RayScene::Build::fast,
-                               choice.instructions == Instructions::avx2 ? RayScene::Isa::avx2
-                                                                         : RayScene::Isa::best);
+            impl->rays.emplace(geometry, RayScene::Build::fast, isa_of(choice.instructions));
             break;
     }
     impl->seconds.tree = watch.lap();
@@ -202,58 +181,6 @@ Prepared prepare(const PointCloud& cloud, const Geometry& squares, const EngineC
 }
 
 namespace {
-
-MaskOptions mask_options(const EngineChoice& choice, const SolveSettings& settings)
-{
-    MaskOptions options;
-    options.definition = settings.definition;
-    options.quality = settings.quality;
-    options.share = settings.share;
-    options.kernel = kernel_set_of(choice.instructions);
-    return options;
-}
-
-DiskOptions disk_options(const SolveSettings& settings)
-{
-    DiskOptions options;
-    options.definition = settings.definition;
-    options.opening = opening_at(settings.quality);
-    options.passes = settings.passes;
-    options.strength = settings.strength;
-    options.share = settings.share;
-    return options;
-}
-
-std::optional<double> residual_of(const std::vector<double>& residuals)
-{
-    return residuals.empty() ? std::nullopt : std::optional(residuals.back());
-}
-
-/// Throws InputError for the first that no engine can answer.
-void check_receivers(std::span<const Receiver> receivers)
-{
-    const auto fits = [](const Receiver& receiver) {
-        const glm::vec3 p = glm::abs(receiver.position);
-        const float length2 = glm::dot(receiver.normal, receiver.normal);
-        return p.x <= kFarthestReceiver && p.y <= kFarthestReceiver && p.z <= kFarthestReceiver &&
-               (std::abs(length2 - 1.0f) <= 2.0f * kUnitLength || length2 == 0.0f);
-    };
-    constexpr std::size_t kGrain = 16384;
-    const bool all_fit = tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, receivers.size(), kGrain), true,
-        [&](const tbb::blocked_range<std::size_t>& range, bool all) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i)
-                all &= fits(receivers[i]);
-            return all;
-        },
-        std::logical_and<bool>());
-    if (all_fit)
-        return;
-    const auto wrong = std::ranges::find_if_not(receivers, fits);
-    throw InputError("receiver " + std::to_string(wrong - receivers.begin()) +
-                     ": its position must be finite and within a million diagonals, its normal of "
-                     "length 1, or zero");
-}
 
 /// The context must be current.
 Solution solve_on_gpu(const Prepared::Impl& impl, std::span<const Receiver> receivers,
@@ -296,12 +223,8 @@ Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
         solution.occlusion = std::move(solved.occlusion);
         solution.residual = residual_of(solved.residuals);
     } else {
-        RayOptions options;
-        options.definition = settings.definition;
-        options.rays = settings.rays;
-        options.seed = settings.seed;
-        options.share = settings.share;
-        solution.occlusion = trace_occlusion(*impl.rays, receivers, options, progress);
+        solution.occlusion =
+            trace_occlusion(*impl.rays, receivers, ray_options(settings), progress);
     }
     solution.seconds = watch.lap();
     return solution;

@@ -1,92 +1,59 @@
 #include "engines/moving.h"
 
+#include "engines/moving_engine.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
 
-#include <glm/geometric.hpp>
-
-#include <cmath>
+#include <algorithm>
+#include <mutex>
 #include <utility>
 
 namespace surfelao {
 
-glm::dmat4 matrix_of(const Placement& placement)
-{
-    glm::dmat4 matrix(placement.scale * placement.rotation);
-    matrix[3] = glm::dvec4(placement.translation, 1.0);
-    return matrix;
-}
+namespace {
 
-std::optional<Placement> placement_of(const glm::dmat4& matrix)
+std::unique_ptr<MovingEngine> moving_engine(const MovingParts& parts, const EngineChoice& choice)
 {
-    constexpr double kEven = 1e-6;
-    const glm::dmat3 linear(matrix);
-    const double scale = glm::length(linear[0]);
-    if (!(scale > 0.0) || !std::isfinite(scale))
-        return std::nullopt;
-    Placement placement;
-    placement.scale = scale;
-    placement.rotation = linear / scale;
-    placement.translation = glm::dvec3(matrix[3]);
-    for (int i = 0; i < 3; ++i) {
-        if (!std::isfinite(placement.translation[i]))
-            return std::nullopt;
-        for (int j = 0; j < 3; ++j) {
-            const double product = glm::dot(placement.rotation[i], placement.rotation[j]);
-            if (!(std::abs(product - (i == j ? 1.0 : 0.0)) <= kEven))
-                return std::nullopt;
-        }
+    switch (choice.engine) {
+        case Engine::masks:
+            return moving_masks(parts, choice);
+        case Engine::disks:
+            return moving_disks(parts, choice);
+        case Engine::rays:
+            return moving_rays(parts, choice);
     }
-    return placement;
+    throw SettingsError("engine must be masks, disks or rays");
 }
 
-Receiver placed(const Receiver& receiver, const Placement& placement)
-{
-    const glm::dvec3 normal = placement.rotation * glm::dvec3(receiver.normal);
-    const double length = glm::length(normal);
-    return {glm::vec3(placement.scale * (placement.rotation * glm::dvec3(receiver.position)) +
-                      placement.translation),
-            length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0f),
-            static_cast<float>(placement.scale * receiver.offset)};
-}
+}  // namespace
 
-/// All bodies in one geometry, which is prepared again whenever one of them has moved.
 struct MovingScene::Impl {
-    Geometry at_rest;
-    std::vector<std::uint32_t> body_of_triangle;
     EngineChoice choice;
-    std::vector<std::optional<Placement>> placements;          ///< empty: hidden
-    std::vector<std::optional<std::vector<glm::vec3>>> forms;  ///< of deformed bodies
-    std::optional<Prepared> prepared;
-    std::uint64_t version = 0;
+    std::size_t vertices = 0;
+    std::vector<MovingBody> bodies;
+    std::unique_ptr<MovingEngine> engine;
+    bool moved = false;  ///< since the engine was told
+    std::mutex mutex;    ///< of the telling: several threads may solve at once
 
-    void change()
+    /// The engine, with all bodies where they stand now.
+    const MovingEngine& now(FrameReport& report)
     {
-        ++version;
-        prepared.reset();
+        const std::lock_guard lock(mutex);
+        if (moved)
+            engine->move(bodies, report);
+        moved = false;
+        return *engine;
     }
 
-    const Prepared& now()
+    void change(std::uint32_t body, MovingBody to)
     {
-        if (prepared)
-            return *prepared;
-        Geometry geometry = at_rest;
-        geometry.triangles.clear();
-        for (std::size_t t = 0; t < at_rest.triangles.size(); ++t) {
-            const std::uint32_t body = body_of_triangle[t];
-            if (!placements[body])
-                continue;
-            for (int corner = 0; corner < 3; ++corner) {
-                const std::uint32_t vertex = at_rest.triangles[t][corner];
-                const glm::vec3 p =
-                    forms[body] ? (*forms[body])[vertex] : at_rest.positions[vertex];
-                geometry.positions[vertex] =
-                    body == 0 ? p : placed({p, {}, 0.0f}, *placements[body]).position;
-            }
-            geometry.triangles.push_back(at_rest.triangles[t]);
-        }
-        prepared.emplace(prepare(geometry, choice));
-        return *prepared;
+        require(body >= 1 && body < bodies.size(), "there is no such body");
+        MovingBody& is = bodies[body];
+        if (is.placement == to.placement && is.form == nullptr && to.form == nullptr)
+            return;
+        to.version = is.version + 1;
+        is = std::move(to);
+        moved = true;
     }
 };
 
@@ -97,14 +64,13 @@ MovingScene::MovingScene(const Geometry& geometry, std::span<const std::uint32_t
     require(choice.device == Device::cpu, "moving scenes are solved on the CPU");
     require(body_of_triangle.size() == geometry.triangles.size(),
             "every triangle must belong to a body");
-    impl_->at_rest = geometry;
-    impl_->body_of_triangle.assign(body_of_triangle.begin(), body_of_triangle.end());
-    impl_->choice = choice;
     std::uint32_t bodies = 1;
     for (const std::uint32_t body : body_of_triangle)
         bodies = std::max(bodies, body + 1);
-    impl_->placements.assign(bodies, Placement{});
-    impl_->forms.resize(bodies);
+    impl_->choice = choice;
+    impl_->vertices = geometry.positions.size();
+    impl_->bodies.resize(bodies);
+    impl_->engine = moving_engine({geometry, body_of_triangle, bodies}, choice);
 }
 MovingScene::~MovingScene() = default;
 MovingScene::MovingScene(MovingScene&&) noexcept = default;
@@ -112,7 +78,7 @@ MovingScene& MovingScene::operator=(MovingScene&&) noexcept = default;
 
 std::uint32_t MovingScene::body_count() const
 {
-    return static_cast<std::uint32_t>(impl_->placements.size());
+    return static_cast<std::uint32_t>(impl_->bodies.size());
 }
 
 const EngineChoice& MovingScene::choice() const
@@ -122,32 +88,26 @@ const EngineChoice& MovingScene::choice() const
 
 void MovingScene::place(std::uint32_t body, const Placement& placement)
 {
-    require(body >= 1 && body < body_count(), "there is no such body");
-    impl_->placements[body] = placement;
-    impl_->forms[body].reset();
-    impl_->change();
+    impl_->change(body, {placement, nullptr});
 }
 
 void MovingScene::hide(std::uint32_t body)
 {
-    require(body >= 1 && body < body_count(), "there is no such body");
-    impl_->placements[body].reset();
-    impl_->change();
+    impl_->change(body, {std::nullopt, nullptr});
 }
 
 void MovingScene::deform(std::uint32_t body, std::span<const glm::vec3> positions)
 {
-    require(body >= 1 && body < body_count(), "there is no such body");
-    require(positions.size() == impl_->at_rest.positions.size(), "one position per vertex");
-    impl_->placements[body] = Placement{};
-    impl_->forms[body].emplace(positions.begin(), positions.end());
-    impl_->change();
+    require(positions.size() == impl_->vertices, "one position per vertex");
+    impl_->change(body, {Placement{}, std::make_shared<const std::vector<glm::vec3>>(
+                                          positions.begin(), positions.end())});
 }
 
 Solution MovingScene::solve(std::span<const Receiver> receivers, const SolveSettings& settings,
                             const Progress& progress) const
 {
-    return surfelao::solve(impl_->now(), receivers, settings, progress);
+    FrameReport report;
+    return impl_->now(report).solve(receivers, settings, progress);
 }
 
 struct MovingReceivers::Impl {
@@ -156,6 +116,9 @@ struct MovingReceivers::Impl {
     std::vector<Receiver> at_rest, now;
     std::vector<std::uint32_t> body_of_receiver;
     std::vector<Occlusion> occlusion;
+    std::vector<std::uint64_t> versions;   ///< of the bodies, as of the last frame
+    std::unique_ptr<MovingMemory> memory;  ///< null: the engine has none
+    bool solved = false;                   ///< all that was asked of the last frame
 };
 
 MovingReceivers::MovingReceivers(const MovingScene& scene, std::vector<Receiver> at_rest,
@@ -166,12 +129,17 @@ MovingReceivers::MovingReceivers(const MovingScene& scene, std::vector<Receiver>
     check_settings(scene.choice(), settings);
     require(settings.tolerance >= 0.0f, "the tolerance must be 0 or more");
     require(body_of_receiver.size() == at_rest.size(), "every receiver must belong to a body");
+    for (const std::uint32_t body : body_of_receiver)
+        require(body < scene.body_count(), "there is no such body");
     impl_->scene = &scene;
     impl_->settings = settings;
     impl_->now = at_rest;
     impl_->at_rest = std::move(at_rest);
     impl_->body_of_receiver = std::move(body_of_receiver);
     impl_->occlusion.resize(impl_->now.size());
+    impl_->versions.resize(scene.body_count(), 0);
+    impl_->memory =
+        scene.impl().engine->remember(impl_->at_rest, impl_->body_of_receiver, settings);
 }
 MovingReceivers::~MovingReceivers() = default;
 MovingReceivers::MovingReceivers(MovingReceivers&&) noexcept = default;
@@ -179,37 +147,57 @@ MovingReceivers& MovingReceivers::operator=(MovingReceivers&&) noexcept = defaul
 
 void MovingReceivers::deform(std::uint32_t body, std::span<const Receiver> receivers)
 {
+    const auto count = static_cast<std::size_t>(std::ranges::count(impl_->body_of_receiver, body));
+    require(count == receivers.size(), "one receiver for each of the body's");
     std::size_t next = 0;
     for (std::size_t i = 0; i < impl_->at_rest.size(); ++i) {
-        if (impl_->body_of_receiver[i] != body)
-            continue;
-        require(next < receivers.size(), "one receiver for each of the body's");
-        impl_->at_rest[i] = receivers[next++];
+        if (impl_->body_of_receiver[i] == body)
+            impl_->now[i] = impl_->at_rest[i] = receivers[next++];
     }
-    require(next == receivers.size(), "one receiver for each of the body's");
+    impl_->solved = false;
+    if (impl_->memory)
+        impl_->memory->deform(body, impl_->at_rest);
 }
 
 FrameReport MovingReceivers::solve(const Progress& progress)
 {
     FrameReport report;
+    Impl& impl = *impl_;
+    const std::vector<MovingBody>& bodies = impl.scene->impl().bodies;
+    const MovingEngine& engine = impl.scene->impl().now(report);
     Stopwatch watch;
-    const auto& placements = impl_->scene->impl().placements;
-    for (std::size_t i = 0; i < impl_->now.size(); ++i) {
-        const std::uint32_t body = impl_->body_of_receiver[i];
-        if (body != 0 && placements[body])
-            impl_->now[i] = placed(impl_->at_rest[i], *placements[body]);
+    const auto is_moved = [&](std::size_t body) {
+        return !impl.solved || bodies[body].version != impl.versions[body];
+    };
+    bool any_moved = false;
+    for (std::size_t body = 0; body < bodies.size(); ++body)
+        any_moved |= is_moved(body);
+    if (!any_moved)
+        return report;
+    for (std::size_t i = 0; i < impl.now.size(); ++i) {
+        const std::uint32_t body = impl.body_of_receiver[i];
+        const auto& placement = bodies[body].placement;
+        if (is_moved(body) && placement)
+            impl.now[i] =
+                *placement == Placement{} ? impl.at_rest[i] : placed(impl.at_rest[i], *placement);
     }
-    report.place = watch.lap();
-    const Prepared& prepared = impl_->scene->impl().now();
-    report.tree = watch.lap();
-    std::vector<Occlusion> found =
-        surfelao::solve(prepared, impl_->now, impl_->settings, progress).occlusion;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        if (placements[impl_->body_of_receiver[i]])
-            impl_->occlusion[i] = found[i];
+    report.place += watch.lap();
+    impl.solved = false;
+    if (impl.memory) {
+        impl.memory->solve(bodies, impl.now, impl.occlusion, report, progress);
+    } else {
+        const std::vector<Occlusion> found =
+            engine.solve(impl.now, impl.settings, progress).occlusion;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            if (bodies[impl.body_of_receiver[i]].placement)
+                impl.occlusion[i] = found[i];
+        }
+        report.solved = found.size();
     }
+    for (std::size_t body = 0; body < bodies.size(); ++body)
+        impl.versions[body] = bodies[body].version;
+    impl.solved = true;
     report.solve = watch.lap();
-    report.solved = found.size();
     return report;
 }
 

@@ -1,5 +1,6 @@
 #include "files/gltf_animation.h"
 
+#include "files/gltf_io.h"
 #include "surfels/number_text.h"
 
 #include <glm/geometric.hpp>
@@ -9,6 +10,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -110,6 +115,34 @@ KeyFrames keys_of(const tinygltf::AnimationSampler& sampler, const std::string& 
     return keys;
 }
 
+std::optional<NodeValue> value_of(const std::string& path)
+{
+    if (path == "translation")
+        return NodeValue::translation;
+    if (path == "rotation")
+        return NodeValue::rotation;
+    if (path == "scale")
+        return NodeValue::scale;
+    if (path == "weights")
+        return NodeValue::weights;
+    return std::nullopt;
+}
+
+/// 0: as many a key as there are.
+std::size_t width_of(NodeValue value)
+{
+    return value == NodeValue::weights ? 0 : (value == NodeValue::rotation ? 4 : 3);
+}
+
+/// Numbers that a sampler's keys take.
+std::uint64_t key_count(const tinygltf::AnimationSampler& sampler, const std::string& element,
+                        const AccessorResolver& resolver)
+{
+    const GltfAccessor times = resolver.resolve(sampler.input, element + " input").accessor;
+    const GltfAccessor values = resolver.resolve(sampler.output, element + " output").accessor;
+    return times.count + values.count * static_cast<std::uint64_t>(values.dimension);
+}
+
 }  // namespace
 
 std::vector<double> sample(const KeyFrames& keys, double seconds)
@@ -146,37 +179,68 @@ std::vector<double> sample(const KeyFrames& keys, double seconds)
     return result;
 }
 
+GltfAnimation read_animation(const tinygltf::Model& model, const AccessorResolver& resolver,
+                             const std::string& name)
+{
+    GltfAnimation read;
+    read.number = find_animation(model, resolver, name);
+    const tinygltf::Animation& animation = model.animations[read.number];
+    read.name = animation.name;
+    const std::string element = numbered("animation", read.number);
+    const std::uint64_t limit = kInstancingBase + kInstancingPerByte * resolver.byte_count();
+    std::uint64_t amount = 0;
+    std::map<std::pair<int, NodeValue>, std::size_t> known;  // channels that share a sampler
+    for (const tinygltf::AnimationChannel& channel : animation.channels) {
+        const auto node = static_cast<std::size_t>(channel.target_node);
+        const std::optional<NodeValue> value = value_of(channel.target_path);
+        if (!value)
+            continue;
+        if (*value != NodeValue::weights && !model.nodes[node].matrix.empty())
+            resolver.fail(numbered("node", node), "has a matrix, but " + element + " moves it");
+        const auto [entry, is_new] = known.try_emplace({channel.sampler, *value}, read.keys.size());
+        if (is_new) {
+            const auto sampler = static_cast<std::size_t>(channel.sampler);
+            const std::string place = element + ' ' + numbered("sampler", sampler);
+            const std::uint64_t keys = key_count(animation.samplers[sampler], place, resolver);
+            // each is below 2^53: it is a number of JSON
+            if (keys > limit || (amount += keys) > limit)
+                resolver.fail(place, "brings the animation to more than " + std::to_string(limit) +
+                                         " numbers, far more than a file of this size may stand "
+                                         "for");
+            read.keys.push_back(
+                keys_of(animation.samplers[sampler], place, width_of(*value), resolver));
+            read.keys.back().is_rotation = *value == NodeValue::rotation;
+        }
+        read.channels.push_back({node, *value, entry->second});
+    }
+    return read;
+}
+
+void pose_nodes(std::vector<tinygltf::Node>& nodes, const GltfAnimation& animation, double seconds)
+{
+    for (const GltfAnimation::Channel& channel : animation.channels) {
+        tinygltf::Node& node = nodes[channel.node];
+        std::vector<double>& moved = channel.value == NodeValue::translation ? node.translation
+                                     : channel.value == NodeValue::rotation  ? node.rotation
+                                     : channel.value == NodeValue::scale     ? node.scale
+                                                                             : node.weights;
+        moved = sample(animation.keys[channel.keys], seconds);
+    }
+}
+
+std::string pose_text(const GltfAnimation& animation, double seconds)
+{
+    const std::string name =
+        animation.name.empty() ? std::string() : " \"" + shortened(animation.name) + '"';
+    return numbered("animation", animation.number) + name + " at " + exact(seconds) + " s";
+}
+
 std::string pose_model(tinygltf::Model& model, const AccessorResolver& resolver,
                        const Moment& moment)
 {
-    const std::size_t number = find_animation(model, resolver, moment.animation);
-    const tinygltf::Animation& animation = model.animations[number];
-    for (std::size_t c = 0; c < animation.channels.size(); ++c) {
-        const tinygltf::AnimationChannel& channel = animation.channels[c];
-        const auto target = static_cast<std::size_t>(channel.target_node);
-        tinygltf::Node& node = model.nodes[target];
-        const bool is_weights = channel.target_path == "weights";
-        std::vector<double>* moved = channel.target_path == "translation" ? &node.translation
-                                     : channel.target_path == "rotation"  ? &node.rotation
-                                     : channel.target_path == "scale"     ? &node.scale
-                                     : is_weights                         ? &node.weights
-                                                                          : nullptr;
-        if (moved == nullptr)
-            continue;
-        if (!is_weights && !node.matrix.empty())
-            resolver.fail(numbered("node", target),
-                          "has a matrix, but " + numbered("animation", number) + " moves it");
-        const auto sampler = static_cast<std::size_t>(channel.sampler);
-        const bool is_rotation = moved == &node.rotation;
-        KeyFrames keys = keys_of(animation.samplers[sampler],
-                                 numbered("animation", number) + ' ' + numbered("sampler", sampler),
-                                 is_weights ? 0 : (is_rotation ? 4 : 3), resolver);
-        keys.is_rotation = is_rotation;
-        *moved = sample(keys, moment.seconds);
-    }
-    const std::string name =
-        animation.name.empty() ? std::string() : " \"" + shortened(animation.name) + '"';
-    return numbered("animation", number) + name + " at " + exact(moment.seconds) + " s";
+    const GltfAnimation animation = read_animation(model, resolver, moment.animation);
+    pose_nodes(model.nodes, animation, moment.seconds);
+    return pose_text(animation, moment.seconds);
 }
 
 }  // namespace surfelao

@@ -84,6 +84,7 @@ struct GltfAsset : SourceAsset {
     std::string_view bin;                        ///< the binary chunk of a GLB; empty without one
     std::vector<std::string_view> other_chunks;  ///< of a GLB: neither JSON nor BIN, with headers
     std::optional<Moment> moment;    ///< at which the scene stands; empty: its default pose
+    bool is_played = false;          ///< an animation is: then no note says that none is
     std::vector<std::string> notes;  ///< what was let pass in all that, for Scene::notes
     std::vector<GltfBuffer> buffers;
     std::map<std::size_t, GltfAccessor> colors;  ///< COLOR_0 by accessor, of all parts

@@ -71,7 +71,7 @@ inline constexpr std::uint64_t kInstancingPerByte = 16;
 /// buffers are looked for. Throws InputError with one sentence that names file, element and fault.
 /// O(bytes + vertices).
 [[nodiscard]] Scene read_gltf(const std::filesystem::path& path, std::string contents,
-                              const std::optional<Moment>& moment = {});
+                              const std::optional<Moment>& moment = {}, bool is_played = false);
 
 /// The file that `scene` was read from (read_gltf) with new vertex attributes, one Occlusion per
 /// scene vertex, as it is to stand at `path` (whose extension says whether it is a .glb):

@@ -45,12 +45,14 @@ std::vector<int> vertex_accessors(const tinygltf::Primitive& primitive)
 
 class MeshResolver {
 public:
-    MeshResolver(const tinygltf::Model& model, std::size_t mesh, GltfAsset& asset)
+    MeshResolver(const tinygltf::Model& model, std::size_t mesh, const GltfAsset& asset,
+                 std::map<std::size_t, GltfAccessor>& colors,
+                 std::vector<std::int32_t>& group_of_primitive)
         : model_(model),
           mesh_(mesh),
           resolver_(asset),
-          colors_(asset.colors),
-          group_of_primitive_(asset.group_of_primitive[mesh])
+          colors_(colors),
+          group_of_primitive_(group_of_primitive)
     {
     }
 
@@ -230,7 +232,15 @@ std::size_t Primitive::corner_count() const
 
 std::vector<Group> resolve_mesh(const tinygltf::Model& model, std::size_t mesh, GltfAsset& asset)
 {
-    return MeshResolver(model, mesh, asset).resolve();
+    return MeshResolver(model, mesh, asset, asset.colors, asset.group_of_primitive[mesh]).resolve();
+}
+
+std::vector<Group> resolve_mesh(const tinygltf::Model& model, std::size_t mesh,
+                                const GltfAsset& asset)
+{
+    std::map<std::size_t, GltfAccessor> colors;
+    std::vector<std::int32_t> group_of_primitive;
+    return MeshResolver(model, mesh, asset, colors, group_of_primitive).resolve();
 }
 
 }  // namespace surfelao

@@ -66,4 +66,8 @@ struct Group {
 [[nodiscard]] std::vector<Group> resolve_mesh(const tinygltf::Model& model, std::size_t mesh,
                                               GltfAsset& asset);
 
+/// The same without a note in the asset.
+[[nodiscard]] std::vector<Group> resolve_mesh(const tinygltf::Model& model, std::size_t mesh,
+                                              const GltfAsset& asset);
+
 }  // namespace surfelao

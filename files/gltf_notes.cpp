@@ -132,7 +132,7 @@ std::vector<std::string> gltf_notes(const GltfAsset& asset, const PlacedNodes& n
                                 "behind the last whole triangle is left out",
                                 "behind the last whole triangles are left out"));
     const json& animations = member(*asset.document, "animations");
-    if (animations.is_array() && !animations.empty() && !asset.moment)
+    if (animations.is_array() && !animations.empty() && !asset.is_played)
         notes.push_back(counted(animations.size(), "animation",
                                 "is not played: the default pose is baked",
                                 "are not played: the default pose is baked"));

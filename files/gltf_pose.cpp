@@ -25,13 +25,6 @@ auto read_named(const NamedAccessor& named, const AccessorResolver& resolver, Re
     }
 }
 
-void add_scaled(std::vector<glm::dvec3>& sums, const std::vector<glm::dvec3>& vectors,
-                double weight)
-{
-    for (std::size_t i = 0; i < sums.size(); ++i)
-        sums[i] += weight * vectors[i];
-}
-
 /// Which vertices the triangles of a group have. Indices out of range are refused elsewhere.
 std::vector<bool> used_vertices(const Group& group, const AccessorResolver& resolver)
 {
@@ -86,6 +79,13 @@ glm::vec3 unit_or_zero(const glm::dvec3& direction)
 
 }  // namespace
 
+void add_scaled(std::vector<glm::dvec3>& sums, const std::vector<glm::dvec3>& vectors,
+                double weight)
+{
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        sums[i] += weight * vectors[i];
+}
+
 MeshVertices read_vertices(const Group& group, std::span<const double> weights,
                            const AccessorResolver& resolver)
 {
@@ -117,12 +117,26 @@ MeshVertices read_vertices(const Group& group, std::span<const double> weights,
     if (!lost.empty()) {
         const std::vector<bool> used = used_vertices(group, resolver);
         const auto first = std::ranges::find(used, true) - used.begin();
+        vertices.stand_in = static_cast<std::size_t>(first) % used.size();
         for (const std::size_t vertex : lost)
-            vertices.positions[vertex] =
-                vertices.positions[static_cast<std::size_t>(first) % used.size()];
-        vertices.lost_count = lost.size();
+            vertices.positions[vertex] = vertices.positions[vertices.stand_in];
+        vertices.lost.assign(lost.begin(), lost.end());
     }
     return vertices;
+}
+
+std::vector<Displacements> read_displacements(const Group& group, const AccessorResolver& resolver)
+{
+    std::vector<Displacements> displacements;
+    std::set<std::size_t> lost;
+    for (const MorphTarget& target : group.targets) {
+        Displacements& added = displacements.emplace_back();
+        if (target.positions)
+            added.positions = read_places(*target.positions, group, resolver, lost);
+        if (target.normals && group.normals)
+            added.normals = read_named(*target.normals, resolver, read_vectors);
+    }
+    return displacements;
 }
 
 std::vector<glm::dmat4> joint_matrices(const tinygltf::Model& model, std::size_t skin,
@@ -160,41 +174,56 @@ std::vector<glm::dmat4> joint_matrices(const tinygltf::Model& model, std::size_t
     return matrices;
 }
 
-std::vector<glm::dmat4> vertex_matrices(const Group& group, std::span<const glm::dmat4> joints,
-                                        const AccessorResolver& resolver)
+Influences read_influences(const Group& group, std::size_t joint_count,
+                           const AccessorResolver& resolver)
 {
-    const std::size_t count = group.positions.accessor.count;
-    std::vector<glm::dmat4> matrices(count, glm::dmat4(0.0));
-    std::vector<double> sums(count, 0.0);
-    const auto joint_of = [&](const InfluenceSet& set, std::size_t vertex, double number) {
-        if (number >= static_cast<double>(joints.size()))
+    struct Numbers {
+        const InfluenceSet* set;
+        std::vector<double> joints, weights;
+    };
+    std::vector<Numbers> sets;
+    for (const InfluenceSet& set : group.influences)
+        sets.push_back({&set, read_named(set.joints, resolver, read_numbers),
+                        read_named(set.weights, resolver, read_numbers)});
+    const auto checked = [&](const InfluenceSet& set, std::size_t vertex, double number) {
+        if (number >= static_cast<double>(joint_count))
             resolver.fail(set.joints.element + ":",
                           numbered("vertex", vertex) + " uses joint " +
                               std::to_string(static_cast<std::uint64_t>(number)) +
-                              ", but the skin has " + std::to_string(joints.size()));
-        return joints[static_cast<std::size_t>(number)];
+                              ", but the skin has " + std::to_string(joint_count));
+        return static_cast<std::uint32_t>(number);
     };
-    for (const InfluenceSet& set : group.influences) {
-        const std::vector<double> numbers = read_named(set.joints, resolver, read_numbers);
-        const std::vector<double> weights = read_named(set.weights, resolver, read_numbers);
-        for (std::size_t i = 0; i < weights.size(); ++i) {
-            const std::size_t vertex = i / kJointsInSet;
-            if (weights[i] > 0.0) {  // joints without weight may be anything
-                matrices[vertex] += weights[i] * joint_of(set, vertex, numbers[i]);
-                sums[vertex] += weights[i];
+    Influences influences;
+    for (std::size_t vertex = 0; vertex < group.positions.accessor.count; ++vertex) {
+        influences.first.push_back(influences.all.size());
+        for (const Numbers& numbers : sets) {
+            for (std::size_t i = kJointsInSet * vertex; i < kJointsInSet * (vertex + 1); ++i) {
+                if (numbers.weights[i] > 0.0)  // joints without weight may be anything
+                    influences.all.push_back(
+                        {checked(*numbers.set, vertex, numbers.joints[i]), numbers.weights[i]});
             }
         }
+        if (influences.all.size() == influences.first.back())
+            influences.all.push_back(
+                {checked(*sets[0].set, vertex, sets[0].joints[kJointsInSet * vertex]), 1.0});
     }
-    std::vector<double> first;
-    for (std::size_t vertex = 0; vertex < count; ++vertex) {
-        if (sums[vertex] > 0.0) {
-            matrices[vertex] /= sums[vertex];
-            continue;
+    influences.first.push_back(influences.all.size());
+    return influences;
+}
+
+std::vector<glm::dmat4> vertex_matrices(const Influences& influences,
+                                        std::span<const glm::dmat4> joints)
+{
+    std::vector<glm::dmat4> matrices;
+    matrices.reserve(influences.first.size() - 1);
+    for (std::size_t vertex = 0; vertex + 1 < influences.first.size(); ++vertex) {
+        glm::dmat4 matrix(0.0);
+        double sum = 0.0;
+        for (std::size_t i = influences.first[vertex]; i < influences.first[vertex + 1]; ++i) {
+            matrix += influences.all[i].weight * joints[influences.all[i].joint];
+            sum += influences.all[i].weight;
         }
-        const InfluenceSet& set = group.influences.front();
-        if (first.empty())
-            first = read_named(set.joints, resolver, read_numbers);
-        matrices[vertex] = joint_of(set, vertex, first[kJointsInSet * vertex]);
+        matrices.push_back(matrix / sum);
     }
     return matrices;
 }

@@ -5,6 +5,7 @@
 #include "files/gltf_instances.h"
 #include "files/gltf_json.h"
 #include "files/gltf_mesh.h"
+#include "files/gltf_model.h"
 #include "files/gltf_nodes.h"
 #include "files/gltf_notes.h"
 #include "files/gltf_old_results.h"
@@ -35,22 +36,6 @@ namespace surfelao {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The checked document as tinygltf's structs. tinygltf trusts what it reads and opens files, so it
-/// is handed neither more than geometry_text() lets through nor any uri.
-tinygltf::Model parse_model(const GltfAsset& asset, const std::string& text)
-{
-    if (text.size() > std::numeric_limits<unsigned int>::max())
-        fail_gltf(asset.path, "JSON", "is larger than 4 GiB");
-    tinygltf::TinyGLTF parser;
-    tinygltf::Model model;
-    std::string error;
-    std::string warning;
-    if (!parser.LoadASCIIFromString(&model, &error, &warning, text.data(),
-                                    static_cast<unsigned int>(text.size()), ""))
-        fail_gltf(asset.path, "", error.substr(0, error.find('\n')));
-    return model;
-}
 
 /// What a small file could multiply without end, counted before any of it is made.
 class Amounts {
@@ -290,7 +275,7 @@ private:
         part.first_vertex = static_cast<std::uint32_t>(scene_.positions.size());
         part.first_triangle = static_cast<std::uint32_t>(scene_.triangles.size());
         part.vertex_count = static_cast<std::uint32_t>(vertices.positions.size());
-        lost_count_ += vertices.lost_count;
+        lost_count_ += vertices.lost.size();
         asset_.parts.push_back({asset_.uses.size() - 1, glm::dmat3(1.0), {}, {}, {}});
         part_uvs_ = {};
         // without joints the node moves the mesh, skin or not
@@ -341,7 +326,8 @@ private:
         std::optional<std::vector<glm::dmat4>>& joints = joints_[*use.skin];
         if (!joints)
             joints = joint_matrices(model_, *use.skin, nodes_.world, resolver_);
-        const std::vector<glm::dmat4> matrices = vertex_matrices(group, *joints, resolver_);
+        const std::vector<glm::dmat4> matrices =
+            vertex_matrices(read_influences(group, joints->size(), resolver_), *joints);
         std::vector<bool> mirrored;
         for (std::size_t v = 0; v < matrices.size(); ++v) {
             add_position(use, v, matrices[v], vertices.positions[v]);
@@ -484,7 +470,8 @@ private:
 
 }  // namespace
 
-Scene read_gltf(const fs::path& path, std::string contents, const std::optional<Moment>& moment)
+Scene read_gltf(const fs::path& path, std::string contents, const std::optional<Moment>& moment,
+                bool is_played)
 {
     const auto asset = std::make_shared<GltfAsset>();
     load_gltf_asset(path, std::move(contents), *asset);
@@ -494,6 +481,7 @@ Scene read_gltf(const fs::path& path, std::string contents, const std::optional<
         text = geometry_text(*asset->document, path, animations);
     tinygltf::Model model = parse_model(*asset, text);
     asset->moment = moment;
+    asset->is_played = is_played || moment;
     std::string played;
     if (moment)
         played = pose_model(model, AccessorResolver(*asset), *moment);

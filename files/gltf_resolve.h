@@ -33,6 +33,8 @@ public:
         fail_gltf(asset_.path, element, fault);
     }
 
+    [[nodiscard]] std::size_t byte_count() const { return asset_.byte_count; }
+
     /// Fails where there is not one element for each of `what`.
     void check_count(const NamedAccessor& accessor, std::size_t count,
                      const char* what = "vertices") const;

@@ -54,7 +54,7 @@ Scene read_any(const fs::path& path, const ReadOptions& options)
             return read_stl(name, read_contents(path, name));
         case FileType::gltf:
         case FileType::glb:
-            return read_gltf(path, read_contents(path, name), options.moment);
+            return read_gltf(path, read_contents(path, name), options.moment, options.is_played);
         default:
             throw InputError(
                 name + ": " +

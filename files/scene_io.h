@@ -34,6 +34,8 @@ struct ReadOptions {
     std::string columns = {};
     /// glTF: as it is at this moment; empty: its default pose.
     std::optional<Moment> moment = {};
+    /// glTF: who reads it plays an animation (motion.h); no note says that none is.
+    bool is_played = false;
 };
 
 /// Throws SettingsError for columns that do not name x, y and z once each; empty is right.

@@ -1,10 +1,10 @@
 #include "reference/rays.h"
 
 #include "reference/closest_hit.h"
+#include "reference/embree_scene.h"
 #include "reference/sobol.h"
 #include "surfels/errors.h"
 
-#include <embree3/rtcore.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
@@ -13,29 +13,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace surfelao {
 namespace {
-
-/// One device per instruction set for the whole process: its start is not part of anyone's build.
-RTCDevice device_for(RayScene::Isa isa)
-{
-    const auto start = [](const char* config) {
-        const RTCDevice device = rtcNewDevice(config);
-        if (device == nullptr)
-            throw std::runtime_error("Embree cannot start (error " +
-                                     std::to_string(rtcGetDeviceError(nullptr)) + ")");
-        return device;
-    };
-    if (isa == RayScene::Isa::avx2) {
-        static const RTCDevice device = start("max_isa=avx2");
-        return device;
-    }
-    static const RTCDevice device = start(nullptr);
-    return device;
-}
 
 /// Denormals cost the traversal up to a hundred cycles each and change nothing here.
 class FlushDenormals {
@@ -52,13 +34,6 @@ private:
     static constexpr unsigned kFlushToZero = 0x8000, kDenormalsAreZero = 0x0040;
     unsigned saved_;
 };
-
-/// TBB gives to all its threads, for good, the floating-point mode that a thread has at its first
-/// parallel loop. Embree's commit changes the mode and then starts one: ours comes first.
-void keep_floating_point_mode()
-{
-    tbb::parallel_for(0, 2, [](int) {});
-}
 
 /// Embree's packet types and calls by width.
 template <int width>
@@ -346,47 +321,30 @@ std::vector<Occlusion> trace_all(RTCScene scene, std::span<const Receiver> recei
 
 }  // namespace
 
-struct RayScene::Impl {
-    RTCScene scene = nullptr;
-    bool wide = false;  ///< packets of 16 are native
-    ~Impl() { rtcReleaseScene(scene); }
-};
+RayScene::RayScene(std::unique_ptr<Impl> impl) : impl_(std::move(impl))
+{
+}
 
-RayScene::RayScene(const Geometry& geometry, Build build, Isa isa) : impl_(std::make_unique<Impl>())
+RayScene::RayScene(const Geometry& geometry, Build build, Isa isa)
 {
     keep_floating_point_mode();
     const RTCDevice device = device_for(isa);
-    impl_->wide = rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
-    impl_->scene = rtcNewScene(device);
     const RTCBuildQuality quality =
         build == Build::quick ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
-    rtcSetSceneBuildQuality(impl_->scene, quality);
-    rtcSetSceneFlags(impl_->scene,
-                     build == Build::fast ? RTC_SCENE_FLAG_NONE : RTC_SCENE_FLAG_ROBUST);
+    impl_ = std::make_unique<Impl>(
+        device, build == Build::fast ? RTC_SCENE_FLAG_NONE : RTC_SCENE_FLAG_ROBUST, quality);
     if (!geometry.triangles.empty()) {
-        const RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        void* vertices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                 sizeof(glm::vec3), geometry.positions.size());
-        void* indices = rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                sizeof(glm::uvec3), geometry.triangles.size());
-        if (vertices != nullptr && indices != nullptr) {
-            std::copy(geometry.positions.begin(), geometry.positions.end(),
-                      static_cast<glm::vec3*>(vertices));
-            std::copy(geometry.triangles.begin(), geometry.triangles.end(),
-                      static_cast<glm::uvec3*>(indices));
-            rtcSetGeometryBuildQuality(mesh, quality);
-            rtcCommitGeometry(mesh);
-            rtcAttachGeometry(impl_->scene, mesh);
-        }
-        rtcReleaseGeometry(mesh);
+        const EmbreeMesh mesh =
+            new_mesh(device, geometry.positions.size(), geometry.triangles.size());
+        std::ranges::copy(geometry.positions, mesh.vertices);
+        std::ranges::copy(geometry.triangles, mesh.triangles);
+        rtcSetGeometryBuildQuality(mesh.geometry, quality);
+        rtcCommitGeometry(mesh.geometry);
+        rtcAttachGeometry(impl_->scene, mesh.geometry);
+        rtcReleaseGeometry(mesh.geometry);
     }
     rtcCommitScene(impl_->scene);
-    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
-        throw std::runtime_error(error == RTC_ERROR_OUT_OF_MEMORY
-                                     ? "not enough memory for the ray tracer's hierarchy"
-                                     : "Embree cannot build its hierarchy (error " +
-                                           std::to_string(error) + ")");
-    }
+    check_device(device);
 }
 
 RayScene::~RayScene() = default;

@@ -47,6 +47,7 @@ public:
     RayScene& operator=(RayScene&&) noexcept;
 
     struct Impl;
+    explicit RayScene(std::unique_ptr<Impl> impl);  ///< for the sources of this folder
     const Impl& impl() const { return *impl_; }
 
 private:

@@ -22,7 +22,7 @@ struct Fitted {
         : mesh(make_mesh(std::move(scene))), fit(mesh.geometry, mesh.surface, {})
     {
     }
-    std::vector<Occlusion> solve(const std::function<double(glm::dvec3)>& occlusion) const
+    std::vector<Occlusion> answers(const std::function<double(glm::dvec3)>& occlusion) const
     {
         std::vector<Occlusion> answers;
         for (const SurfacePoint& point : fit.samples().points) {
@@ -33,12 +33,55 @@ struct Fitted {
                                                             at.x * p[t.y] + at.y * p[t.z])),
                                kSheetNormal});
         }
-        return fit.solve(answers);
+        return answers;
+    }
+    std::vector<Occlusion> solve(const std::function<double(glm::dvec3)>& occlusion) const
+    {
+        return fit.solve(answers(occlusion));
     }
 
     Mesh mesh;
     VertexFit fit;
 };
+
+// Steps that are known before come as near as people see: to answers that wave, and to noise.
+TEST(VertexFit, LocalStepsAreNearTheFit)
+{
+    const Fitted sphere(scenes::bumpy_sphere(24));
+    double phase = 0.0;
+    const std::vector<Occlusion> answers = sphere.answers([&](glm::dvec3 p) {
+        return 0.4 + 0.2 * std::sin(9.0 * p.x + 5.0 * p.y) + 0.05 * std::sin(phase += 1.7);
+    });
+    const std::vector<Occlusion> values = sphere.fit.solve(answers);
+    const std::vector<Occlusion> local = sphere.fit.solve_locally(answers);
+    double squares = 0.0;
+    for (std::size_t v = 0; v < values.size(); ++v) {
+        const double difference = values[v].occlusion - local[v].occlusion;
+        squares += difference * difference;
+        ASSERT_LT(std::abs(difference), 0.01);
+    }
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(values.size())), 0.001);
+}
+
+// What changes at one end of a band of 60 squares changes no bit behind kLocalSteps + 1 edges.
+TEST(VertexFit, LocalStepsReachNoFurther)
+{
+    constexpr int kSquares = 60;
+    const Fitted band(scenes::sheet({0, 0, 0}, {kSquares, 0, 0}, {0, kSquares, 0}, kSquares));
+    const auto values = [&](double at_the_end) {
+        return band.fit.solve_locally(
+            band.answers([&](glm::dvec3 p) { return p.x < 1.0 ? at_the_end : 0.3; }));
+    };
+    const std::vector<Occlusion> before = values(0.2), after = values(0.9);
+    const std::vector<glm::dvec3>& places = band.mesh.scene.positions;
+    std::size_t changed = 0;
+    for (std::size_t v = 0; v < places.size(); ++v) {
+        const bool is_near = places[v].x <= kLocalSteps + 2.0;
+        ASSERT_TRUE(is_near || before[v] == after[v]) << places[v].x;
+        changed += before[v] == after[v] ? 0 : 1;
+    }
+    EXPECT_GT(changed, 2u * (kSquares + 1));
+}
 
 TEST(VertexFit, ConstantIsKept)
 {

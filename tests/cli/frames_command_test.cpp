@@ -62,6 +62,63 @@ TEST_F(FramesCommand, EachIsAFileOfItsMoment)
     EXPECT_GT(report[2]["mean_occlusion"], 0.2);
 }
 
+// The square below never moves: its frames tell what they took, and a second run finds them done.
+TEST_F(FramesCommand, TellsWhatAFrameTookAndGoesOn)
+{
+    const Strings asked = {"--frames", "0:3", "--fps",  "2",
+                           "--check",  "0",   "--json", folder_ / "report.json"};
+    ASSERT_EQ(bake("f.%d.ply", asked).code, 0);
+    const auto report = nlohmann::json::parse(std::ifstream(folder_ / "report.json"));
+    ASSERT_EQ(report.size(), 4u);
+    for (const auto& frame : report) {
+        for (const char* key :
+             {"pose", "place", "tree", "solve", "fit", "write", "solved", "bound"})
+            EXPECT_GE(frame["motion"][key].get<double>(), 0.0) << key;
+        EXPECT_EQ(frame["notes"].back().get<std::string>().substr(0, 32),
+                  "the pose is that of animation 0 ");
+    }
+    // behind the last key nothing moves
+    const Scene last = read_scene(folder_ / "f.2.ply"), behind = read_scene(folder_ / "f.3.ply");
+    EXPECT_EQ(last.positions, behind.positions);
+    fs::remove(folder_ / "f.1.ply");
+    Strings again = asked;
+    again.emplace_back("--resume");
+    ASSERT_EQ(bake("f.%d.ply", again).code, 0);
+    const auto resumed = nlohmann::json::parse(std::ifstream(folder_ / "report.json"));
+    EXPECT_TRUE(resumed[0].contains("skipped") && resumed[3].contains("skipped"));
+    EXPECT_TRUE(resumed[1].contains("motion"));
+}
+
+TEST_F(FramesCommand, AreCompared)
+{
+    const Strings asked = {"compare",
+                           folder_ / "lid.glb",
+                           "--frames",
+                           "0:2",
+                           "--fps",
+                           "2",
+                           "--engines",
+                           "masks",
+                           "--qualities",
+                           "draft",
+                           "--sample",
+                           "100",
+                           "--reference-rays",
+                           "64"};
+    Strings with_json = asked;
+    with_json.insert(with_json.end(), {"--json", folder_ / "report.json"});
+    const Outcome outcome = run(folder_.path(), with_json);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("3 frames"), std::string::npos);
+    const auto report = nlohmann::json::parse(std::ifstream(folder_ / "report.json"));
+    ASSERT_EQ(report["rows"].size(), 4u);
+    EXPECT_EQ(report["rows"][0]["engine"], "masks");
+    EXPECT_LT(report["rows"][0]["rmse"], 0.1);
+    Strings at_pixels = asked;
+    at_pixels.insert(at_pixels.end(), {"--at", "pixels"});
+    EXPECT_EQ(run(folder_.path(), at_pixels).code, 2);
+}
+
 // A distance in percent is the same length in all frames.
 TEST_F(FramesCommand, HaveOneFrameOfReference)
 {

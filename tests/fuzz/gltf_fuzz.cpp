@@ -3,8 +3,10 @@
 #include "scene_checks.h"
 
 #include "files/gltf_io.h"
+#include "files/motion.h"
 #include "surfels/errors.h"
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -42,6 +44,21 @@ void check_round_trip(const Scene& scene)
     }
 }
 
+/// Poses are finite, one per part, and those that deform are whole.
+void check_motion(const Scene& scene)
+{
+    const Motion motion(scene);
+    const std::vector<PartPose> poses = motion.at(0.3);
+    SURFELAO_CHECK(poses.size() == scene.parts.size());
+    for (std::size_t p = 0; p < poses.size(); ++p) {
+        SURFELAO_CHECK(motion.bodies()[p] < motion.body_count());
+        SURFELAO_CHECK(poses[p].positions.empty() ||
+                       poses[p].positions.size() == scene.parts[p].vertex_count);
+        for (const glm::dvec3& position : poses[p].positions)
+            SURFELAO_CHECK(std::isfinite(position.x + position.y + position.z));
+    }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
@@ -56,6 +73,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         check_invariants(scene);
         if (scene.positions.size() < 10'000)
             check_round_trip(scene);
+        check_motion(scene);
     } catch (const InputError&) {
     }
     return 0;
