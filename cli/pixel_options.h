@@ -24,8 +24,8 @@ struct PixelOptions {
     std::optional<std::string> guard;
 };
 
-/// Names for --engine and --engines where pixels can be asked: those of the scene, grids, then those
-/// of the picture.
+/// Names for --engine and --engines where pixels can be asked: those of the scene, grids, then
+/// those of the picture.
 [[nodiscard]] std::vector<std::string> pixel_engine_names();
 
 /// --taps, --set and --guard. many_taps: of a list each number is a row of its own.
@@ -39,7 +39,8 @@ void add_pixel_options(CLI::App& command, PixelOptions& options, bool many_taps 
 [[nodiscard]] std::vector<ScreenSettings> screen_settings_of(ScreenMethod method,
                                                              const PixelOptions& options);
 
-/// Who answers: --engine with its settings; not of the engine grid (cli/grid_options.h). Throws UsageError for what does not go together.
+/// Who answers: --engine with its settings; not of the engine grid (cli/grid_options.h). Throws
+/// UsageError for what does not go together.
 [[nodiscard]] PixelEngine pixel_engine_of(const EngineOptions& engine, const PixelOptions& options);
 
 /// Throws UsageError for engines and options of pixels without --at pixels, for --set of a method
