@@ -130,7 +130,7 @@ Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object,
     const bool is_joined = std::string_view(fragment_file) == "grid_merge.frag";
     const bool is_rescaled = grid.border == GridBorder::rescale;
     std::vector<std::string> definitions;
-    if (is_sh)
+    if (is_sh && is_joined)
         definitions.emplace_back("SH");
     if (is_rescaled)
         definitions.emplace_back("RESCALE");
@@ -167,7 +167,9 @@ void GridPass::draw(const GBuffer& seen, std::span<const PlacedGrid> objects, Gr
     }
     target.clear_color(glm::vec4(1.0f));
     for (const PlacedGrid& object : objects) {
-        const Program& program = program_for(seen, object, "grid_shade.frag");
+        const Program& program = program_for(
+            seen, object,
+            object.grid->store == GridStore::sh ? "grid_shade_sh.frag" : "grid_shade.frag");
         surfelao::draw(target, program, nothing_, {.count = kBoxVertices},
                        {.blend = Blend::multiply, .cull = back_faces(object)});
     }

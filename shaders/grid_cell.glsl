@@ -1,5 +1,3 @@
-#include "g_buffer.glsl"
-
 // grid_cell.glsl: what is read from an AO grid at the point that a pixel sees, its border included.
 // Without divisions where the host can divide: a pass is bound by arithmetic.
 //
@@ -12,7 +10,7 @@
 //                    u_far x + u_far_start
 //   u_border         RESCALE: V_M, 1 / (1 - V_M)
 //   u_cells          RGBA16F, n^3: m / (4 pi), alpha; SH: coefficients 0 to 3
-//   u_cells_2 u_cells_3    SH: 4 to 7, and 8
+//   u_surface        as in g_buffer.glsl: normal in view space, distance forward
 // CPU twin   read_values(), border_weight() in grid/ao_grid.cpp
 uniform mat3 u_start;
 uniform mat3 u_along;
@@ -22,12 +20,9 @@ uniform vec3 u_near;
 uniform vec3 u_far;
 uniform vec3 u_far_start;
 uniform sampler3D u_cells;
+uniform sampler2D u_surface;
 #ifdef RESCALE
 uniform vec2 u_border;
-#endif
-#ifdef SH
-uniform sampler3D u_cells_2;
-uniform sampler3D u_cells_3;
 #endif
 
 const float kFade = 0.12;  // kGridFade
@@ -61,10 +56,8 @@ float border_weight(vec3 x, float alpha)
 #endif
 }
 
-#ifdef SH
 // m / (4 pi) and alpha of the first four coefficients
 vec4 moments_of(vec4 c) { return vec4(c.w, c.yz, c.x) * vec4(vec3(0.16286750), 0.28209479); }
-#endif
 
 // m / (4 pi) in the grid's directions, and alpha
 vec4 moments_at(vec3 x)

@@ -1,18 +1,10 @@
+#include "grid_cap.glsl"
+
 // grid_cone.glsl: the cone of moments m / (4 pi), alpha, and what it hides.
 //
 // Host side  grid/cone.h
 //   u_caps  R32F, 64 x 64: T of caps that hide the share x of the sphere, y = (1 + cos b) / 2
 uniform sampler2D u_caps;
-
-const float kNothing = 1e-7;
-
-// share of the sphere that the cap has | how much of it is covered
-vec2 cap_of(vec4 moments)
-{
-    float alpha = clamp(moments.w, kNothing, 1.0);
-    float cap = max(alpha, 1.0 - length(moments.xyz) / alpha);
-    return vec2(cap, alpha / cap);
-}
 
 // normal: in the moments' directions
 float occlusion_by(vec4 moments, vec3 normal)

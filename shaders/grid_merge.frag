@@ -1,11 +1,12 @@
 #version 330 core
 #include "grid_cell.glsl"
-#include "grid_cone.glsl"
+#include "grid_cap.glsl"
 
 // grid_merge.frag: the cone of one more object, joined to that of those before it.
 //
 // Vertices   grid_box.vert
-// Reads      grid_cell.glsl, grid_cone.glsl
+// Definitions  SH RESCALE: 0 or 1. GridStore::sh, GridBorder::rescale
+// Reads      grid_cell.glsl, grid_cap.glsl
 //            u_before  RGBA32F: m / (4 pi) in view space and alpha of the objects before
 // Writes     out_moments  the same with this one
 // CPU twin   merged() in pixels/placed_grid.cpp

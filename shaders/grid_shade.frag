@@ -1,37 +1,18 @@
 #version 330 core
 #include "grid_cell.glsl"
-#ifndef SH
 #include "grid_cone.glsl"
-#endif
 
-// grid_shade.frag: what an object with an AO grid leaves of the light at each pixel.
+// grid_shade.frag: what an object with an AO grid of cones leaves of the light at each pixel.
 //
 // Vertices   grid_box.vert; blended by multiplication
+// Definitions  RESCALE: 0 or 1. GridBorder::rescale
 // Reads      grid_cell.glsl, grid_cone.glsl
 // Writes     out_visibility  1 - occlusion
 // CPU twin   occlusion_at() in grid/ao_grid.cpp
 
 out float out_visibility;
 
-#ifdef SH
-// cosine_weight() times harmonics_along(), by the coefficients
-float occlusion_at(vec3 x, vec3 n)
-{
-    vec3 place = cell_place(x);
-    vec4 first = texture(u_cells, place);
-    vec4 second = texture(u_cells_2, place);
-    float last = texture(u_cells_3, place).r;
-    const float kBand1 = 2.0 / 3.0 * 0.48860251;
-    const float kBand2 = 0.25 * 1.09254843;
-    float sum = 0.28209479 * first.x + kBand1 * dot(first.yzw, n.yzx) +
-                kBand2 * dot(second.xyw, n.xyx * n.yzz) +
-                0.25 * 0.31539157 * (3.0 * n.z * n.z - 1.0) * second.z +
-                0.25 * 0.54627422 * (n.x * n.x - n.y * n.y) * last;
-    return clamp(border_weight(x, moments_of(first).w) * sum, 0.0, 1.0);
-}
-#else
 float occlusion_at(vec3 x, vec3 n) { return clamp(occlusion_by(moments_at(x), n), 0.0, 1.0); }
-#endif
 
 void main()
 {

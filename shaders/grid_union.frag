@@ -1,15 +1,16 @@
 #version 330 core
-#include "g_buffer.glsl"
 #include "grid_cone.glsl"
 
 // grid_union.frag: what the joined cones of all objects leave of the light at each pixel.
 //
 // Vertices   fullscreen.vert
-// Reads      g_buffer.glsl (the normal alone), grid_cone.glsl
+// Reads      grid_cone.glsl
+//            u_surface  as in g_buffer.glsl: the normal in view space
 //            u_before  as grid_merge.frag writes it
 // Writes     out_visibility  1 - occlusion
 
 uniform sampler2D u_before;
+uniform sampler2D u_surface;
 
 out float out_visibility;
 
