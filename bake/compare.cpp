@@ -8,8 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
-#include <ranges>
 #include <span>
 #include <utility>
 
@@ -67,12 +67,12 @@ std::vector<WorstPoint> worst_of(const Mesh& mesh, const SurfaceTruth& truth,
     const auto error_at = [&](std::size_t i) {
         return std::fabs(shown[i].occlusion - truth.reference[i].occlusion);
     };
+    std::vector<std::uint32_t> all(shown.size());
+    std::iota(all.begin(), all.end(), 0u);
     std::vector<std::uint32_t> order(std::min(kWorstCount, shown.size()));
-    std::ranges::partial_sort_copy(
-        std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(shown.size())), order,
-        [&](std::uint32_t a, std::uint32_t b) {
-            return error_at(a) != error_at(b) ? error_at(a) > error_at(b) : a < b;
-        });
+    std::ranges::partial_sort_copy(all, order, [&](std::uint32_t a, std::uint32_t b) {
+        return error_at(a) != error_at(b) ? error_at(a) > error_at(b) : a < b;
+    });
     std::vector<WorstPoint> worst;
     for (const std::uint32_t i : order) {
         const SurfacePoint& point = truth.points[i];

@@ -203,9 +203,9 @@ TEST_F(ImageFile, MapsHoldTheirNumbersAsTheyAre)
             ASSERT_EQ(image.width, 3) << name;
             ASSERT_EQ(image.height, 2) << name;
             // whole numbers are read as sRGB: back to what is stored
-            const auto stored = [&](int x, int y) {
+            const auto stored = [&image, has_steps = steps > 0.0f](int x, int y) {
                 const float value = image.at(x, y).r;
-                return steps > 0.0f ? srgb_encode(value) : value;
+                return has_steps ? srgb_encode(value) : value;
             };
             const float quarter = steps > 0.0f ? std::round(0.25f * steps) / steps : 0.25f;
             EXPECT_NEAR(stored(1, 0), quarter, 1e-5) << name;
