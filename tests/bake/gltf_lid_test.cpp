@@ -189,7 +189,7 @@ TEST(GltfLid, MaterialsWithAlphaOccludeAsTheySay)
     };
     for (const auto& row : rows) {
         LidAndFloor world;
-        world.maker.document["materials"] = {row.material};
+        world.maker.document["materials"] = nlohmann::json::array({row.material});
         world.maker.document["materials"][0]["name"] = "Glass";
         world.lid_primitive()["material"] = 0;
         EXPECT_NEAR(world.centre({.clear = row.clear}), row.occlusion, 0.01) << row.material;

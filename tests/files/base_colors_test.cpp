@@ -86,7 +86,7 @@ TEST(BaseColors, OfGltfComeFromBufferViewsDataAndFiles)
     };
     for (const auto& row : rows) {
         GltfMaker maker = painted_squares();
-        maker.document["images"] = {row.image(maker)};
+        maker.document["images"] = nlohmann::json::array({row.image(maker)});
         const Scene scene = read_scene(folder.file("in.glb", maker.glb()));
         const BaseColors colors = scene.asset->base_colors();
         const glm::vec3 blue(0.25f, 0.5f, 1.0f), white(1.0f);

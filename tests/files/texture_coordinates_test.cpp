@@ -233,7 +233,7 @@ TEST(TextureCoordinates, OfGltfBelongToThePrimitiveAlsoWhereVerticesAreShared)
         EXPECT_EQ(has_first ? first[i] : third[i], p == 0 || p == 3 ? kSquareUvs[vertex] : in_other)
             << i;
     }
-    maker.document["meshes"][0]["primitives"] = {primitive(float_square())};
+    maker.document["meshes"][0]["primitives"] = nlohmann::json::array({primitive(float_square())});
     EXPECT_TRUE(gltf(maker).uvs[0].corners.empty()) << "two uses, a value for each vertex";
 }
 
