@@ -1,5 +1,5 @@
 /// commands.h: the commands of the program, one file each. A new command is a file and two lines:
-/// one here, one in main.cpp.
+/// one here, one in commands.cpp.
 #pragma once
 
 #include <functional>
@@ -13,6 +13,10 @@ namespace surfelao {
 
 /// What the command that was given does once everything is parsed: returns the exit code.
 using Work = std::function<int()>;
+
+/// The whole program: its own description, and all commands. The one table of options: what prints
+/// help, and what writes manuals, reads it from `app`.
+void add_commands(CLI::App& app, Work& work);
 
 /// Each adds its subcommand to `app` and, when that one is given, refuses contradictions by
 /// UsageError and sets `work`. Nothing is worked on while parsing.

@@ -2,7 +2,6 @@
 
 #include "scenes.h"
 #include "surfels/errors.h"
-#include "surfels/stopwatch.h"
 
 #include <glm/geometric.hpp>
 
@@ -147,10 +146,11 @@ TEST(CornerNormals, DoubledFacesBackToBackKeepTheirOwnSides)
     }
 }
 
-// Sums over all pairs of faces would take minutes.
-TEST(CornerNormals, AHubOfManyBentFacesCostsNoMore)
+// What is told apart at one place is bounded: sums over all pairs of faces would not end.
+TEST(CornerNormals, AHubOfManyBentFacesHasFewWedges)
 {
-    constexpr std::uint32_t kCount = 200'000;
+    constexpr std::uint32_t kCount = 50'000;
+    constexpr std::size_t kMostExtra = 65;  // wedges beside the vertex's own
     std::mt19937 random(1);
     const auto step = [&] { return random() / 2147483648.0 - 1.0; };
     Scene scene;
@@ -164,9 +164,8 @@ TEST(CornerNormals, AHubOfManyBentFacesCostsNoMore)
     }
     const Geometry geometry = make_geometry(scene);
     for (const NormalSource source : {NormalSource::smooth, NormalSource::flat}) {
-        Stopwatch watch;
         const Surface surface = make_surface(scene, geometry, {source, 20.0f});
-        EXPECT_LT(watch.lap(), 10.0);
+        EXPECT_LE(surface.extra_vertices.size(), kMostExtra);
         for (const glm::vec3 normal : surface.normals)
             ASSERT_NEAR(glm::length(normal), 1.0f, 1e-5f);
     }
