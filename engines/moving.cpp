@@ -1,6 +1,7 @@
 #include "engines/moving.h"
 
 #include "engines/moving_engine.h"
+#include "engines/options.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
 
@@ -14,15 +15,16 @@ namespace surfelao {
 
 namespace {
 
-std::unique_ptr<MovingEngine> moving_engine(const MovingParts& parts, const EngineChoice& choice)
+std::unique_ptr<MovingEngine> moving_engine(const Geometry& at_rest, std::vector<BodyMesh> bodies,
+                                            const EngineChoice& choice)
 {
     switch (choice.engine) {
         case Engine::masks:
-            return moving_masks(parts, choice);
+            return moving_masks(at_rest, std::move(bodies), choice);
         case Engine::disks:
-            return moving_disks(parts, choice);
+            return moving_disks(at_rest, std::move(bodies), choice);
         case Engine::rays:
-            return moving_rays(parts, choice);
+            return moving_rays(at_rest, std::move(bodies), choice);
     }
     throw SettingsError("engine must be masks, disks or rays");
 }
@@ -67,13 +69,11 @@ MovingScene::MovingScene(const Geometry& geometry, std::span<const std::uint32_t
     require(choice.device == Device::cpu, "moving scenes are solved on the CPU");
     require(body_of_triangle.size() == geometry.triangles.size(),
             "every triangle must belong to a body");
-    std::uint32_t bodies = 1;
-    for (const std::uint32_t body : body_of_triangle)
-        bodies = std::max(bodies, body + 1);
+    std::vector<BodyMesh> bodies = split_bodies(geometry, body_of_triangle);
     impl_->choice = choice;
     impl_->vertices = geometry.positions.size();
-    impl_->bodies.resize(bodies);
-    impl_->engine = moving_engine({geometry, body_of_triangle, bodies}, choice);
+    impl_->bodies.resize(bodies.size());
+    impl_->engine = moving_engine(geometry, std::move(bodies), choice);
 }
 MovingScene::~MovingScene() = default;
 MovingScene::MovingScene(MovingScene&&) noexcept = default;
@@ -114,7 +114,7 @@ Solution MovingScene::solve(std::span<const Receiver> receivers, const SolveSett
 }
 
 struct MovingReceivers::Impl {
-    const MovingScene* scene = nullptr;
+    MovingScene::Impl* scene = nullptr;  ///< where it stays when the MovingScene is moved
     MovingSettings settings;
     std::vector<Receiver> at_rest, now;
     std::vector<std::uint32_t> body_of_receiver;
@@ -134,7 +134,7 @@ MovingReceivers::MovingReceivers(const MovingScene& scene, std::vector<Receiver>
     require(body_of_receiver.size() == at_rest.size(), "every receiver must belong to a body");
     for (const std::uint32_t body : body_of_receiver)
         require(body < scene.body_count(), "there is no such body");
-    impl_->scene = &scene;
+    impl_->scene = &scene.impl();
     impl_->settings = settings;
     impl_->now = at_rest;
     impl_->at_rest = std::move(at_rest);
@@ -166,8 +166,8 @@ FrameReport MovingReceivers::solve(const Progress& progress)
 {
     FrameReport report;
     Impl& impl = *impl_;
-    const std::vector<MovingBody>& bodies = impl.scene->impl().bodies;
-    const MovingEngine& engine = impl.scene->impl().now(report);
+    const std::vector<MovingBody>& bodies = impl.scene->bodies;
+    const MovingEngine& engine = impl.scene->now(report);
     Stopwatch watch;
     const auto is_moved = [&](std::size_t body) {
         return !impl.solved || bodies[body].version != impl.versions[body];
@@ -181,22 +181,23 @@ FrameReport MovingReceivers::solve(const Progress& progress)
         const std::uint32_t body = impl.body_of_receiver[i];
         const auto& placement = bodies[body].placement;
         if (is_moved(body) && placement)
-            impl.now[i] =
-                *placement == Placement{} ? impl.at_rest[i] : placed(impl.at_rest[i], *placement);
+            impl.now[i] = placed(impl.at_rest[i], *placement);
     }
     report.place += watch.lap();
     const double before = report.place + report.tree;
     impl.solved = false;
     if (impl.memory) {
-        impl.memory->solve(bodies, impl.now, impl.occlusion, report, progress);
+        check_receivers(impl.now);
+        impl.memory->solve(impl.occlusion, report, progress);
     } else {
         const std::vector<Occlusion> found =
             engine.solve(impl.now, impl.settings, progress).occlusion;
         for (std::size_t i = 0; i < found.size(); ++i) {
-            if (bodies[impl.body_of_receiver[i]].placement)
-                impl.occlusion[i] = found[i];
+            if (!bodies[impl.body_of_receiver[i]].placement)
+                continue;
+            impl.occlusion[i] = found[i];
+            ++report.solved;
         }
-        report.solved = found.size();
     }
     for (std::size_t body = 0; body < bodies.size(); ++body)
         impl.versions[body] = bodies[body].version;

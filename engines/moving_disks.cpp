@@ -1,6 +1,5 @@
 #include "engines/moving_engine.h"
 #include "engines/options.h"
-#include "surfels/stopwatch.h"
 #include "surfels/surfel.h"
 #include "surfels/topology.h"
 #include "tree/disks/disk_forest.h"
@@ -26,45 +25,27 @@ Geometry geometry_of(const Scene& scene)
     return make_geometry(scene, {.frame = Frame{}});
 }
 
-std::vector<DiskMesh> meshes_of(const MovingParts& parts)
+Octree octree_of(const Geometry& geometry, const Topology& topology, double large)
 {
-    std::vector<DiskMesh> meshes(parts.bodies);
-    std::vector<std::uint32_t> owner(parts.at_rest.positions.size(), parts.bodies);
-    std::vector<std::uint32_t> place(owner.size());
-    std::vector<std::vector<std::uint32_t>> triangles(parts.bodies);
-    for (std::uint32_t t = 0; t < parts.body_of_triangle.size(); ++t)
-        triangles[parts.body_of_triangle[t]].push_back(t);
-    for (std::uint32_t b = 0; b < parts.bodies; ++b) {
-        Scene& scene = meshes[b].scene;
-        for (const std::uint32_t t : triangles[b]) {
-            glm::uvec3 triangle = parts.at_rest.triangles[t];
-            for (int corner = 0; corner < 3; ++corner) {
-                const std::uint32_t vertex = triangle[corner];
-                if (std::exchange(owner[vertex], b) != b) {
-                    place[vertex] = static_cast<std::uint32_t>(scene.positions.size());
-                    meshes[b].vertices.push_back(vertex);
-                    scene.positions.emplace_back(parts.at_rest.positions[vertex]);
-                }
-                triangle[corner] = place[vertex];
-            }
-            scene.triangles.push_back(triangle);
-        }
-        meshes[b].topology = analyse_topology(geometry_of(scene));
-    }
-    return meshes;
+    const SurfelCloud cloud = surfels_of(geometry, large);
+    return build_octree(cloud.surfels, sides_of(cloud, topology));
 }
 
-Octree octree_of(const DiskMesh& mesh, double large)
-{
-    const SurfelCloud cloud = surfels_of(geometry_of(mesh.scene), large);
-    return build_octree(cloud.surfels, sides_of(cloud, mesh.topology));
-}
-
-DiskForest forest_of(const std::vector<DiskMesh>& meshes, double large)
+/// meshes: one is made of each body.
+DiskForest forest_of(const Geometry& at_rest, std::vector<BodyMesh>& bodies, double large,
+                     std::vector<DiskMesh>& meshes)
 {
     std::vector<Octree> octrees;
-    for (const DiskMesh& mesh : meshes)
-        octrees.push_back(octree_of(mesh, large));
+    for (BodyMesh& body : bodies) {
+        DiskMesh& mesh = meshes.emplace_back();
+        for (const std::uint32_t vertex : body.vertices)
+            mesh.scene.positions.emplace_back(at_rest.positions[vertex]);
+        mesh.scene.triangles = std::move(body.triangles);
+        mesh.vertices = std::move(body.vertices);
+        const Geometry geometry = geometry_of(mesh.scene);
+        mesh.topology = analyse_topology(geometry);
+        octrees.push_back(octree_of(geometry, mesh.topology, large));
+    }
     return DiskForest(std::move(octrees));
 }
 
@@ -78,13 +59,11 @@ public:
     {
         memory_.deform(body, at_rest);
     }
-    void solve(std::span<const MovingBody> bodies, std::span<const Receiver> now,
-               std::span<Occlusion> answers, FrameReport& report, const Progress& progress) override
+    void solve(std::span<Occlusion> answers, FrameReport& report, const Progress& progress) override
     {
-        static_cast<void>(bodies);  // the forest has been moved to them
-        check_receivers(now);
-        report.residual = residual_of(memory_.solve(forest_, now, answers, progress));
-        report.solved = now.size();
+        const DiskFrame frame = memory_.solve(forest_, answers, progress);
+        report.residual = residual_of(frame.residuals);
+        report.solved = frame.solved;
     }
 
 private:
@@ -94,47 +73,11 @@ private:
 
 class MovingDisks : public MovingEngine {
 public:
-    MovingDisks(const MovingParts& parts, const EngineChoice& choice)
-        : choice_(choice),
-          large_(large_area(parts.at_rest)),
-          meshes_(meshes_of(parts)),
-          forest_(forest_of(meshes_, large_)),
-          versions_(parts.bodies, 0)
+    MovingDisks(const Geometry& at_rest, std::vector<BodyMesh> bodies, const EngineChoice& choice)
+        : MovingEngine(choice, bodies.size()),
+          large_(large_area(at_rest)),
+          forest_(forest_of(at_rest, bodies, large_, meshes_))
     {
-    }
-
-    void move(std::span<const MovingBody> bodies, FrameReport& report) override
-    {
-        Stopwatch watch;
-        for (std::uint32_t b = 0; b < bodies.size(); ++b) {
-            const MovingBody& body = bodies[b];
-            if (body.version == versions_[b])
-                continue;
-            if (!body.placement)
-                forest_.hide(b);
-            else if (body.form)
-                deform(b, *body.form);
-            else
-                put(b, *body.placement);
-            versions_[b] = body.version;
-        }
-        forest_.update();
-        report.tree += watch.lap();
-    }
-
-    Solution solve(std::span<const Receiver> receivers, const SolveSettings& settings,
-                   const Progress& progress) const override
-    {
-        check_settings(choice_, settings);
-        check_receivers(receivers);
-        Stopwatch watch;
-        Solution solution;
-        DiskResult solved =
-            solve_disks(forest_.octree(), receivers, disk_options(settings), progress);
-        solution.occlusion = std::move(solved.occlusion);
-        solution.residual = residual_of(solved.residuals);
-        solution.seconds = watch.lap();
-        return solution;
     }
 
     std::unique_ptr<MovingMemory> remember(std::span<const Receiver> at_rest,
@@ -146,37 +89,49 @@ public:
     }
 
 private:
-    void put(std::uint32_t body, const Placement& placement)
+    void hide(std::uint32_t body) override { forest_.hide(body); }
+    void place(std::uint32_t body, const Placement& placement) override
     {
         if (deformed_.erase(body) > 0)
-            forest_.replace(body, octree_of(meshes_[body], large_));
+            replace(body, meshes_[body].scene);
         forest_.place(body, placement);
     }
-
     /// Built anew: that takes a fortieth of the time of solving (2.8 ms of 114 at 22,000 vertices),
     /// and a refitted tree would be the worse one.
-    void deform(std::uint32_t body, const std::vector<glm::vec3>& positions)
+    void deform(std::uint32_t body, const std::vector<glm::vec3>& positions) override
     {
-        DiskMesh mesh = meshes_[body];
-        for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-            mesh.scene.positions[v] = positions[mesh.vertices[v]];
-        forest_.replace(body, octree_of(mesh, large_));
+        Scene scene = meshes_[body].scene;
+        for (std::size_t v = 0; v < scene.positions.size(); ++v)
+            scene.positions[v] = positions[meshes_[body].vertices[v]];
+        replace(body, scene);
         deformed_.insert(body);
     }
+    void settle() override { forest_.update(); }
+    Solution answer(std::span<const Receiver> receivers, const SolveSettings& settings,
+                    const Progress& progress) const override
+    {
+        DiskResult solved =
+            solve_disks(forest_.octree(), receivers, disk_options(settings), progress);
+        return {std::move(solved.occlusion), 0.0, residual_of(solved.residuals)};
+    }
 
-    EngineChoice choice_;
+    void replace(std::uint32_t body, const Scene& scene)
+    {
+        forest_.replace(body, octree_of(geometry_of(scene), meshes_[body].topology, large_));
+    }
+
     double large_;
     std::vector<DiskMesh> meshes_;
     DiskForest forest_;
-    std::vector<std::uint64_t> versions_;  ///< of the bodies, as the forest has them
     std::set<std::uint32_t> deformed_;
 };
 
 }  // namespace
 
-std::unique_ptr<MovingEngine> moving_disks(const MovingParts& parts, const EngineChoice& choice)
+std::unique_ptr<MovingEngine> moving_disks(const Geometry& at_rest, std::vector<BodyMesh> bodies,
+                                           const EngineChoice& choice)
 {
-    return std::make_unique<MovingDisks>(parts, choice);
+    return std::make_unique<MovingDisks>(at_rest, std::move(bodies), choice);
 }
 
 }  // namespace surfelao

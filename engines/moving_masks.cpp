@@ -1,9 +1,11 @@
 #include "engines/moving_engine.h"
 #include "engines/options.h"
-#include "surfels/stopwatch.h"
 #include "tree/masks/forest.h"
 #include "tree/masks/memory.h"
 #include "tree/masks/solver.h"
+
+#include <optional>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -20,10 +22,8 @@ public:
     {
         memory_.deform(body, at_rest);
     }
-    void solve(std::span<const MovingBody> /*bodies*/, std::span<const Receiver> now,
-               std::span<Occlusion> answers, FrameReport& report, const Progress& progress) override
+    void solve(std::span<Occlusion> answers, FrameReport& report, const Progress& progress) override
     {
-        check_receivers(now);
         const MaskFrame frame = memory_.solve(answers, progress);
         report.place += frame.place;
         report.solved = frame.solved;
@@ -36,43 +36,10 @@ private:
 
 class MovingMasks : public MovingEngine {
 public:
-    MovingMasks(const MovingParts& parts, const EngineChoice& choice)
-        : choice_(choice),
-          forest_(parts.at_rest, parts.body_of_triangle, parts.bodies),
-          versions_(parts.bodies, 0)
+    MovingMasks(const Geometry& at_rest, std::vector<BodyMesh> bodies, const EngineChoice& choice)
+        : MovingEngine(choice, bodies.size()), forest_(at_rest, std::move(bodies))
     {
         static_cast<void>(kernel_set_of(choice.instructions));
-    }
-
-    void move(std::span<const MovingBody> bodies, FrameReport& report) override
-    {
-        Stopwatch watch;
-        for (std::uint32_t k = 0; k < bodies.size(); ++k) {
-            const MovingBody& body = bodies[k];
-            if (body.version == versions_[k])
-                continue;
-            if (body.form != nullptr)
-                forest_.deform(k, *body.form);
-            else if (body.placement)
-                forest_.place(k, *body.placement);
-            else
-                forest_.hide(k);
-            versions_[k] = body.version;
-        }
-        report.tree += watch.lap();
-    }
-
-    [[nodiscard]] Solution solve(std::span<const Receiver> receivers, const SolveSettings& settings,
-                                 const Progress& progress) const override
-    {
-        check_settings(choice_, settings);
-        check_receivers(receivers);
-        Stopwatch watch;
-        Solution solution;
-        solution.occlusion = solve_masks(forest_.nodes(), forest_.roots(), receivers,
-                                         mask_options(choice_, settings), progress);
-        solution.seconds = watch.lap();
-        return solution;
     }
 
     [[nodiscard]] std::unique_ptr<MovingMemory> remember(
@@ -80,21 +47,37 @@ public:
         const MovingSettings& settings) const override
     {
         return std::make_unique<MaskReceiverMemory>(forest_, at_rest, body_of_receiver,
-                                                    mask_options(choice_, settings),
+                                                    mask_options(choice(), settings),
                                                     settings.tolerance);
     }
 
 private:
-    EngineChoice choice_;
+    void hide(std::uint32_t body) override { forest_.hide(body); }
+    void place(std::uint32_t body, const Placement& placement) override
+    {
+        forest_.place(body, placement);
+    }
+    void deform(std::uint32_t body, const std::vector<glm::vec3>& positions) override
+    {
+        forest_.deform(body, positions);
+    }
+    Solution answer(std::span<const Receiver> receivers, const SolveSettings& settings,
+                    const Progress& progress) const override
+    {
+        return {solve_masks(forest_.nodes(), forest_.roots(), receivers,
+                            mask_options(choice(), settings), progress),
+                0.0, std::nullopt};
+    }
+
     MaskForest forest_;
-    std::vector<std::uint64_t> versions_;  ///< of the bodies, as the forest has them
 };
 
 }  // namespace
 
-std::unique_ptr<MovingEngine> moving_masks(const MovingParts& parts, const EngineChoice& choice)
+std::unique_ptr<MovingEngine> moving_masks(const Geometry& at_rest, std::vector<BodyMesh> bodies,
+                                           const EngineChoice& choice)
 {
-    return std::make_unique<MovingMasks>(parts, choice);
+    return std::make_unique<MovingMasks>(at_rest, std::move(bodies), choice);
 }
 
 }  // namespace surfelao

@@ -1,9 +1,9 @@
 #include "reference/moving_rays.h"
 #include "engines/moving_engine.h"
 #include "engines/options.h"
-#include "surfels/stopwatch.h"
 
-#include <vector>
+#include <optional>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -11,57 +11,40 @@ namespace {
 /// Answers depend on the frame alone, so nothing is remembered.
 class MovingRays : public MovingEngine {
 public:
-    MovingRays(const MovingParts& parts, const EngineChoice& choice)
-        : choice_(choice),
-          scene_(parts.at_rest, parts.body_of_triangle, isa_of(choice.instructions)),
-          versions_(parts.bodies, 0)
+    MovingRays(const Geometry& at_rest, std::vector<BodyMesh> bodies, const EngineChoice& choice)
+        : MovingEngine(choice, bodies.size()),
+          scene_(at_rest, std::move(bodies), isa_of(choice.instructions))
     {
-    }
-
-    void move(std::span<const MovingBody> bodies, FrameReport& report) override
-    {
-        Stopwatch watch;
-        for (std::uint32_t b = 0; b < bodies.size(); ++b) {
-            const MovingBody& body = bodies[b];
-            if (body.version == versions_[b])
-                continue;
-            if (!body.placement)
-                scene_.hide(b);
-            else if (body.form)
-                scene_.deform(b, *body.form);
-            else
-                scene_.place(b, matrix_of(*body.placement));
-            versions_[b] = body.version;
-        }
-        report.place += watch.lap();
-        now_ = &scene_.now();
-        report.tree += watch.lap();
-    }
-
-    Solution solve(std::span<const Receiver> receivers, const SolveSettings& settings,
-                   const Progress& progress) const override
-    {
-        check_settings(choice_, settings);
-        check_receivers(receivers);
-        Stopwatch watch;
-        Solution solution;
-        solution.occlusion = trace_occlusion(*now_, receivers, ray_options(settings), progress);
-        solution.seconds = watch.lap();
-        return solution;
     }
 
 private:
-    EngineChoice choice_;
+    void hide(std::uint32_t body) override { scene_.hide(body); }
+    void place(std::uint32_t body, const Placement& placement) override
+    {
+        scene_.place(body, matrix_of(placement));
+    }
+    void deform(std::uint32_t body, const std::vector<glm::vec3>& positions) override
+    {
+        scene_.deform(body, positions);
+    }
+    void settle() override { now_ = &scene_.now(); }
+    Solution answer(std::span<const Receiver> receivers, const SolveSettings& settings,
+                    const Progress& progress) const override
+    {
+        return {trace_occlusion(*now_, receivers, ray_options(settings), progress), 0.0,
+                std::nullopt};
+    }
+
     MovingRayScene scene_;
     const RayScene* now_ = &scene_.now();
-    std::vector<std::uint64_t> versions_;  ///< of the bodies, as the scene has them
 };
 
 }  // namespace
 
-std::unique_ptr<MovingEngine> moving_rays(const MovingParts& parts, const EngineChoice& choice)
+std::unique_ptr<MovingEngine> moving_rays(const Geometry& at_rest, std::vector<BodyMesh> bodies,
+                                          const EngineChoice& choice)
 {
-    return std::make_unique<MovingRays>(parts, choice);
+    return std::make_unique<MovingRays>(at_rest, std::move(bodies), choice);
 }
 
 }  // namespace surfelao

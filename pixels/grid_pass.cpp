@@ -62,7 +62,7 @@ glm::dmat4 box_to_view(const PlacedGrid& object, const View& view)
     glm::dmat4 result(1.0);
     for (int axis = 0; axis < 3; ++axis)
         result[axis] = glm::dvec4(at.scale * half[axis] * turn[axis], 0.0);
-    const glm::dvec3 place = at.scale * (at.rotation * middle) + at.translation;
+    const glm::dvec3 place = placed_point(middle, at);
     result[3] = glm::dvec4((place - glm::dvec3(view.eye)) * axes_of(view), 1.0);
     return result;
 }

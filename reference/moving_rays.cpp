@@ -22,33 +22,6 @@ struct RayBody {
     bool shown = true;
 };
 
-/// Triangles over the body's own vertices.
-std::vector<std::vector<glm::uvec3>> split_bodies(const Geometry& geometry,
-                                                  std::span<const std::uint32_t> body_of_triangle,
-                                                  std::vector<RayBody>& bodies)
-{
-    std::vector<std::vector<glm::uvec3>> triangles(bodies.size());
-    for (std::size_t t = 0; t < body_of_triangle.size(); ++t)
-        triangles[body_of_triangle[t]].push_back(geometry.triangles[t]);
-    constexpr std::uint32_t kNobody = 0xffffffff;
-    std::vector<std::uint32_t> owner(geometry.positions.size(), kNobody), place(owner.size());
-    for (std::uint32_t b = 0; b < bodies.size(); ++b) {
-        RayBody& body = bodies[b];
-        for (glm::uvec3& triangle : triangles[b]) {
-            for (int corner = 0; corner < 3; ++corner) {
-                const std::uint32_t vertex = triangle[corner];
-                if (std::exchange(owner[vertex], b) != b) {
-                    place[vertex] = static_cast<std::uint32_t>(body.vertices.size());
-                    body.vertices.push_back(vertex);
-                    body.at_rest.push_back(geometry.positions[vertex]);
-                }
-                triangle[corner] = place[vertex];
-            }
-        }
-    }
-    return triangles;
-}
-
 }  // namespace
 
 struct MovingRayScene::Impl {
@@ -92,25 +65,23 @@ struct MovingRayScene::Impl {
     }
 };
 
-MovingRayScene::MovingRayScene(const Geometry& geometry,
-                               std::span<const std::uint32_t> body_of_triangle, RayScene::Isa isa)
+MovingRayScene::MovingRayScene(const Geometry& geometry, std::vector<BodyMesh> bodies,
+                               RayScene::Isa isa)
 {
     keep_floating_point_mode();
     impl_ = std::make_unique<Impl>(device_for(isa));
-    std::uint32_t count = 1;
-    for (const std::uint32_t body : body_of_triangle)
-        count = std::max(count, body + 1);
-    impl_->bodies.resize(count);
-    const auto triangles = split_bodies(geometry, body_of_triangle, impl_->bodies);
-    for (std::uint32_t b = 0; b < count; ++b) {
-        if (triangles[b].empty())
+    for (BodyMesh& from : bodies) {
+        RayBody& body = impl_->bodies.emplace_back();
+        if (from.triangles.empty())
             continue;
-        RayBody& body = impl_->bodies[b];
-        const EmbreeMesh mesh = new_mesh(impl_->device, body.vertices.size(), triangles[b].size());
+        for (const std::uint32_t vertex : from.vertices)
+            body.at_rest.push_back(geometry.positions[vertex]);
+        const EmbreeMesh mesh = new_mesh(impl_->device, body.at_rest.size(), from.triangles.size());
         body.mesh = mesh.geometry;
         body.buffer = mesh.vertices;
         std::ranges::copy(body.at_rest, mesh.vertices);
-        std::ranges::copy(triangles[b], mesh.triangles);
+        std::ranges::copy(from.triangles, mesh.triangles);
+        body.vertices = std::move(from.vertices);
         rtcSetGeometryBuildQuality(body.mesh, RTC_BUILD_QUALITY_MEDIUM);
         rtcCommitGeometry(body.mesh);
         rtcAttachGeometry(impl_->scene.impl().scene, body.mesh);
@@ -144,9 +115,10 @@ void MovingRayScene::deform(std::uint32_t body, std::span<const glm::vec3> posit
 
 const RayScene& MovingRayScene::now()
 {
-    if (std::exchange(impl_->changed, false)) {
+    if (impl_->changed) {
         rtcCommitScene(impl_->scene.impl().scene);
         check_device(impl_->device);
+        impl_->changed = false;
     }
     return impl_->scene;
 }

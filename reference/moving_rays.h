@@ -1,6 +1,6 @@
 /// moving_rays.h: rays in a scene whose bodies move: the opponent of every frame.
 ///
-///     MovingRayScene scene(geometry, body_of_triangle);
+///     MovingRayScene scene(geometry, split_bodies(geometry, body_of_triangle));
 ///     scene.place(1, matrix);
 ///     trace_occlusion(scene.now(), receivers, options);
 ///
@@ -12,6 +12,7 @@
 #pragma once
 
 #include "reference/rays.h"
+#include "surfels/bodies.h"
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
@@ -19,14 +20,15 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace surfelao {
 
 /// One thread at a time may move it; what now() gives is for any number.
 class MovingRayScene {
 public:
-    /// body_of_triangle: one per triangle; bodies stand at rest. O(n log n). Throws as RayScene.
-    MovingRayScene(const Geometry& geometry, std::span<const std::uint32_t> body_of_triangle,
+    /// bodies: split_bodies(geometry); they stand at rest. O(n log n). Throws as RayScene.
+    MovingRayScene(const Geometry& geometry, std::vector<BodyMesh> bodies,
                    RayScene::Isa isa = RayScene::Isa::best);
     ~MovingRayScene();
     MovingRayScene(MovingRayScene&&) noexcept;
@@ -41,7 +43,7 @@ public:
 
     /// As the bodies stand now; valid until one of them moves. For trace_occlusion alone: the
     /// triangles of its hits are counted within each body. Throws std::runtime_error where
-    /// Embree refuses.
+    /// Embree refuses; the next call tries again.
     [[nodiscard]] const RayScene& now();
 
 private:

@@ -24,7 +24,7 @@ Placement inverse(const Placement& placement)
 Placement operator*(const Placement& after, const Placement& before)
 {
     return {after.rotation * before.rotation, after.scale * before.scale,
-            after.scale * (after.rotation * before.translation) + after.translation};
+            placed_point(before.translation, after)};
 }
 
 std::optional<Placement> placement_of(const glm::dmat4& matrix)
@@ -50,12 +50,18 @@ std::optional<Placement> placement_of(const glm::dmat4& matrix)
     return placement;
 }
 
+glm::dvec3 placed_point(const glm::dvec3& point, const Placement& placement)
+{
+    return placement.scale * (placement.rotation * point) + placement.translation;
+}
+
 Receiver placed(const Receiver& receiver, const Placement& placement)
 {
+    if (placement == Placement{})
+        return receiver;
     const glm::dvec3 normal = placement.rotation * glm::dvec3(receiver.normal);
     const double length = glm::length(normal);
-    return {glm::vec3(placement.scale * (placement.rotation * glm::dvec3(receiver.position)) +
-                      placement.translation),
+    return {glm::vec3(placed_point(receiver.position, placement)),
             length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0f),
             static_cast<float>(placement.scale * receiver.offset)};
 }

@@ -32,7 +32,9 @@ struct Placement {
 /// unevenly), flat, or not finite. Such bodies are deformed (MovingScene::deform).
 [[nodiscard]] std::optional<Placement> placement_of(const glm::dmat4& matrix);
 
-/// Offsets scale with the body.
+/// Where a point of the body is.
+[[nodiscard]] glm::dvec3 placed_point(const glm::dvec3& point, const Placement& placement);
+/// Offsets scale with the body; where nothing has moved no bit changes.
 [[nodiscard]] Receiver placed(const Receiver& receiver, const Placement& placement);
 
 }  // namespace surfelao

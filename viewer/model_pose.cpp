@@ -34,11 +34,6 @@ glm::vec3 turned(const glm::dmat3& by, glm::vec3 direction)
     return length > 0.0 ? glm::vec3(there / length) : glm::vec3(0.0f);
 }
 
-glm::dvec3 place_of(const Placement& placement, glm::dvec3 p)
-{
-    return placement.scale * (placement.rotation * p) + placement.translation;
-}
-
 std::size_t part_of(const Scene& scene, std::uint32_t vertex)
 {
     const auto behind = std::ranges::upper_bound(scene.parts, vertex, {}, &Part::first_vertex);
@@ -66,7 +61,7 @@ public:
         const glm::dmat3& rotation = placement.rotation;
         for (const std::uint32_t v : bodies_.vertices[body]) {
             glm::vec3& p = pose_.shape.positions[v];
-            p = glm::vec3(place_of(placement, p));
+            p = glm::vec3(placed_point(p, placement));
             pose_.shape.normals[v] = turned(rotation, pose_.shape.normals[v]);
         }
         for (const std::uint32_t wedge : bodies_.wedges[body]) {
@@ -270,7 +265,7 @@ ModelPose pose_of(const Model& base, const Bodies& bodies, const Movables& movab
                     ? glm::dvec3(parts[p].from_rest *
                                  glm::dvec4(base.mesh->scene.positions[v], 1.0))
                     : parts[p].positions[v - base.mesh->scene.parts[p].first_vertex];
-            return place_of(by_hand, (world - frame.centre) / frame.diagonal);
+            return placed_point((world - frame.centre) / frame.diagonal, by_hand);
         });
     }
     ModelPose pose = posing.finish();
@@ -363,7 +358,7 @@ Scene posed_scene(const Model& base, const Bodies& bodies, const ModelPose& pose
             continue;
         const glm::dvec3 unit =
             body.state == BodyState::placed
-                ? place_of(body.placement, (scene.positions[v] - frame.centre) / frame.diagonal)
+                ? placed_point((scene.positions[v] - frame.centre) / frame.diagonal, body.placement)
                 : glm::dvec3(pose.shape.positions[v]);
         scene.positions[v] = frame.centre + frame.diagonal * unit;
     }

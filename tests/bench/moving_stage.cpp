@@ -25,19 +25,8 @@ using scenes::operator+=;
 /// From places in the world to places in the unit frame.
 Placement in_frame(const Placement& world, const Frame& frame)
 {
-    const glm::dvec3 moved = world.scale * (world.rotation * frame.centre) + world.translation;
-    return {world.rotation, world.scale, (moved - frame.centre) / frame.diagonal};
-}
-
-glm::dvec3 moved_by(const Placement& placement, glm::dvec3 p)
-{
-    return placement.scale * (placement.rotation * p) + placement.translation;
-}
-
-/// First `inner`, then `outer`; both of scale 1.
-Placement after(const Placement& outer, const Placement& inner)
-{
-    return {outer.rotation * inner.rotation, 1.0, moved_by(outer, inner.translation)};
+    return {world.rotation, world.scale,
+            (placed_point(frame.centre, world) - frame.centre) / frame.diagonal};
 }
 
 glm::dmat3 about_x(double angle)
@@ -79,7 +68,7 @@ MovingStage::MovingStage(std::string title, const std::vector<Scene>& parts,
         body_of_vertex.insert(body_of_vertex.end(), parts[b].positions.size(), b);
         for (const std::vector<Placement>& pose : world_poses)
             for (const glm::dvec3 p : parts[b].positions)
-                box.include(moved_by(pose[b], p));
+                box.include(placed_point(p, pose[b]));
     }
     geometry = make_geometry(scene, {.frame = frame_of(box)});
     for (std::size_t t = 0; t < geometry.triangles.size(); ++t)
@@ -284,22 +273,20 @@ MovingStage robot_stage()
         const double phase = 2.0 * std::numbers::pi * k / kPoses;
         const Placement hip{glm::dmat3(1.0), 1.0, {0.0, 0.0, 0.02 * std::cos(2.0 * phase)}};
         const Placement torso =
-            after(hip, turned_about({0, 0, 1.1}, about_x(0.06 * std::sin(2.0 * phase))));
+            hip * turned_about({0, 0, 1.1}, about_x(0.06 * std::sin(2.0 * phase)));
         const Placement head =
-            after(torso, turned_about({0, 0, 1.6}, about_x(-0.1 * std::sin(2.0 * phase))));
+            torso * turned_about({0, 0, 1.6}, about_x(-0.1 * std::sin(2.0 * phase)));
         std::vector<Placement> pose = {{}, hip, torso, head};
         for (const double side : {-1.0, 1.0}) {
             const double swing = side * std::sin(phase), lift = 1.0 + side * std::cos(phase);
             const Placement arm =
-                after(torso, turned_about({0.31 * side, 0, 1.53}, about_x(0.6 * swing)));
+                torso * turned_about({0.31 * side, 0, 1.53}, about_x(0.6 * swing));
             const Placement thigh =
-                after(hip, turned_about({0.11 * side, 0, 0.92}, about_x(-0.5 * swing)));
+                hip * turned_about({0.11 * side, 0, 0.92}, about_x(-0.5 * swing));
             pose.push_back(arm);
-            pose.push_back(
-                after(arm, turned_about({0.31 * side, 0, 1.18}, about_x(0.3 + 0.2 * swing))));
+            pose.push_back(arm * turned_about({0.31 * side, 0, 1.18}, about_x(0.3 + 0.2 * swing)));
             pose.push_back(thigh);
-            pose.push_back(
-                after(thigh, turned_about({0.11 * side, 0, 0.49}, about_x(-0.35 * lift))));
+            pose.push_back(thigh * turned_about({0.11 * side, 0, 0.49}, about_x(-0.35 * lift)));
         }
         poses.push_back(std::move(pose));
     }

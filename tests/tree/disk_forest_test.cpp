@@ -42,10 +42,10 @@ TEST(DiskForest, OneBodyIsItsOctreeAndItsMemoryAnswersAsSolveDisks)
         const std::vector<std::uint32_t> of(body.receivers.size(), 0);
         DiskMemory memory(forest, body.receivers, of, {.passes = passes});
         std::vector<Occlusion> answers(of.size());
-        const std::vector<double> residuals = memory.solve(forest, body.receivers, answers);
+        const DiskFrame frame = memory.solve(forest, answers);
         const DiskResult right = solve_disks(body.octree, body.receivers, {.passes = passes});
         EXPECT_TRUE(same_bytes(right.occlusion, answers)) << passes;
-        EXPECT_EQ(right.residuals, residuals) << passes;
+        EXPECT_EQ(right.residuals, frame.residuals) << passes;
     }
 }
 
@@ -83,14 +83,11 @@ TEST(DiskForest, WhatIsRememberedAtOneScaleIsNotTakenForAnother)
     const std::vector<std::uint32_t> of(body.receivers.size(), 0);
     DiskMemory memory(forest, body.receivers, of, options);
     std::vector<Occlusion> answers(of.size());
-    memory.solve(forest, body.receivers, answers);
+    memory.solve(forest, answers);
     const Placement half{.scale = 0.5};
-    std::vector<Receiver> now;
-    for (const Receiver& receiver : body.receivers)
-        now.push_back(placed(receiver, half));
     forest.place(0, half);
     forest.update();
-    memory.solve(forest, now, answers);
+    memory.solve(forest, answers);
     options.definition.max_distance = 0.4f;  // of a body twice as large: the same
     const DiskResult right = solve_disks(body.octree, body.receivers, options);
     EXPECT_LE(difference(right.occlusion, answers).largest, 1e-4);

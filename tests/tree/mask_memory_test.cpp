@@ -33,7 +33,7 @@ struct TwoBalls {
     /// After a move, with masks kept or not.
     std::vector<Occlusion> answers(const MaskOptions& options, std::size_t keep_most) const
     {
-        MaskForest forest(geometry, body_of_triangle, 2);
+        MaskForest forest(geometry, split_bodies(geometry, body_of_triangle));
         MaskMemory memory(forest, receivers, body_of_receiver, options, 0.0f, keep_most);
         std::vector<Occlusion> answers(receivers.size());
         memory.solve(answers, {});

@@ -39,7 +39,7 @@ TEST(MaskRefit, ARigidFormHasTheNodesOfAPlacement)
         glm::dmat3(glm::rotate(glm::dmat4(1.0), 1.1, glm::normalize(glm::dvec3(1, 2, -1))));
     placement.translation = {0.02, -0.05, 0.01};
     const std::vector<std::uint32_t> body(ball.triangles.size(), 1);
-    MaskForest forest(ball, body, 2);
+    MaskForest forest(ball, split_bodies(ball, body));
     forest.place(1, placement);
     const MaskNode* placed_nodes = forest.nodes();
 

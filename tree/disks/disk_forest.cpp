@@ -24,12 +24,6 @@ std::array<NodeRange, 2> kinds_of(std::uint32_t two_sided_from, std::size_t coun
     return {{{0, two_sided_from}, {two_sided_from, static_cast<std::uint32_t>(count)}}};
 }
 
-glm::vec3 moved_point(const Placement& placement, const glm::vec3& p)
-{
-    return glm::vec3(placement.scale * (placement.rotation * glm::dvec3(p)) +
-                     placement.translation);
-}
-
 glm::vec3 moved_normal(const Placement& placement, const glm::vec3& n)
 {
     return glm::vec3(placement.rotation * glm::dvec3(n));
@@ -115,24 +109,24 @@ void DiskForest::move(const Body& body)
     for (int kind = 0; kind < 2; ++kind) {
         const std::uint32_t node_shift = body.nodes[kind].begin - nodes[kind].begin;
         const std::uint32_t surfel_shift = body.surfels[kind].begin - surfels[kind].begin;
-        tbb::parallel_for(Range(nodes[kind].begin, nodes[kind].end, kPiece),
-                          [&](const Range& some) {
-                              for (std::size_t i = some.begin(); i < some.end(); ++i) {
-                                  OctreeNode node = own.nodes[i];
-                                  node.center = moved_point(body.placement, node.center);
-                                  node.normal = moved_normal(body.placement, node.normal);
-                                  node.radius *= scale;
-                                  node.area *= scale * scale;
-                                  node.next += node_shift;
-                                  node.first_surfel += surfel_shift;
-                                  octree_.nodes[static_cast<std::uint32_t>(i) + node_shift] = node;
-                              }
-                          });
+        tbb::parallel_for(
+            Range(nodes[kind].begin, nodes[kind].end, kPiece), [&](const Range& some) {
+                for (std::size_t i = some.begin(); i < some.end(); ++i) {
+                    OctreeNode node = own.nodes[i];
+                    node.center = glm::vec3(placed_point(node.center, body.placement));
+                    node.normal = moved_normal(body.placement, node.normal);
+                    node.radius *= scale;
+                    node.area *= scale * scale;
+                    node.next += node_shift;
+                    node.first_surfel += surfel_shift;
+                    octree_.nodes[static_cast<std::uint32_t>(i) + node_shift] = node;
+                }
+            });
         tbb::parallel_for(
             Range(surfels[kind].begin, surfels[kind].end, kPiece), [&](const Range& some) {
                 for (std::size_t i = some.begin(); i < some.end(); ++i) {
                     Surfel surfel = own.surfels[i];
-                    surfel.position = moved_point(body.placement, surfel.position);
+                    surfel.position = glm::vec3(placed_point(surfel.position, body.placement));
                     surfel.normal = moved_normal(body.placement, surfel.normal);
                     surfel.area *= scale * scale;
                     octree_.surfels[static_cast<std::uint32_t>(i) + surfel_shift] = surfel;

@@ -1,5 +1,6 @@
 #include "tree/disks/disk_memory.h"
 
+#include "surfels/bodies.h"
 #include "tree/disks/correction.h"
 #include "tree/receiver_groups.h"
 
@@ -74,8 +75,8 @@ struct Emitters {
 };
 
 struct BodyMemory {
-    std::vector<std::uint32_t> members;  ///< its receivers, of all
-    std::vector<Receiver> now;
+    std::vector<std::uint32_t> members;   ///< its receivers, of all
+    std::vector<Receiver> at_rest, now;   ///< the same
     std::optional<BodyGroups> receivers;  ///< empty: to be formed
     std::vector<Emitters> sides;          ///< empty: to be formed
     std::uint64_t shape = 0;              ///< of the octree that they are of
@@ -89,20 +90,22 @@ using FarSpan = std::span<FarVisibility>;
 struct DiskMemory::Impl {
     DiskOptions options;
     GatherSettings settings, beyond;
-    std::vector<Receiver> at_rest;
     std::vector<BodyMemory> bodies;
     EmitterVisibility visibility;
 
     bool limited() const { return settings.all_two_sided; }
 
     /// Forms what is missing and moves what is there. Returns the leaves that will be asked.
-    std::uint64_t prepare(const DiskForest& forest, std::span<const Receiver> now);
+    std::uint64_t prepare(const DiskForest& forest);
+    bool is_own_found(const DiskForest::Body& body, const BodyMemory& memory) const;
     void find_own(const DiskForest::Body& body, BodyMemory& memory, ProgressMeter& meter) const;
     double correct(const DiskForest& forest, int pass, ProgressMeter& meter);
-    void answer(const DiskForest& forest, std::span<Occlusion> answers, ProgressMeter& meter);
+    /// Returns how many.
+    std::uint64_t answer(const DiskForest& forest, std::span<Occlusion> answers,
+                         ProgressMeter& meter);
 };
 
-std::uint64_t DiskMemory::Impl::prepare(const DiskForest& forest, std::span<const Receiver> now)
+std::uint64_t DiskMemory::Impl::prepare(const DiskForest& forest)
 {
     std::uint64_t work = 0;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -110,15 +113,11 @@ std::uint64_t DiskMemory::Impl::prepare(const DiskForest& forest, std::span<cons
         BodyMemory& memory = bodies[b];
         if (!body.shown)
             continue;
-        if (!memory.receivers) {
-            std::vector<Receiver> own;
-            for (const std::uint32_t i : memory.members)
-                own.push_back(at_rest[i]);
-            memory.receivers.emplace(own);
-        }
-        memory.now.clear();
-        for (const std::uint32_t i : memory.members)
-            memory.now.push_back(now[i]);
+        if (!memory.receivers)
+            memory.receivers.emplace(memory.at_rest);
+        std::ranges::transform(memory.at_rest, memory.now.begin(), [&](const Receiver& receiver) {
+            return placed(receiver, body.placement);
+        });
         move_groups(memory.receivers->at_rest, body.placement, memory.receivers->now);
         work += memory.receivers->at_rest.leaves.size();
         if (options.passes == 1)
@@ -131,22 +130,25 @@ std::uint64_t DiskMemory::Impl::prepare(const DiskForest& forest, std::span<cons
             memory.shape = body.shape;
             memory.own_scale = 0.0;
         }
+        const int times = options.passes - (is_own_found(body, memory) ? 1 : 0);
         for (Emitters& side : memory.sides) {
             move_groups(side.groups.at_rest, body.placement, side.groups.now);
-            work += side.groups.at_rest.leaves.size() * static_cast<unsigned>(options.passes);
+            work += side.groups.at_rest.leaves.size() * static_cast<unsigned>(times);
         }
     }
     return work;
 }
 
 /// Where distances do not count, what a body hides from itself is the same at any size.
+bool DiskMemory::Impl::is_own_found(const DiskForest::Body& body, const BodyMemory& memory) const
+{
+    return limited() ? memory.own_scale == body.placement.scale : memory.own_scale > 0.0;
+}
+
 void DiskMemory::Impl::find_own(const DiskForest::Body& body, BodyMemory& memory,
                                 ProgressMeter& meter) const
 {
-    const bool found =
-        limited() ? memory.own_scale == body.placement.scale : memory.own_scale > 0.0;
-    if (found)
-        return;
+    memory.own_scale = 0.0;  // until all is found
     GatherSettings alone = beyond;
     alone.definition.max_distance /= static_cast<float>(body.placement.scale);
     EmitterVisibility all;
@@ -176,7 +178,8 @@ double DiskMemory::Impl::correct(const DiskForest& forest, int pass, ProgressMet
             continue;
         GatherSettings asked = beyond;
         if (pass == 1) {
-            find_own(body, bodies[b], meter);
+            if (!is_own_found(body, bodies[b]))
+                find_own(body, bodies[b], meter);
             asked.left_out[0] = body.nodes[0];
             asked.left_out[1] = body.nodes[1];
         }
@@ -221,9 +224,10 @@ double DiskMemory::Impl::correct(const DiskForest& forest, int pass, ProgressMet
     return changed > 0 ? std::sqrt(change / static_cast<double>(changed)) : 0.0;
 }
 
-void DiskMemory::Impl::answer(const DiskForest& forest, std::span<Occlusion> answers,
-                              ProgressMeter& meter)
+std::uint64_t DiskMemory::Impl::answer(const DiskForest& forest, std::span<Occlusion> answers,
+                                       ProgressMeter& meter)
 {
+    std::uint64_t count = 0;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         BodyMemory& memory = bodies[b];
         if (!forest.bodies()[b].shown)
@@ -237,7 +241,9 @@ void DiskMemory::Impl::answer(const DiskForest& forest, std::span<Occlusion> ans
         for (std::size_t i = 0; i < memory.members.size(); ++i)
             answers[memory.members[i]] =
                 to_occlusion(asked.sums[i], memory.now[i].normal, options.strength);
+        count += memory.members.size();
     }
+    return count;
 }
 
 DiskMemory::DiskMemory(const DiskForest& forest, std::span<const Receiver> at_rest,
@@ -248,10 +254,15 @@ DiskMemory::DiskMemory(const DiskForest& forest, std::span<const Receiver> at_re
     impl_->options = options;
     impl_->settings = gather_settings(options);
     impl_->beyond = beyond_settings(options);
-    impl_->at_rest.assign(at_rest.begin(), at_rest.end());
     impl_->bodies.resize(forest.bodies().size());
-    for (std::uint32_t i = 0; i < body_of_receiver.size(); ++i)
-        impl_->bodies.at(body_of_receiver[i]).members.push_back(i);
+    auto members = members_of(body_of_receiver, impl_->bodies.size());
+    for (std::size_t b = 0; b < members.size(); ++b) {
+        BodyMemory& memory = impl_->bodies[b];
+        memory.members = std::move(members[b]);
+        memory.at_rest.resize(memory.members.size());
+        memory.now.resize(memory.members.size());
+        deform(static_cast<std::uint32_t>(b), at_rest);
+    }
 }
 DiskMemory::~DiskMemory() = default;
 DiskMemory::DiskMemory(DiskMemory&&) noexcept = default;
@@ -260,16 +271,16 @@ DiskMemory& DiskMemory::operator=(DiskMemory&&) noexcept = default;
 void DiskMemory::deform(std::uint32_t body, std::span<const Receiver> at_rest)
 {
     BodyMemory& memory = impl_->bodies.at(body);
-    for (const std::uint32_t i : memory.members)
-        impl_->at_rest[i] = at_rest[i];
+    std::ranges::transform(memory.members, memory.at_rest.begin(),
+                           [&](std::uint32_t i) { return at_rest[i]; });
     memory.receivers.reset();
 }
 
-std::vector<double> DiskMemory::solve(const DiskForest& forest, std::span<const Receiver> now,
-                                      std::span<Occlusion> answers, const Progress& progress)
+DiskFrame DiskMemory::solve(const DiskForest& forest, std::span<Occlusion> answers,
+                            const Progress& progress)
 {
     const Octree& octree = forest.octree();
-    ProgressMeter meter(progress, impl_->prepare(forest, now));
+    ProgressMeter meter(progress, impl_->prepare(forest));
     EmitterVisibility& visibility = impl_->visibility;
     visibility.node_front.assign(octree.nodes.size(), {});
     visibility.surfel_front.assign(octree.surfels.size(), {});
@@ -277,14 +288,14 @@ std::vector<double> DiskMemory::solve(const DiskForest& forest, std::span<const 
     visibility.node_back.assign(two_sided ? octree.nodes.size() : 0, {});
     visibility.surfel_back.assign(two_sided ? octree.surfels.size() : 0, {});
 
-    std::vector<double> residuals;
+    DiskFrame frame;
     for (int pass = 1; pass < impl_->options.passes; ++pass) {
-        residuals.push_back(impl_->correct(forest, pass, meter));
-        if (residuals.back() <= kSettled)
+        frame.residuals.push_back(impl_->correct(forest, pass, meter));
+        if (frame.residuals.back() <= kSettled)
             break;
     }
-    impl_->answer(forest, answers, meter);
-    return residuals;
+    frame.solved = impl_->answer(forest, answers, meter);
+    return frame;
 }
 
 }  // namespace surfelao

@@ -23,6 +23,11 @@
 
 namespace surfelao {
 
+struct DiskFrame {
+    std::vector<double> residuals;  ///< as in DiskResult
+    std::uint64_t solved = 0;       ///< receivers that were answered
+};
+
 class DiskMemory {
 public:
     /// body_of_receiver: one per receiver, which stands on its body at rest. Throws SettingsError
@@ -36,11 +41,10 @@ public:
     /// at_rest: all receivers; those of the body have changed.
     void deform(std::uint32_t body, std::span<const Receiver> at_rest);
 
-    /// The forest as it is now, of the bodies with which the memory was made. now: all receivers
-    /// where they stand. Answers of hidden bodies are left as they are. Returns the residuals of
-    /// DiskResult. Throws Cancelled.
-    std::vector<double> solve(const DiskForest& forest, std::span<const Receiver> now,
-                              std::span<Occlusion> answers, const Progress& progress = {});
+    /// The forest as it is now, of the bodies with which the memory was made. Answers of hidden
+    /// bodies are left as they are. Throws Cancelled.
+    DiskFrame solve(const DiskForest& forest, std::span<Occlusion> answers,
+                    const Progress& progress = {});
 
 private:
     struct Impl;

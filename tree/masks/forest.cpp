@@ -20,69 +20,22 @@
 namespace surfelao {
 namespace {
 
-/// The triangles of each body, in their order.
-std::vector<std::vector<std::uint32_t>> triangles_of(
-    std::span<const std::uint32_t> body_of_triangle, std::uint32_t bodies)
+/// What a tree asks of a geometry, of one body. first_at: room for one per vertex of the geometry.
+Geometry geometry_of(const Geometry& geometry, BodyMesh& body, std::vector<std::uint32_t>& first_at)
 {
-    std::vector<std::vector<std::uint32_t>> triangles(bodies);
-    for (std::size_t t = 0; t < body_of_triangle.size(); ++t)
-        triangles[body_of_triangle[t]].push_back(static_cast<std::uint32_t>(t));
-    return triangles;
+    Geometry own;
+    own.frame = geometry.frame;
+    own.triangles = std::move(body.triangles);
+    // welded: the body's first vertex at a place
+    for (std::size_t i = body.vertices.size(); i-- > 0;)
+        first_at[geometry.welded[body.vertices[i]]] = static_cast<std::uint32_t>(i);
+    for (const std::uint32_t vertex : body.vertices) {
+        own.positions.push_back(geometry.positions[vertex]);
+        own.normals.push_back(geometry.normals[vertex]);
+        own.welded.push_back(first_at[geometry.welded[vertex]]);
+    }
+    return own;
 }
-
-/// Cuts bodies out of a geometry.
-class BodyCutter {
-public:
-    explicit BodyCutter(const Geometry& geometry)
-        : geometry_(geometry),
-          vertex_of_(geometry.positions.size(), kNowhere),
-          welded_of_(geometry.positions.size(), kNowhere)
-    {
-    }
-
-    /// What a tree asks of a geometry. vertices: which they were.
-    Geometry cut(std::span<const std::uint32_t> triangles, std::vector<std::uint32_t>& vertices)
-    {
-        Geometry body;
-        body.frame = geometry_.frame;
-        body.triangles.reserve(triangles.size());
-        for (const std::uint32_t t : triangles) {
-            glm::uvec3 corners = geometry_.triangles[t];
-            for (int k = 0; k < 3; ++k)
-                corners[k] = vertex_of(corners[k], body, vertices);
-            body.triangles.push_back(corners);
-        }
-        for (const std::uint32_t vertex : vertices) {
-            vertex_of_[vertex] = kNowhere;
-            welded_of_[geometry_.welded[vertex]] = kNowhere;
-        }
-        return body;
-    }
-
-private:
-    static constexpr std::uint32_t kNowhere = ~0u;
-
-    std::uint32_t vertex_of(std::uint32_t vertex, Geometry& body,
-                            std::vector<std::uint32_t>& vertices)
-    {
-        std::uint32_t& place = vertex_of_[vertex];
-        if (place != kNowhere)
-            return place;
-        place = static_cast<std::uint32_t>(vertices.size());
-        std::uint32_t& welded = welded_of_[geometry_.welded[vertex]];
-        if (welded == kNowhere)
-            welded = place;
-        vertices.push_back(vertex);
-        body.positions.push_back(geometry_.positions[vertex]);
-        body.normals.push_back(geometry_.normals[vertex]);
-        body.welded.push_back(welded);
-        return place;
-    }
-
-    const Geometry& geometry_;
-    std::vector<std::uint32_t> vertex_of_;  ///< in the body that is cut
-    std::vector<std::uint32_t> welded_of_;  ///< the body's first vertex at a place
-};
 
 /// About the middle of the box of all corners.
 MaskBall ball_of(const Geometry& geometry)
@@ -243,20 +196,16 @@ private:
 
 }  // namespace
 
-MaskForest::MaskForest(const Geometry& geometry, std::span<const std::uint32_t> body_of_triangle,
-                       std::uint32_t bodies)
-    : bodies_(bodies)
+MaskForest::MaskForest(const Geometry& geometry, std::vector<BodyMesh> bodies)
+    : bodies_(bodies.size())
 {
-    const auto triangles = triangles_of(body_of_triangle, bodies);
-    BodyCutter cutter(geometry);
-    for (std::uint32_t k = 0; k < bodies; ++k) {
-        const bool is_all = triangles[k].size() == geometry.triangles.size();
-        if (is_all && k == 0)
-            bodies_[k].at_rest = geometry;
-        else
-            bodies_[k].at_rest = cutter.cut(triangles[k], bodies_[k].vertices);
+    std::vector<std::uint32_t> first_at(geometry.positions.size());
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        bodies_[k].at_rest =
+            bodies.size() == 1 ? geometry : geometry_of(geometry, bodies[k], first_at);
+        bodies_[k].vertices = std::move(bodies[k].vertices);
     }
-    tbb::parallel_for(std::uint32_t{0}, bodies, [&](std::uint32_t k) {
+    tbb::parallel_for(std::size_t{0}, bodies_.size(), [&](std::size_t k) {
         Body& body = bodies_[k];
         // once, not for each form that it takes
         if (k != 0 && is_winding_mixed(body.at_rest))
@@ -310,8 +259,7 @@ RawVector<MaskNode> MaskForest::bent(Body& body, const Geometry& form)
         return std::move(*nodes);
     if (auto nodes = refit_mask_nodes(planned(body.plan_without_pairs, MaskPairs::none), form))
         return std::move(*nodes);
-    MaskPlan unused;
-    return build_mask_nodes(form, MaskPairs::found, unused);
+    return build_mask_nodes(form);
 }
 
 void MaskForest::deform(std::uint32_t body, std::span<const glm::vec3> positions)

@@ -6,6 +6,7 @@
 /// Internal to the mask engine; engines/moving.h is its door.
 #pragma once
 
+#include "surfels/bodies.h"
 #include "surfels/geometry.h"
 #include "surfels/placement.h"
 #include "tree/masks/refit.h"
@@ -30,11 +31,9 @@ struct MaskBall {
 
 class MaskForest {
 public:
-    /// body_of_triangle: one per triangle, below `bodies`. All bodies stand as they are there. A
-    /// body alone has the tree of build_mask_tree(). O(n log n). Throws as build_mask_tree, of all
-    /// bodies together.
-    MaskForest(const Geometry& geometry, std::span<const std::uint32_t> body_of_triangle,
-               std::uint32_t bodies);
+    /// bodies: split_bodies(geometry); they stand at rest. A body alone has the tree of
+    /// build_mask_tree(). O(n log n). Throws as build_mask_tree, of all bodies together.
+    MaskForest(const Geometry& geometry, std::vector<BodyMesh> bodies);
 
     [[nodiscard]] std::uint32_t body_count() const;
 

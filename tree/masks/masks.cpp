@@ -69,10 +69,10 @@ std::vector<Occlusion> solve_masks(const MaskNode* nodes, std::span<const std::u
                                    std::span<const Receiver> receivers, const MaskOptions& options,
                                    const Progress& progress)
 {
+    MaskSolver solver(options);
     const ReceiverGroups groups = group_receivers(receivers, kMaskFrame);
     const MaskSkies skies(options.definition, receivers);
     const std::vector<std::uint8_t> wanted = leaves_of(options.share, groups);
-    MaskSolver solver(options);
     std::vector<Occlusion> answers(receivers.size());
     for (std::size_t leaf = 0; leaf < wanted.size(); ++leaf) {
         const ReceiverGroup& group = groups.groups[groups.leaves[leaf]];
@@ -87,10 +87,6 @@ std::vector<Occlusion> solve_masks(const MaskNode* nodes, std::span<const std::u
 std::vector<Occlusion> solve_masks(const MaskTree& tree, std::span<const Receiver> receivers,
                                    const MaskOptions& options, const Progress& progress)
 {
-    const std::vector<MaskKernelSet> sets = available_mask_kernels();
-    if (options.kernel != MaskKernelSet::best &&
-        std::ranges::find(sets, options.kernel) == sets.end())
-        throw SettingsError("masks: this processor has no " + std::string(name_of(options.kernel)));
     const std::uint32_t root = 0;
     return solve_masks(tree.nodes.data(), {&root, tree.nodes.empty() ? 0u : 1u}, receivers, options,
                        progress);

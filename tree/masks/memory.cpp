@@ -67,9 +67,7 @@ MaskMemory::MaskMemory(const MaskForest& forest, std::span<const Receiver> at_re
       words_((forest.body_count() + kBodiesAWord - 1) / kBodiesAWord),
       versions_(forest.body_count(), 0)
 {
-    std::vector<std::vector<std::uint32_t>> index(forest.body_count());
-    for (std::size_t i = 0; i < at_rest.size(); ++i)
-        index[body_of_receiver[i]].push_back(static_cast<std::uint32_t>(i));
+    auto index = members_of(body_of_receiver, forest.body_count());
     for (std::uint32_t body = 0; body < forest.body_count(); ++body) {
         if (index[body].empty())
             continue;
@@ -128,6 +126,12 @@ bool MaskMemory::is_moved(std::uint32_t body) const
 bool MaskMemory::is_kept(const OfBody& of) const
 {
     return of.may_keep && !forest_.is_deformed(of.body);
+}
+
+/// A body that grows has other limits in its own space.
+bool MaskMemory::is_to_keep(const OfBody& of) const
+{
+    return is_kept(of) && of.kept_limits != distance_limits(definition_of(of));
 }
 
 /// As it is in the body's own space.
@@ -256,7 +260,7 @@ void MaskMemory::solve(OfBody& of, MaskFrame& frame, ProgressMeter& meter)
     const Definition definition = definition_of(of);
     solver_.ask(definition);
     const bool keeps = is_kept(of);
-    const bool is_first = keeps && of.kept_limits != solver_.limits();
+    const bool is_first = is_to_keep(of);
     std::vector<std::uint32_t> roots;
     if (const auto root = forest_.root(of.body))
         roots.push_back(*root);
@@ -313,8 +317,10 @@ MaskFrame MaskMemory::solve(std::span<Occlusion> answers, const Progress& progre
             continue;
         there.push_back(&of);
         frame.bound = std::max(frame.bound, find_wanted(of));
-        leaves += static_cast<std::uint64_t>(std::ranges::count(of.wanted, 1));
-        leaves += is_kept(of) && of.kept_limits.empty() ? of.wanted.size() : 0;
+        const auto wanted = static_cast<std::uint64_t>(std::ranges::count(of.wanted, 1));
+        leaves += wanted;
+        if (wanted > 0 && is_to_keep(of))
+            leaves += static_cast<std::uint64_t>(std::ranges::count(of.share, 1));
     }
     all_ = true;  // until all is well
     ProgressMeter meter(progress, leaves * solver_.limits().size());

@@ -51,8 +51,8 @@ public:
     /// Those of a body have changed.
     void deform(std::uint32_t body, std::span<const Receiver> at_rest);
 
-    /// Where the forest stands. Writes the answers that may have changed; those
-    /// of hidden bodies stay. After an exception the next call answers all. Throws Cancelled.
+    /// Where the forest stands. Writes the answers that may have changed; those of hidden bodies
+    /// stay. After an exception the next call answers all. Throws Cancelled.
     MaskFrame solve(std::span<Occlusion> answers, const Progress& progress);
 
 private:
@@ -78,6 +78,7 @@ private:
     void group(OfBody& of, std::span<const Receiver> at_rest);
     [[nodiscard]] bool is_moved(std::uint32_t body) const;
     [[nodiscard]] bool is_kept(const OfBody& of) const;
+    [[nodiscard]] bool is_to_keep(const OfBody& of) const;
     [[nodiscard]] Definition definition_of(const OfBody& of) const;
     float look_around(const OfBody& of, const ReceiverGroup& group, float limit,
                       std::uint64_t* seen) const;

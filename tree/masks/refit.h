@@ -35,7 +35,10 @@ struct MaskPlan {
     bool has_solids = false;
 };
 
-/// As build_mask_tree, and how it went. geometry: its triangles wound alike.
+/// The nodes of build_mask_tree. geometry: its triangles wound alike.
+[[nodiscard]] RawVector<MaskNode> build_mask_nodes(const Geometry& geometry);
+
+/// The same, and how it went.
 [[nodiscard]] RawVector<MaskNode> build_mask_nodes(const Geometry& geometry, MaskPairs pairs,
                                                    MaskPlan& plan);
 

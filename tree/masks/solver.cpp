@@ -148,8 +148,8 @@ private:
 
 MaskSolver::MaskSolver(const MaskOptions& options)
     : options_(options),
-      kernel_(*kernel_of(options.kernel)),
       settings_(mask_settings(options)),
+      kernel_(*kernel_of(options.kernel)),
       limits_(distance_limits(options.definition))
 {
 }

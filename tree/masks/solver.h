@@ -22,7 +22,7 @@
 
 namespace surfelao {
 
-/// The kernel of a set; null never.
+/// The kernel of a set; never null.
 [[nodiscard]] const MaskKernel* kernel_of(MaskKernelSet set);
 
 /// Buffers of one thread: one list of nodes per level of the group tree on the way down.
@@ -76,8 +76,7 @@ public:
     void solve(const MaskQuestion& question, ProgressMeter& meter, std::span<Occlusion> answers);
 
     /// The same in two steps: what of the roots that all groups see, without a ground, and the
-    /// rest. kept: limits
-    /// times leaf groups, leaf groups of one limit side by side.
+    /// rest. kept: limits times leaf groups, leaf groups of one limit side by side.
     void keep(const MaskQuestion& question, ProgressMeter& meter, std::span<MaskKept> kept);
     void solve_kept(const MaskQuestion& question, std::span<const MaskKept> kept,
                     ProgressMeter& meter, std::span<Occlusion> answers);
@@ -91,8 +90,8 @@ private:
                 std::span<Occlusion> answers) const;
 
     MaskOptions options_;
-    const MaskKernel& kernel_;
     MaskSettings settings_;
+    const MaskKernel& kernel_;
     std::vector<float> limits_;
     tbb::enumerable_thread_specific<MaskWorkspace> workspaces_;
 };

@@ -546,9 +546,9 @@ std::shared_ptr<const MaskTree> build_mask_tree(const Geometry& geometry)
     if (is_winding_mixed(geometry)) {
         Geometry alike = geometry;
         wind_alike(alike);
-        tree->nodes = Builder(alike, MaskPairs::found, nullptr).build();
+        tree->nodes = build_mask_nodes(alike);
     } else {
-        tree->nodes = Builder(geometry, MaskPairs::found, nullptr).build();
+        tree->nodes = build_mask_nodes(geometry);
     }
     return tree;
 }
@@ -567,6 +567,11 @@ double sum_of_radii(std::span<const MaskNode> nodes)
 }
 
 }  // namespace
+
+RawVector<MaskNode> build_mask_nodes(const Geometry& geometry)
+{
+    return Builder(geometry, MaskPairs::found, nullptr).build();
+}
 
 RawVector<MaskNode> build_mask_nodes(const Geometry& geometry, MaskPairs pairs, MaskPlan& plan)
 {
