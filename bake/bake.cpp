@@ -6,6 +6,7 @@
 #include "bake/peak_memory.h"
 #include "bake/point_job.h"
 #include "bake/texel_job.h"
+#include "engines/moving.h"
 #include "engines/threads.h"
 #include "files/file_type.h"
 #include "files/maker_mark.h"
@@ -389,7 +390,7 @@ std::string mark_of(const BakeSettings& settings)
         add(":", frame->centre.z);
         add(":", frame->diagonal);
         if (is_for_bodies(settings))
-            add(" moving=", kMovingTolerance);
+            add(" moving=", MovingSettings().tolerance);
     }
     if (settings.subdivide)
         add(" subdivide=", *settings.subdivide);

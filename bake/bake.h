@@ -98,10 +98,6 @@ struct TexelReport {
     std::vector<std::filesystem::path> written;  ///< but the output where it is a mesh
 };
 
-/// What a receiver that is left as it was may be off by, of the moved things that it does not
-/// follow (MovingSettings::tolerance): an eighth of the masks' error at draft.
-inline constexpr float kMovingTolerance = 0.002f;
-
 /// Of a frame of a sequence (moving_bake.h), besides BakeSeconds.
 struct MotionReport {
     double pose = 0.0;         ///< seconds: from the keys to where everything is

@@ -50,7 +50,6 @@ public:
             scene_.emplace(world_.scene_for(settings_.engine));
             MovingSettings settings;
             static_cast<SolveSettings&>(settings) = settings_.engine;
-            settings.tolerance = kMovingTolerance;
             receivers_.emplace(world_.receivers_for(*scene_, settings));
             report.seconds.tree = stage.lap();
         }

@@ -32,7 +32,6 @@ struct Runner {
     {
         MovingSettings settings;
         static_cast<SolveSettings&>(settings) = engine;
-        settings.tolerance = kMovingTolerance;
         return settings;
     }
 

@@ -130,7 +130,6 @@ private:
                                            kernel_of(options.measure), world_.frame());
         MovingSettings settings;
         static_cast<SolveSettings&>(settings) = engine_;
-        settings.tolerance = kMovingTolerance;
         return settings;
     }
 

@@ -44,7 +44,8 @@
 
 namespace surfelao {
 
-/// What occludes. One thread at a time may place and deform; any number may solve meanwhile not.
+/// What occludes. One thread at a time may place and deform, while none solves; any number may
+/// solve at once.
 class MovingScene {
 public:
     struct Impl;
@@ -82,17 +83,18 @@ private:
 
 struct MovingSettings : SolveSettings {
     /// What the other bodies that a receiver does not look at may cover together: a ball of radius
-    /// b at a distance d covers at most (b / d)^2 of a cosine-weighted hemisphere. >= 0; 0: all
-    /// that reach over the horizon are looked at. Masks alone; others answer all receivers.
+    /// b at a distance d covers at most (b / d)^2 of a cosine-weighted hemisphere. An eighth of the
+    /// masks' error at draft. >= 0; 0: all that reach over the horizon are looked at. Masks alone;
+    /// others answer all receivers.
     float tolerance = 0.002f;
 };
 
 /// What a frame took.
 struct FrameReport {
-    double place = 0.0;                   ///< seconds: bodies and receivers to their places
-    double tree = 0.0;                    ///< seconds: refitting or building
-    double solve = 0.0;                   ///< seconds
-    std::uint64_t solved = 0;             ///< receivers that were answered anew
+    double place = 0.0;        ///< seconds: bodies and receivers to their places
+    double tree = 0.0;         ///< seconds: refitting or building
+    double solve = 0.0;        ///< seconds
+    std::uint64_t solved = 0;  ///< receivers that were answered anew, none of them hidden
     std::optional<double> residual = {};  ///< disks: as in Solution
     float bound = 0.0f;  ///< what is not looked at covers at most: no receiver is off by more,
                          ///< besides the engine's error
@@ -101,7 +103,8 @@ struct FrameReport {
 /// Receivers with a memory.
 class MovingReceivers {
 public:
-    /// at_rest: on body body_of_receiver[i] as it was prepared. scene must outlive it.
+    /// at_rest: on body body_of_receiver[i] as it was prepared. scene must outlive it, here or
+    /// where it is moved to.
     MovingReceivers(const MovingScene& scene, std::vector<Receiver> at_rest,
                     std::vector<std::uint32_t> body_of_receiver, const MovingSettings& settings);
     ~MovingReceivers();

@@ -26,14 +26,12 @@ struct RayBody {
 
 struct MovingRayScene::Impl {
     RTCDevice device;
-    RayScene scene;
+    RayScene scene{nullptr};
     std::vector<RayBody> bodies;
-    bool changed = true;
+    bool changed = true;  ///< since the last commit
+    bool whole = false;   ///< Embree crashes where it goes on with a scene whose commit failed
 
-    explicit Impl(RTCDevice of)
-        : device(of), scene(std::make_unique<RayScene::Impl>(of, RayScene::Build::fast, true))
-    {
-    }
+    explicit Impl(RTCDevice of) : device(of) {}
     ~Impl()
     {
         for (const RayBody& body : bodies) {
@@ -43,6 +41,15 @@ struct MovingRayScene::Impl {
     }
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
+
+    void assemble()
+    {
+        scene = RayScene(std::make_unique<RayScene::Impl>(device, RayScene::Build::fast, true));
+        for (const RayBody& body : bodies) {
+            if (body.mesh != nullptr)
+                rtcAttachGeometry(scene.impl().scene, body.mesh);
+        }
+    }
 
     /// Puts the vertices of a body where `position` says, for each by its place in the buffer.
     template <class Position>
@@ -84,7 +91,6 @@ MovingRayScene::MovingRayScene(const Geometry& geometry, std::vector<BodyMesh> b
         body.vertices = std::move(from.vertices);
         rtcSetGeometryBuildQuality(body.mesh, RTC_BUILD_QUALITY_MEDIUM);
         rtcCommitGeometry(body.mesh);
-        rtcAttachGeometry(impl_->scene.impl().scene, body.mesh);
     }
     static_cast<void>(now());
 }
@@ -116,9 +122,12 @@ void MovingRayScene::deform(std::uint32_t body, std::span<const glm::vec3> posit
 const RayScene& MovingRayScene::now()
 {
     if (impl_->changed) {
+        if (!std::exchange(impl_->whole, false))
+            impl_->assemble();
         rtcCommitScene(impl_->scene.impl().scene);
         check_device(impl_->device);
         impl_->changed = false;
+        impl_->whole = true;
     }
     return impl_->scene;
 }

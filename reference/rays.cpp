@@ -299,7 +299,8 @@ std::vector<Occlusion> trace_all(RTCScene scene, std::span<const Receiver> recei
     std::vector<Occlusion> results(receivers.size());
     const std::size_t run_count = (order.size() + kPacket - 1) / kPacket;
     const ShareRange share = range_of(options.share, run_count);
-    ProgressMeter meter(progress, (share.end - share.begin) * kPacket);
+    ProgressMeter meter(progress, std::min(share.end * kPacket, order.size()) -
+                                      std::min(share.begin * kPacket, order.size()));
     for (std::size_t i = 0; i < order.size(); ++i) {
         const std::size_t run = i / kPacket;
         if ((run < share.begin || run >= share.end) &&

@@ -66,31 +66,30 @@ SurfelCloud surfels_of(const Geometry& geometry)
     return surfels_of(geometry, large_area(geometry));
 }
 
-SurfelCloud surfels_of(const Geometry& geometry, double most)
+SurfelCloud surfels_of(const Geometry& part, double largest)
 {
-    const std::vector<LargeTriangle> large = large_triangles(geometry, most);
+    const std::vector<LargeTriangle> large = large_triangles(part, largest);
 
     // what the corners have left
-    std::vector<float> areas = geometry.areas;
+    std::vector<float> areas = part.areas;
     for (const LargeTriangle& triangle : large) {
         for (int corner = 0; corner < 3; ++corner)
-            areas[geometry.welded[triangle.corners[corner]]] -=
-                static_cast<float>(triangle.area / 3.0);
+            areas[part.welded[triangle.corners[corner]]] -= static_cast<float>(triangle.area / 3.0);
     }
     SurfelCloud cloud;
     for (std::uint32_t v = 0; v < areas.size(); ++v) {
-        if (areas[v] > kRest * geometry.areas[v]) {
-            cloud.surfels.push_back({geometry.positions[v], areas[v], geometry.normals[v], 0.0f});
+        if (areas[v] > kRest * part.areas[v]) {
+            cloud.surfels.push_back({part.positions[v], areas[v], part.normals[v], 0.0f});
             cloud.vertices.push_back(v);
         }
     }
 
     for (const LargeTriangle& triangle : large) {
-        const glm::dvec3 a(geometry.positions[triangle.corners.x]);
-        const glm::dvec3 b(geometry.positions[triangle.corners.y]);
-        const glm::dvec3 c(geometry.positions[triangle.corners.z]);
+        const glm::dvec3 a(part.positions[triangle.corners.x]);
+        const glm::dvec3 b(part.positions[triangle.corners.y]);
+        const glm::dvec3 c(part.positions[triangle.corners.z]);
         const glm::vec3 normal(glm::normalize(glm::cross(b - a, c - a)));
-        const int cells = static_cast<int>(std::ceil(std::sqrt(triangle.area / most)));
+        const int cells = static_cast<int>(std::ceil(std::sqrt(triangle.area / largest)));
         const auto add = [&](double u, double v) {
             cloud.surfels.push_back({glm::vec3(a + (b - a) * (u / cells) + (c - a) * (v / cells)),
                                      static_cast<float>(triangle.area / cells / cells), normal,

@@ -26,23 +26,22 @@ static_assert(sizeof(Surfel) == 32);
 
 struct SurfelCloud {
     std::vector<Surfel> surfels;
-    std::vector<std::uint32_t>
-        vertices;  ///< per surfel: the vertex whose side of the surface is its
+    std::vector<std::uint32_t> vertices;  ///< per surfel: whose side of the surface is its own
 };
 
 /// The surface as disks of no very different sizes: as surfels_at_vertices, but triangles that are
 /// large give their area to disks inside of them, in k x k equal cells, and not to their corners.
-/// Large is more than 1 / kFewestSurfels of the whole area, and more than kLargeSurfel times what a
+/// Large is more than 1 / kFewestSurfels of the whole area, or more than kLargeSurfel times what a
 /// vertex has in the mean. So a body of few triangles becomes some thousands of disks, a fine mesh
-/// stays as it is, and no more than kFewestSurfels + n / kLargeSurfel + triangles are added. The
-/// areas sum to the area of the mesh. O(n).
+/// of even triangles stays as it is, and fewer than 4 max(kFewestSurfels, n / kLargeSurfel)
+/// are added. The areas sum to the area of the mesh. O(n).
 [[nodiscard]] SurfelCloud surfels_of(const Geometry& geometry);
 
-/// The area above which a triangle of this geometry is large.
+/// The largest area of a triangle of this geometry that is not large.
 [[nodiscard]] double large_area(const Geometry& geometry);
 
-/// surfels_of() for a part of a larger scene: `large` is that scene's.
-[[nodiscard]] SurfelCloud surfels_of(const Geometry& part, double large);
+/// surfels_of() for a part of a larger scene. largest: large_area() of that scene.
+[[nodiscard]] SurfelCloud surfels_of(const Geometry& part, double largest);
 
 inline constexpr std::uint32_t kFewestSurfels = 4096;
 inline constexpr double kLargeSurfel = 16.0;

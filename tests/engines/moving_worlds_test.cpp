@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -185,10 +186,7 @@ TEST(MovingWorlds, ARingTurnedByOneOfItsCopiesHasThePermutedAnswers)
         std::vector<Occlusion> permuted(before.begin(), before.begin() + first);
         for (std::uint32_t k = 0; k < kCopies; ++k) {
             const std::size_t next = first + (k + 1) % kCopies * size;
-            for (std::size_t i = 0; i < size; ++i) {
-                permuted.push_back(before[next + i]);
-                permuted.back().bent_normal = after[first + k * size + i].bent_normal;
-            }
+            permuted.insert(permuted.end(), before.begin() + next, before.begin() + next + size);
         }
         EXPECT_LE(rms_difference(permuted, after), row.same) << row.name;
         EXPECT_GT(rms_difference(before, after), 0.01) << row.name << ": the box is not round";
@@ -243,7 +241,10 @@ TEST(MovingWorlds, AHiddenBodyOccludesNothing)
         MovingScene scene(world.geometry(), world.body_of_triangle, row.settings);
         MovingReceivers vertices = at_vertices(scene, world, row.settings);
         scene.hide(2);
-        std::vector<Occlusion> found = answers_of(vertices);
+        const auto shown =
+            world.body_of_vertex.size() - std::ranges::count(world.body_of_vertex, 2u);
+        EXPECT_EQ(vertices.solve().solved, shown) << row.name;
+        std::vector<Occlusion> found = vertices.occlusion();
         std::vector<Occlusion> right = built_there(world, row.settings, rest, 2);
         // its own receivers are left as they were: nothing was found for them yet
         for (std::size_t v = 0; v < found.size(); ++v) {
@@ -296,6 +297,27 @@ TEST(MovingWorlds, MovedAwayAndBackGivesTheFirstBytesOnAnyNumberOfThreads)
         EXPECT_TRUE(same_bytes(firsts[0], firsts[1])) << row.name;
         EXPECT_TRUE(same_bytes(aways[0], aways[1])) << row.name;
         EXPECT_FALSE(same_bytes(firsts[0], aways[0])) << row.name;
+    }
+}
+
+// Where a limit is given, a body that grows asks anew what it hides of itself.
+TEST(MovingWorlds, ProgressComesToItsEndOnceInEachFrame)
+{
+    const MovingWorld world = stage();
+    const std::vector<Placement> places = {{},
+                                           world.at({0.2, 0.1, 0.1}),
+                                           world.at({0, 0, 0}, glm::dmat3(1.0), 0.7),
+                                           world.at({9, 0, 0})};
+    for (MovingRow row : kRows) {
+        row.settings.definition.max_distance = 0.2f;
+        MovingScene scene(world.geometry(), world.body_of_triangle, row.settings);
+        MovingReceivers vertices = at_vertices(scene, world, row.settings);
+        for (std::size_t frame = 0; frame < places.size(); ++frame) {
+            scene.place(1, places[frame]);
+            int ends = 0;
+            vertices.solve([&](double done) { return ends += done == 1.0 ? 1 : 0, true; });
+            EXPECT_EQ(ends, 1) << row.name << ", frame " << frame;
+        }
     }
 }
 

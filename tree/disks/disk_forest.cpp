@@ -1,7 +1,5 @@
 #include "tree/disks/disk_forest.h"
 
-#include <glm/geometric.hpp>
-
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 

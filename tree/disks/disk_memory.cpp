@@ -4,8 +4,6 @@
 #include "tree/disks/correction.h"
 #include "tree/receiver_groups.h"
 
-#include <glm/geometric.hpp>
-
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 

@@ -7,7 +7,6 @@
 #include <glm/matrix.hpp>
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
