@@ -1,5 +1,6 @@
 #include "bake/bake.h"
 #include "python/arrays.h"
+#include "python/baked.h"
 #include "python/bindings.h"
 #include "python/calls.h"
 #include "python/options.h"
@@ -14,37 +15,16 @@ namespace py = pybind11;
 namespace surfelao {
 namespace {
 
+struct TextureBake : Baked {
+    using Baked::Baked;
+};
+
 /// As the program's --json tells it.
 py::object report_of(const BakeReport& report)
 {
     const BatchEntry entry{{}, {}, report, {}};
     return py::module_::import("json").attr("loads")(json_of({&entry, 1}));
 }
-
-/// A result with its report, as Python sees it.
-class Baked {
-public:
-    explicit Baked(std::shared_ptr<SceneBake> bake)
-        : bake_(std::move(bake)), report_(report_of(bake_->report))
-    {
-    }
-    [[nodiscard]] const SceneBake& bake() const { return *bake_; }
-    [[nodiscard]] std::shared_ptr<const void> owner() const { return bake_; }
-    [[nodiscard]] py::object report() const { return report_; }
-    [[nodiscard]] py::object told(const char* key) const { return report_[key]; }
-
-private:
-    std::shared_ptr<SceneBake> bake_;
-    py::object report_;
-};
-
-struct ValueBake : Baked {
-    using Baked::Baked;
-};
-
-struct TextureBake : Baked {
-    using Baked::Baked;
-};
 
 MeshArrays arrays_of(py::object vertices, py::object faces, const Options& options)
 {
@@ -159,6 +139,11 @@ void add_report(py::class_<Result>& type)
 }
 
 }  // namespace
+
+Baked::Baked(std::shared_ptr<SceneBake> bake)
+    : bake_(std::move(bake)), report_(report_of(bake_->report))
+{
+}
 
 void bind_bakes(py::module_& module)
 {

@@ -1,5 +1,7 @@
+#include "bake/bake.h"
 #include "files/scene_io.h"
 #include "python/arrays.h"
+#include "python/baked.h"
 #include "python/bindings.h"
 #include "python/calls.h"
 
@@ -28,6 +30,25 @@ py::object rows_or_none(const FileMesh& mesh, const List& list)
 FileMesh read_arrays(const std::filesystem::path& path)
 {
     return {result_of([path](const StageProgress&) { return read_scene(path); }, py::none(), {})};
+}
+
+py::list list_of_texts(const std::vector<std::string>& texts)
+{
+    py::list list;
+    for (const std::string& text : texts)
+        list.append(text);
+    return list;
+}
+
+/// As bake() of files writes it.
+py::list write_file(const FileMesh& mesh, const std::filesystem::path& path, const ValueBake& baked)
+{
+    return list_of_texts(*result_of(
+        [mesh, path, owner = baked.owner(), &bake = baked.bake()](const StageProgress&) {
+            return write_scene(path, *mesh.scene, bake.values,
+                               {.mark = mark_of(bake.report.settings)});
+        },
+        py::none(), {}));
 }
 
 }  // namespace
@@ -69,14 +90,13 @@ void bind_files(py::module_& module)
         .def_property_readonly(
             "name", [](const FileMesh& mesh) { return mesh.scene->name; }, "The file's name.")
         .def_property_readonly(
-            "notes",
-            [](const FileMesh& mesh) {
-                py::list notes;
-                for (const std::string& note : mesh.scene->notes)
-                    notes.append(note);
-                return notes;
-            },
-            "list of str: what the file holds and nobody honours.");
+            "notes", [](const FileMesh& mesh) { return list_of_texts(mesh.scene->notes); },
+            "list of str: what the file holds and nobody honours.")
+        .def("write", &write_file, py::arg("path"), py::arg("bake"),
+             "Writes the file anew with the values of a bake of its vertices, as `surfelao bake` "
+             "does: .ply .obj .off, and .gltf .glb of one. It appears complete or not at all. "
+             "Returns notes: a list of str. Raises InputError, SettingsError where the number of "
+             "values is another one, RuntimeError where the disk is full.");
     module.def("read", &read_arrays, py::arg("path"));
 }
 

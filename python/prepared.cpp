@@ -123,6 +123,8 @@ std::shared_ptr<PreparedMesh> prepare_arrays(const py::object& vertices, const p
     const auto built = result_of(
         [scene = std::make_shared<Scene>(std::move(scene)), target,
          choice](const StageProgress& progress) {
+            if (!progress("read", 0.0))
+                throw Cancelled();
             auto mesh =
                 std::make_shared<const Mesh>(mesh_of(std::move(*scene), target.normals, {}));
             if (!progress("prepare", 0.0))

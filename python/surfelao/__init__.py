@@ -156,7 +156,8 @@ def compare(vertices: ArrayLike, faces: ArrayLike, *,
     vertices        (n, 3) numbers, finite.
     faces           (m, 3) integers, 0 to n - 1: triangles.
     values          as in bake().
-    engines         one or several of "masks" and "disks", each at all `qualities`.
+    engines         one or several of "masks" and "disks".
+    qualities       one or several: each engine runs at each.
     rays            rows of ray tracing, each with so many rays per point.
     reference_rays  an even number: rays at each point of the truth.
     sample          points of the surface at which errors are taken.

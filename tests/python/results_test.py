@@ -45,6 +45,20 @@ def test_bake_equals_the_programs_bytes(program, data, tmp_path, arguments, sett
     assert baked.bent_normals.tobytes() == bent.tobytes()
 
 
+@pytest.mark.parametrize("name, output", [("robot.glb", "out.glb"), ("bracket.obj", "out.obj")])
+def test_written_files_are_the_programs_bytes(program, data, tmp_path, name, output):
+    folders = [tmp_path / "program", tmp_path / "package"]
+    for folder in folders:
+        folder.mkdir()
+    subprocess.run([program, "bake", data / name, "-o", folders[0] / output], check=True,
+                   capture_output=True)
+    mesh = surfelao.read(data / name)
+    baked = surfelao.bake(mesh.vertices, mesh.faces, normals=mesh.normals,
+                          normal_faces=mesh.normal_faces)
+    assert isinstance(mesh.write(folders[1] / output, baked), list)
+    assert (folders[1] / output).read_bytes() == (folders[0] / output).read_bytes()
+
+
 def test_a_closed_box_is_closed_inside_and_open_outside():
     vertices, faces = box(inward=True)
     assert surfelao.bake(vertices, faces, normals="flat").occlusion.min() > 0.99
