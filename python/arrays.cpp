@@ -1,6 +1,7 @@
 #include "python/arrays.h"
 
 #include "surfels/errors.h"
+#include "surfels/number_text.h"
 
 #include <cmath>
 #include <cstdint>
@@ -75,7 +76,7 @@ std::vector<Vector> vectors_of(const py::object& given, const std::string& name)
     const auto finite = [&](py::ssize_t row, auto number) {
         const auto kept = static_cast<typename Vector::value_type>(number);
         if (!std::isfinite(kept))
-            refuse_array(name, "row " + std::to_string(row) + " holds " + std::to_string(number) +
+            refuse_array(name, "row " + std::to_string(row) + " holds " + exact(kept) +
                                    ", but finite numbers are wanted");
         return kept;
     };
