@@ -132,8 +132,9 @@ void bake_part(const Mesh& mesh, const VertexTarget& target, BakeReport& report,
     report.seconds.write = watch.lap();
 }
 
-/// Solves, writes the output, and fills in the report what is of the values.
-void bake_at_vertices(const Job& job, BakeReport& report, const StageProgress& progress)
+/// Solves, writes the output if there is one, and fills in the report what is of the values.
+std::vector<Occlusion> bake_at_vertices(const Job& job, BakeReport& report,
+                                        const StageProgress& progress)
 {
     const BakeSettings& settings = report.settings;
     const std::shared_ptr<const Mesh>& mesh = job.mesh;
@@ -141,15 +142,19 @@ void bake_at_vertices(const Job& job, BakeReport& report, const StageProgress& p
     const VertexTarget target(mesh, settings.target);
     report.receivers = target.receivers().size();
     report.seconds.read += stage.lap();
-    if (settings.share)
-        return bake_part(*mesh, target, report, progress);
-    const VertexBake baked = answer(job, target, progress, report);
+    if (settings.share) {
+        bake_part(*mesh, target, report, progress);
+        return {};
+    }
+    VertexBake baked = answer(job, target, progress, report);
 
     enter(progress, "write");
     stage.lap();
     std::vector<std::string> written_notes;
     tbb::parallel_invoke(
         [&] {
+            if (settings.output.empty())
+                return;
             written_notes = write_scene(settings.output, mesh->scene, baked.values,
                                         {.colors = settings.colors,
                                          .encoding = settings.encoding,
@@ -164,6 +169,7 @@ void bake_at_vertices(const Job& job, BakeReport& report, const StageProgress& p
     report.notes.insert(report.notes.end(), written_notes.begin(), written_notes.end());
     report.mean_occlusion = mean_occlusion_of(mesh->surface, baked.values);
     report.seconds.write = stage.lap();
+    return std::move(baked.values);
 }
 
 /// What a bake writes beside its output.
@@ -242,15 +248,16 @@ Job subdivided(const Job& job, std::optional<Occluders>& own, BakeReport& report
 }
 
 /// One file of the world.
-BakeReport bake_one(const Job& read, const BakeSettings& settings, double read_seconds,
-                    const StageProgress& progress)
+SceneBake bake_one(const Job& read, const BakeSettings& settings, double read_seconds,
+                   const StageProgress& progress)
 {
-    BakeReport report;
+    SceneBake baked;
+    BakeReport& report = baked.report;
     report.settings = settings;
     report.threads = thread_count();
     report.seconds.read = read_seconds;
     Stopwatch whole;
-    if (!settings.texels && !settings.grid)
+    if (!settings.texels && !settings.grid && !settings.output.empty())
         check_output(read.mesh->scene, settings.output);
     report.settings.engine.definition = definition_of(
         report.settings.max_distance, report.settings.kernel, read.mesh->geometry.frame);
@@ -264,9 +271,9 @@ BakeReport bake_one(const Job& read, const BakeSettings& settings, double read_s
     if (report.settings.grid)
         bake_at_grid(mesh, report, progress);
     else if (report.settings.texels)
-        bake_texels(mesh, job.occluders, report, progress);
+        bake_texels(mesh, job.occluders, baked, progress);
     else
-        bake_at_vertices(job, report, progress);
+        baked.values = bake_at_vertices(job, report, progress);
 
     report.vertices = mesh.scene.positions.size();
     report.triangles = mesh.scene.triangles.size();
@@ -278,7 +285,36 @@ BakeReport bake_one(const Job& read, const BakeSettings& settings, double read_s
     report.replaced_corners = mesh.surface.replaced_corners;
     report.seconds.total = read_seconds + whole.lap();
     report.peak_rss_bytes = peak_rss_bytes();
-    return report;
+    return baked;
+}
+
+/// watch: since the reading of the scene began.
+SceneBake bake_read(Scene scene, std::span<const Scene> others, const BakeSettings& settings,
+                    Stopwatch& watch, const StageProgress& progress)
+{
+    check_points(settings, scene);
+    if (!scene.triangles.empty()) {
+        PartChoice parts = settings.parts;
+        parts.alone = settings.grid.has_value();
+        std::vector<Scene> input;
+        input.push_back(std::move(scene));
+        BakeWorld world =
+            make_world(std::move(input), others, settings.target.normals, parts, settings.frame);
+        const Job job{std::make_shared<const Mesh>(std::move(world.meshes.front()))};
+        return bake_one(job, settings, watch.lap(), progress);
+    }
+    if (settings.share)
+        throw InputError(settings.input.string() + ": has points only, --part is for faces");
+    SceneBake baked;
+    BakeReport& report = baked.report;
+    report.settings = settings;
+    report.threads = thread_count();
+    report.vertices = scene.positions.size();
+    report.seconds.read = watch.lap();
+    baked.values = bake_at_points(scene, report, progress);
+    report.seconds.total = report.seconds.read + watch.lap();
+    report.peak_rss_bytes = peak_rss_bytes();
+    return baked;
 }
 
 }  // namespace
@@ -289,25 +325,18 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     enter(progress, "read");
     Stopwatch watch;
     Scene scene = read_scene(settings.input, settings.reading);
-    check_points(settings, scene);
-    if (!scene.triangles.empty()) {
-        PartChoice parts = settings.parts;
-        parts.alone = settings.grid.has_value();
-        const Job job{std::make_shared<const Mesh>(mesh_of(
-            std::move(scene), settings.target.normals, parts, settings.reading, settings.frame))};
-        return bake_one(job, settings, watch.lap(), progress);
-    }
-    if (settings.share)
-        throw InputError(settings.input.string() + ": has points only, --part is for faces");
-    BakeReport report;
-    report.settings = settings;
-    report.threads = thread_count();
-    report.vertices = scene.positions.size();
-    report.seconds.read = watch.lap();
-    bake_at_points(scene, report, progress);
-    report.seconds.total = report.seconds.read + watch.lap();
-    report.peak_rss_bytes = peak_rss_bytes();
-    return report;
+    std::vector<Scene> others;
+    for (const fs::path& path : settings.parts.occluders)
+        others.push_back(read_scene(path, settings.reading));
+    return bake_read(std::move(scene), others, settings, watch, progress).report;
+}
+
+SceneBake bake_scene(Scene scene, std::span<const Scene> others, const BakeSettings& settings,
+                     const StageProgress& progress)
+{
+    enter(progress, "read");
+    Stopwatch watch;
+    return bake_read(std::move(scene), others, settings, watch, progress);
 }
 
 std::vector<BakeReport> bake_together(const std::vector<BakeSettings>& settings,
@@ -332,7 +361,7 @@ std::vector<BakeReport> bake_together(const std::vector<BakeSettings>& settings,
     Occluders occluders(*occluding);
     for (std::size_t i = 0; i < settings.size(); ++i) {
         const Job job{std::make_shared<const Mesh>(std::move(world.meshes[i])), &occluders};
-        reports.push_back(bake_one(job, settings[i], read_seconds, progress));
+        reports.push_back(bake_one(job, settings[i], read_seconds, progress).report);
         read_seconds = 0.0;
     }
     return reports;

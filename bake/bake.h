@@ -154,6 +154,20 @@ void take(const VertexBake& bake, BakeReport& report);
 /// An output that cannot be written is refused before any work.
 [[nodiscard]] BakeReport bake(const BakeSettings& settings, const StageProgress& progress = {});
 
+/// What a bake without files gives: values, or a map and where the surface lies in it.
+struct SceneBake {
+    BakeReport report;
+    std::vector<Occlusion> values;  ///< one per vertex or point of the scene
+    std::optional<MapLayout> layout;
+    std::optional<MapBake> map;
+};
+
+/// bake() of a scene at hand, which writes nothing: settings.input and .output are empty. others:
+/// they occlude too (PartChoice::occluders). For vertices, points and maps. Throws as bake().
+[[nodiscard]] SceneBake bake_scene(Scene scene, std::span<const Scene> others,
+                                   const BakeSettings& settings,
+                                   const StageProgress& progress = {});
+
 /// Several files as one scene: all occlude each other, each is written by itself. Equal parts and
 /// normals, which are those of the first. All are read and an engine is prepared once; what that
 /// takes is told with the first. Normals are smoothed within a file. Throws as bake(), with the

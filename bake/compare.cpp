@@ -180,10 +180,9 @@ void set_times(CompareRow& row, const std::vector<JobSeconds>& rounds, std::size
 }
 
 /// The mesh, or the cloud.
-void read_into(Comparison& comparison, const CompareSettings& settings,
-               const StageProgress& progress)
+void take_scene(Scene scene, const CompareSettings& settings, Comparison& comparison,
+                const StageProgress& progress)
 {
-    Scene scene = read_scene(settings.input, settings.reading);
     check_target(scene, settings.target, settings.parts);
     if (!scene.triangles.empty()) {
         comparison.mesh = std::make_shared<const Mesh>(
@@ -286,6 +285,18 @@ double beyond_by_squares(const Comparison& comparison, const CompareRow& row)
 
 Comparison compare(const CompareSettings& settings, const StageProgress& progress)
 {
+    if (progress && !progress("read", 0.0))
+        throw Cancelled();
+    Stopwatch watch;
+    Scene scene = read_scene(settings.input, settings.reading);
+    const double read_s = watch.lap();
+    Comparison comparison = compare(std::move(scene), settings, progress);
+    comparison.read_s += read_s;
+    return comparison;
+}
+
+Comparison compare(Scene scene, const CompareSettings& settings, const StageProgress& progress)
+{
     require(settings.rounds >= 1, "rounds must be at least 1");
     const auto stage = [&](std::string name) -> Progress {
         if (!progress)
@@ -305,7 +316,7 @@ Comparison compare(const CompareSettings& settings, const StageProgress& progres
     comparison.rounds = settings.rounds;
     static_cast<void>(stage("read"));
     Stopwatch watch;
-    read_into(comparison, settings, progress);
+    take_scene(std::move(scene), settings, comparison, progress);
     if (settings.subdivide)
         subdivide_mesh(comparison, settings, progress);
     std::unique_ptr<const CompareTarget> target = target_of(settings, comparison);

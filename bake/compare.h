@@ -123,6 +123,10 @@ struct Comparison {
 [[nodiscard]] Comparison compare(const CompareSettings& settings,
                                  const StageProgress& progress = {});
 
+/// The same of a scene at hand, which is told in messages by its name; settings.input is empty.
+[[nodiscard]] Comparison compare(Scene scene, const CompareSettings& settings,
+                                 const StageProgress& progress = {});
+
 /// The row that pictures show: the first candidate at `good`, else the first row.
 [[nodiscard]] const CompareRow& shown_row(const Comparison& comparison);
 

@@ -24,7 +24,8 @@ void check_points(const BakeSettings& settings, const Scene& scene)
     check_target(scene, settings.target, settings.parts);
 }
 
-void bake_at_points(const Scene& scene, BakeReport& report, const StageProgress& progress)
+std::vector<Occlusion> bake_at_points(const Scene& scene, BakeReport& report,
+                                      const StageProgress& progress)
 {
     const BakeSettings& settings = report.settings;
     const PointTarget target = make_point_target(scene, settings.target, progress);
@@ -47,9 +48,11 @@ void bake_at_points(const Scene& scene, BakeReport& report, const StageProgress&
         throw Cancelled();
     Stopwatch stage;
     report.notes = scene.notes;
-    for (const auto& notes : {point_notes(target),
-                              write_scene(settings.output, scene, baked.values,
-                                          {settings.colors, settings.encoding, mark_of(settings)})})
+    std::vector<std::string> written;
+    if (!settings.output.empty())
+        written = write_scene(settings.output, scene, baked.values,
+                              {settings.colors, settings.encoding, mark_of(settings)});
+    for (const auto& notes : {point_notes(target), written})
         report.notes.insert(report.notes.end(), notes.begin(), notes.end());
     double sum = 0.0;
     for (const Occlusion& value : baked.values)
@@ -57,6 +60,7 @@ void bake_at_points(const Scene& scene, BakeReport& report, const StageProgress&
     report.mean_occlusion = sum / static_cast<double>(std::max<std::uint64_t>(
                                       1, scene.positions.size() - report.vertices_without_normal));
     report.seconds.write = stage.lap();
+    return std::move(baked.values);
 }
 
 }  // namespace surfelao

@@ -10,7 +10,9 @@ namespace surfelao {
 /// round.
 void check_points(const BakeSettings& settings, const Scene& scene);
 
-/// Solves, writes the output, and fills in the report what is of points. scene: without triangles.
-void bake_at_points(const Scene& scene, BakeReport& report, const StageProgress& progress);
+/// Solves, writes the output if there is one, and fills in the report what is of points. scene:
+/// without triangles. One value per point.
+[[nodiscard]] std::vector<Occlusion> bake_at_points(const Scene& scene, BakeReport& report,
+                                                    const StageProgress& progress);
 
 }  // namespace surfelao

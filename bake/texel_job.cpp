@@ -218,17 +218,18 @@ void check_texel_output(const BakeSettings& settings)
         throw InputError(settings.output.string() + ": a map of a mesh has 8 or 16 bits");
 }
 
-void bake_texels(const Mesh& mesh, Occluders* occluders, BakeReport& report,
+void bake_texels(const Mesh& mesh, Occluders* occluders, SceneBake& baked,
                  const StageProgress& progress)
 {
+    BakeReport& report = baked.report;
     const BakeSettings& settings = report.settings;
     const TexelSettings& texels = *settings.texels;
     TexelReport& told = report.texels.emplace();
     Stopwatch watch;
     const MapRoom room{
-        .new_places = !is_map(settings.output),
+        .new_places = settings.output.empty() || !is_map(settings.output),
         .several_pages = is_map(settings.output) || is_gltf(type_of(settings.output))};
-    const TexelLayout place = layout_for(
+    TexelLayout place = layout_for(
         mesh, texels, room, [&](double done) { return !progress || progress("charts", done); });
     const MapLayout& layout = place.layout;
     told.size = layout.size;
@@ -265,14 +266,18 @@ void bake_texels(const Mesh& mesh, Occluders* occluders, BakeReport& report,
     }
     const Offset offset = offset_of(settings.target, frame);
     const HighDetail* detail = high ? &high->detail : nullptr;
-    const MapBake map =
-        settings.error
-            ? bake_map_to_error(mesh, layout, map_settings, engine, offset, *settings.error,
-                                progress, detail, occluders)
-            : bake_map(mesh, layout, map_settings, engine, offset, progress, detail, occluders);
+    MapBake map = settings.error ? bake_map_to_error(mesh, layout, map_settings, engine, offset,
+                                                     *settings.error, progress, detail, occluders)
+                                 : bake_map(mesh, layout, map_settings, engine, offset, progress,
+                                            detail, occluders);
     report_map(map, report);
     check_overlap(settings, told);
     add_notes(report, mesh.geometry.triangles.size(), report.notes);
+    if (settings.output.empty()) {
+        baked.layout = std::move(place.layout);
+        baked.map = std::move(map);
+        return;
+    }
 
     if (progress && !progress("write", 0.0))
         throw Cancelled();

@@ -10,10 +10,10 @@ namespace surfelao {
 /// Throws InputError where the output is no map that could be written.
 void check_texel_output(const BakeSettings& settings);
 
-/// Solves, writes the output, and fills in the report what is of the map. settings.texels is there;
-/// report.settings.engine has its definition. occluders: engines of what occludes the mesh; null:
-/// they are prepared for it alone.
-void bake_texels(const Mesh& mesh, Occluders* occluders, BakeReport& report,
+/// Solves, and writes the output, or leaves layout and map in `baked` where there is none. Fills in
+/// the report what is of the map; its settings.texels is there, settings.engine has its definition.
+/// occluders: engines of what occludes the mesh; null: they are prepared for it alone.
+void bake_texels(const Mesh& mesh, Occluders* occluders, SceneBake& baked,
                  const StageProgress& progress);
 
 }  // namespace surfelao

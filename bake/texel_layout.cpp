@@ -159,7 +159,8 @@ TexelLayout layout_for(const Mesh& mesh, const TexelSettings& settings, const Ma
 {
     const std::vector<UvSet>& sets = mesh.scene.uvs;
     const auto fail = [&](const std::string& fault) {
-        throw InputError(mesh.scene.name + ": " + fault);
+        const std::string& name = mesh.scene.name;
+        throw InputError(name.empty() ? fault : name + ": " + fault);
     };
     const MapSize size{settings.size, settings.size};
     TexelLayout found;

@@ -12,3 +12,10 @@ find_package(ZLIB REQUIRED)
 find_package(Eigen3 3.4 CONFIG REQUIRED)  # sparse least squares
 find_package(nanoflann CONFIG REQUIRED)   # k-d trees over points
 find_package(PkgConfig REQUIRED)
+
+# the module is for Debian's own Python, which need not be the first one on the path
+if(EXISTS /usr/bin/python3 AND NOT DEFINED Python_EXECUTABLE)
+    set(Python_EXECUTABLE /usr/bin/python3)
+endif()
+set(PYBIND11_FINDPYTHON ON)
+find_package(pybind11 2.10 CONFIG QUIET)

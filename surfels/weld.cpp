@@ -2,6 +2,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -131,11 +132,12 @@ private:
         const double size = kCell * reach_;
         const glm::dvec3 low = glm::floor((p - reach) / size);
         const glm::dvec3 high = glm::floor((p + reach) / size);
-        for (double x = low.x; x <= high.x; ++x) {
-            for (double y = low.y; y <= high.y; ++y) {
-                for (double z = low.z; z <= high.z; ++z)
-                    visit(hash_position({x, y, z}));
-            }
+        // no counting from low to high: so far off that 1 is less than a rounding, it never ends
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::bvec3 is_high((corner & 4) != 0, (corner & 2) != 0, (corner & 1) != 0);
+            if (!glm::any(glm::bvec3(is_high.x && low.x == high.x, is_high.y && low.y == high.y,
+                                     is_high.z && low.z == high.z)))
+                visit(hash_position(glm::mix(low, high, is_high)));
         }
     }
 

@@ -1,5 +1,5 @@
 # Installs the build into a scratch folder, builds the README's example against it, and runs it.
-# cmake -D BUILD=... -D SOURCE=... -P check_install.cmake
+# cmake -D BUILD=... -D SOURCE=... [-D PYTHON=...] -P check_install.cmake
 cmake_minimum_required(VERSION 3.25)
 
 file(READ ${SOURCE}/tests/install/example.cpp example)
@@ -44,6 +44,15 @@ if(NOT count EQUAL 4)
     message(FATAL_ERROR "the example must print four lines, but printed\n${output}")
 endif()
 must(${scratch}/prefix/bin/surfelao info ${scratch}/blob.ply)
+
+# the Python module, where it was built
+if(PYTHON)
+    must(${CMAKE_COMMAND} -E env PYTHONPATH=${scratch}/prefix/lib/python3/dist-packages ${PYTHON} -B -c
+        "import surfelao; print(surfelao.bake([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).occlusion)")
+    if(NOT output STREQUAL "[0. 0. 0.]\n")
+        message(FATAL_ERROR "a lone triangle must be open, but Python printed\n${output}")
+    endif()
+endif()
 
 # a bad setting is one sentence, and no abort (which would not be a number)
 execute_process(COMMAND ${scratch}/build/example ${SOURCE}/data/blob.off ${scratch}/blob.ply 9

@@ -160,6 +160,13 @@ TEST(Weld, CornersJoinTheirOwnPlaceOfSeveralNearby)
     EXPECT_EQ(welded[9], 0u);
 }
 
+// What occludes may be any number of diagonals away; a loop that counts cells there never ends.
+TEST(Weld, EndsFarBeyondTheDiagonal)
+{
+    const Scene far = scenes::triangle({1e28, 0, 0}, {0, 1e28, 0}, {0, 0, -1e300});
+    EXPECT_EQ(count_places(weld(far, 1.0)), 3u);
+}
+
 TEST(Weld, EqualPositionsAreOnePlaceWhereverTheyStand)
 {
     Scene scene = scenes::box({0, 0, 0}, {1, 1, 1}, 1);
