@@ -5,8 +5,22 @@
 namespace surfelao {
 namespace {
 
-/// Text as troff takes it. `quoted` words and --options are bold.
-std::string roff(const std::string& text)
+/// A sign as troff takes it.
+std::string escaped(char c)
+{
+    return c == '\\' ? "\\e" : c == '-' ? "\\-" : std::string(1, c);
+}
+
+std::string escaped(const std::string& text)
+{
+    std::string result;
+    for (const char c : text)
+        result += escaped(c);
+    return result;
+}
+
+/// Sentences. `quoted` words and --options are bold.
+std::string prose(const std::string& text)
 {
     std::string result;
     bool quoted = false, in_option = false;
@@ -25,14 +39,10 @@ std::string roff(const std::string& text)
         if (c == '`') {
             quoted = !quoted;
             result += quoted ? "\\fB" : "\\fR";
-        } else if (c == '\\') {
-            result += "\\e";
-        } else if (c == '-') {
-            result += "\\-";
-        } else if ((c == '.' || c == '\'') && (result.empty() || result.back() == '\n')) {
-            result.append("\\&") += c;  // else a request
         } else {
-            result += c;
+            if ((c == '.' || c == '\'') && (result.empty() || result.back() == '\n'))
+                result += "\\&";  // else a request
+            result += escaped(c);
         }
     }
     return result + (in_option ? "\\fR" : "");
@@ -40,12 +50,12 @@ std::string roff(const std::string& text)
 
 std::string bold(const std::string& text)
 {
-    return "\\fB" + roff(text) + "\\fR";
+    return "\\fB" + escaped(text) + "\\fR";
 }
 
 std::string italic(const std::string& text)
 {
-    return "\\fI" + roff(text) + "\\fR";
+    return "\\fI" + escaped(text) + "\\fR";
 }
 
 std::string named(const CommandFacts& command)
@@ -98,10 +108,10 @@ std::string rules_of(const OptionFacts& option)
 
 std::string entry_of(const OptionFacts& option)
 {
-    std::string text = ".TP\n" + head_of(option) + "\n" + roff(sentence(option.about)) + "\n";
+    std::string text = ".TP\n" + head_of(option) + "\n" + prose(sentence(option.about)) + "\n";
     const std::string rules = rules_of(option);
     if (!rules.empty())
-        text += roff(rules) + "\n";
+        text += prose(rules) + "\n";
     return text;
 }
 
@@ -134,7 +144,7 @@ std::string options_of(const CommandFacts& command)
     }
     for (const std::string& group : groups) {
         if (groups.size() > 1 && group != "Options")
-            text += ".SS " + roff(group) + "\n";
+            text += ".SS " + prose(group) + "\n";
         for (const OptionFacts& option : command.options) {
             if (option.group == group)
                 text += entry_of(option);
@@ -145,7 +155,7 @@ std::string options_of(const CommandFacts& command)
 
 std::string paragraphs(const std::string& lines)
 {
-    return roff(sentence(lines)) + "\n";
+    return prose(sentence(lines)) + "\n";
 }
 
 }  // namespace
@@ -164,9 +174,9 @@ std::string man_page(const std::vector<CommandFacts>& commands, std::size_t inde
         c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     std::string text = ".\\\" made from the program's table of options\n";
     text += ".TH " + title + " 1 " + date + " \"surfelao " + version + "\" \"surfelao manual\"\n";
-    text += ".SH NAME\n" + roff(page_name(command)) + " \\- " + roff(short_text(command.about)) +
-            "\n.SH SYNOPSIS\n" + synopsis_of(command) + ".SH DESCRIPTION\n" +
-            paragraphs(command.about);
+    text += ".SH NAME\n" + escaped(page_name(command)) + " \\- " +
+            prose(short_text(command.about)) + "\n.SH SYNOPSIS\n" + synopsis_of(command) +
+            ".SH DESCRIPTION\n" + paragraphs(command.about);
     if (!command.footer.empty())
         text += ".PP\n" + paragraphs(command.footer);
     if (!command.arguments.empty()) {
@@ -178,12 +188,12 @@ std::string man_page(const std::vector<CommandFacts>& commands, std::size_t inde
         text += ".SH COMMANDS\n";
         for (std::size_t i = 1; i < commands.size(); ++i)
             text += ".TP\n" + bold(page_name(commands[i])) + "(1)\n" +
-                    roff(sentence(commands[i].about)) + "\n";
+                    prose(sentence(commands[i].about)) + "\n";
     }
     std::vector<std::string> others;
     for (std::size_t i = 0; i < commands.size(); ++i) {
         if (i != index)
-            others.push_back(".BR " + roff(page_name(commands[i])) + " (1)");
+            others.push_back(".BR " + escaped(page_name(commands[i])) + " (1)");
     }
     return text + options_of(command) + ".SH SEE ALSO\n" + joined(others, ",\n") +
            "\n.PP\nThe pages in\n.I /usr/share/doc/surfelao\n";

@@ -76,13 +76,14 @@ def main():
     count = 0
     for command in commands:
         page = (SHARE / f"man/man1/surfelao-{command}.1").read_text().replace("\\-", "-")
+        heads = " ".join(re.findall(r"^\.TP\n(.*)$", page, re.M))
         zsh_part = zsh.partition(f"_surfelao_{command}() {{")[2].partition("\n}")[0]
         fish_part = "\n".join(line for line in fish.splitlines() if f"subcommand_from {command}'" in line)
         options = options_in(help_of(command))
         for name in options:
             count += 1
             flag = f" -l {name[2:]} " if name.startswith("--") else f" -s {name[1:]} "
-            for where, there in (("page", f"\\fB{name}\\fR" in page), ("bash", name in offered[command]),
+            for where, there in (("page", f"\\fB{name}\\fR" in heads), ("bash", name in offered[command]),
                                  ("zsh", f"'*{name}[" in zsh_part), ("fish", flag in fish_part)):
                 if not there:
                     faults.append(f"{command} {name}: not in {where}")
