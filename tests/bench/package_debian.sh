@@ -63,6 +63,7 @@ step "a bare Debian 12"
 rm -rf "$bare"
 mmdebstrap --quiet --variant=minbase --aptopt='Acquire::Languages "none"' bookworm "$bare" \
     /etc/apt/sources.list.d/debian.sources
+DISPLAY='' in_bare apt-get update -q >"$out/apt.log" 2>&1 || fail "see $out/apt.log"
 files_of_bare >"$out/before.txt"
 
 step "apt install"
@@ -77,9 +78,10 @@ examples=/usr/share/doc/surfelao/examples
 use() { DISPLAY='' in_bare "$@"; }
 use surfelao --version
 use surfelao bake $examples/room.obj -o /tmp/room.ply
-use surfelao bake $examples/bracket.obj -o /tmp/bracket.png --size 256
+use surfelao bake $examples/bracket.obj -o /tmp/bracket.obj --at texels --size 256
 use surfelao render $examples/robot.glb -o /tmp/robot.png --width 320 --height 240
 [ "$(identify -format %k "$bare/tmp/robot.png")" -gt 100 ] || fail "the picture is empty"
+# shellcheck disable=SC2016  # the inner shell's
 use bash -c 'source /usr/share/bash-completion/completions/surfelao
     COMP_WORDS=(surfelao bake --engine "") COMP_CWORD=3; _surfelao; [ "${COMPREPLY[*]}" = "masks disks rays" ]'
 if grep -q dist-packages "$out/contents.txt"; then
@@ -94,7 +96,8 @@ Xvfb -ac -screen 0 1280x800x24 -displayfd 3 2>/dev/null &
 display=$!
 trap 'kill $display' EXIT
 until [ -s "$out/display.txt" ]; do sleep .2; done
-export DISPLAY=:$(cat "$out/display.txt")
+DISPLAY=:$(cat "$out/display.txt")
+export DISPLAY
 in_bare timeout 60 surfelao view $examples/robot.glb &
 window=$!
 for _ in $(seq 50); do  # software OpenGL on a busy machine: until something is drawn
