@@ -1,5 +1,7 @@
 #include "cli/commands.h"
 
+#include "bake/build_facts.h"
+
 #include <CLI/CLI.hpp>
 
 namespace surfelao {
@@ -20,7 +22,7 @@ void add_commands(CLI::App& app, Work& work)
     app.name("surfelao");
     app.description(kAbout);
     app.footer(kExitCodes);
-    app.set_version_flag("--version", SURFELAO_VERSION);
+    app.set_version_flag("--version", version_text, "What this program is made of, and exit");
     app.require_subcommand(1);
     for (const auto& add : {add_bake_command, add_compare_command, add_info_command,
                             add_merge_command, add_render_command, add_view_command})

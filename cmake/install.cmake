@@ -49,3 +49,15 @@ install(FILES
     ${CMAKE_CURRENT_BINARY_DIR}/surfelaoConfig.cmake
     ${CMAKE_CURRENT_BINARY_DIR}/surfelaoConfigVersion.cmake
     DESTINATION ${package_folder})
+
+# for desktops, and to read
+install(FILES packaging/surfelao.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
+install(FILES packaging/surfelao.svg
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
+install(FILES packaging/surfelao.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages)
+install(FILES README.md packaging/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
+    FILES_MATCHING REGEX "\\.(md|png|jpg|svg)$" PATTERN figures EXCLUDE)
+install(FILES tests/install/example.cpp data/blob.off data/blocks.ply data/bracket.obj
+    data/leaves.glb data/robot.glb data/room.obj data/shells.stl
+    DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)

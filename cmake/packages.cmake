@@ -12,6 +12,8 @@ find_package(ZLIB REQUIRED)
 find_package(Eigen3 3.4 CONFIG REQUIRED)  # sparse least squares
 find_package(nanoflann CONFIG REQUIRED)   # k-d trees over points
 find_package(PkgConfig REQUIRED)
+find_package(glfw3 3.3 CONFIG REQUIRED)
+pkg_check_modules(imgui REQUIRED IMPORTED_TARGET imgui)
 
 # the module is for Debian's own Python, which need not be the first one on the path
 if(EXISTS /usr/bin/python3 AND NOT DEFINED Python_EXECUTABLE)

@@ -1,8 +1,22 @@
 #include "gpu/platform.h"
 
+#include "gpu/backends.h"
+
 #include <dlfcn.h>
 
+#include <utility>
+
 namespace surfelao {
+
+std::vector<std::string> installed_gl_backends()
+{
+    std::vector<std::string> names;
+    for (const auto& [name, file] : {std::pair("EGL", kEglLibrary), {"OSMesa", kOsmesaLibrary}}) {
+        if (SharedLibrary(file).error().empty())
+            names.emplace_back(name);
+    }
+    return names;
+}
 
 void add_reason(std::string& reasons, const std::string& reason)
 {

@@ -18,6 +18,9 @@ public:
 
 // On failure all of these append the reason to `reasons`, which is a list for people to read.
 
+inline constexpr const char* kOsmesaLibrary = "libOSMesa.so.8";
+inline constexpr const char* kEglLibrary = "libEGL.so.1";
+
 /// Null on failure.
 std::unique_ptr<GlPlatform> make_osmesa_platform(std::string& reasons);
 std::unique_ptr<GlPlatform> make_egl_platform(std::string& reasons);

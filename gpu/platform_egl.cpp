@@ -46,7 +46,7 @@ const Egl& egl()
         // Mesa writes to the terminal what it also tells by errors; whoever wants to read it may
         // say so
         setenv("EGL_LOG_LEVEL", "fatal", 0);
-        SharedLibrary library("libEGL.so.1");
+        SharedLibrary library(kEglLibrary);
 #define SURFELAO_EGL_FIND(name, upper) library.find(result.name, "egl" #name);
         SURFELAO_EGL_FUNCTIONS(SURFELAO_EGL_FIND)
 #undef SURFELAO_EGL_FIND

@@ -25,7 +25,7 @@ const Osmesa& osmesa()
 {
     static const Osmesa loaded = [] {
         Osmesa result;
-        SharedLibrary library("libOSMesa.so.8");
+        SharedLibrary library(kOsmesaLibrary);
         library.find(result.create, "OSMesaCreateContextAttribs");
         library.find(result.destroy, "OSMesaDestroyContext");
         library.find(result.make_current, "OSMesaMakeCurrent");

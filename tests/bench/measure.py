@@ -99,7 +99,7 @@ def provenance(build, command, **others):
     return {"command": command,
             "commit": (commit.stdout.strip() or "no commit") + ("+" if changes.stdout else ""),
             "version": subprocess.run([build / "bin/surfelao", "--version"], capture_output=True,
-                                      text=True, check=True).stdout.strip(),
+                                      text=True, check=True).stdout.split()[1],
             "processor": processor(), "threads": len(os.sched_getaffinity(0)), **others}
 
 

@@ -1,4 +1,5 @@
-# Installs the build into a scratch folder, builds the README's example against it, and runs it.
+# Installs the build into a scratch folder, looks at what is there, builds the README's example against
+# it, and runs it.
 # cmake -D BUILD=... -D SOURCE=... [-D PYTHON=...] -P check_install.cmake
 cmake_minimum_required(VERSION 3.25)
 
@@ -33,6 +34,24 @@ list(SORT public)
 if(NOT headers STREQUAL public)
     message(FATAL_ERROR "installed headers: ${headers}\nwanted: ${public}")
 endif()
+
+# what is not code, and programs that find their parts without a path of the build
+foreach(file IN ITEMS man/man1/surfelao.1 man/man1/surfelao-bake.1
+        bash-completion/completions/surfelao zsh/vendor-completions/_surfelao
+        fish/vendor_completions.d/surfelao.fish applications/surfelao.desktop
+        icons/hicolor/scalable/apps/surfelao.svg mime/packages/surfelao.xml
+        doc/surfelao/README.md doc/surfelao/docs/install.md doc/surfelao/examples/blob.off)
+    if(NOT EXISTS ${scratch}/prefix/share/${file})
+        message(FATAL_ERROR "share/${file} is not installed")
+    endif()
+endforeach()
+file(GLOB_RECURSE modules ${scratch}/prefix/lib/*.so)
+foreach(binary IN LISTS modules ITEMS ${scratch}/prefix/bin/surfelao)
+    must(readelf -d ${binary})
+    if(output MATCHES "RPATH|RUNPATH")
+        message(FATAL_ERROR "${binary} has a path to libraries:\n${output}")
+    endif()
+endforeach()
 
 must(${CMAKE_COMMAND} -S ${SOURCE}/tests/install -B ${scratch}/build -G Ninja
     -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${scratch}/prefix)
