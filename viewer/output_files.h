@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 namespace surfelao {
@@ -32,7 +33,12 @@ private:
     std::vector<std::filesystem::path> inputs_, written_;
 };
 
-/// folder/name-2.ply for folder/name.ply, or the first number above 2 under which nothing stands.
-[[nodiscard]] std::filesystem::path next_free_name(const std::filesystem::path& path);
+/// All that is written for a file of that name.
+using FilesOf = std::function<std::vector<std::filesystem::path>(const std::filesystem::path&)>;
+
+/// folder/name-2.ply for folder/name.ply, or the first number above 2 for which none of its files
+/// stands there.
+[[nodiscard]] std::filesystem::path next_free_name(const std::filesystem::path& path,
+                                                   const FilesOf& files_of);
 
 }  // namespace surfelao
