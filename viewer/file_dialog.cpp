@@ -1,5 +1,6 @@
 #include "viewer/file_dialog.h"
 
+#include "viewer/output_files.h"
 #include "viewer/tip.h"
 
 #include <imgui.h>
@@ -21,8 +22,7 @@ constexpr float kOfWindow = 0.94f;                          // at most, of eithe
 /// Absolute, without a slash at its end.
 fs::path clean(const fs::path& path)
 {
-    std::error_code error;
-    const fs::path whole = fs::absolute(path, error).lexically_normal();
+    const fs::path whole = whole_path(path);
     return whole.has_filename() ? whole : whole.parent_path();
 }
 

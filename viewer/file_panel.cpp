@@ -2,6 +2,7 @@
 
 #include "files/file_type.h"
 #include "surfels/extension.h"
+#include "viewer/output_files.h"
 #include "viewer/tip.h"
 
 #include <imgui.h>
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <initializer_list>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 namespace surfelao {
@@ -85,7 +85,9 @@ void FilePanel::open_list(const FileLists& files, FileWishes& wishes)
         return;
     for (const fs::path& file : files.open) {
         ImGui::PushID(file.c_str());
-        const float cross = ImGui::CalcTextSize("x").x + ImGui::GetStyle().ItemSpacing.x;
+        const ImGuiStyle& style = ImGui::GetStyle();
+        const float cross =
+            ImGui::CalcTextSize("x").x + 2.0f * style.FramePadding.x + style.ItemSpacing.x;
         const ImVec2 room(ImGui::GetContentRegionAvail().x - cross, 0.0f);
         if (ImGui::Selectable(file.filename().c_str(), file == files.shown, 0, room))
             wishes.open = file;
@@ -147,8 +149,7 @@ void FilePanel::save_line(FileKind kind, std::string& path, FileWishes& wishes)
     const bool is_picture = kind == FileKind::picture;
     ImGui::PushID(static_cast<int>(kind));
     ImGui::InputText("##path", &path);
-    std::error_code error;
-    path_tip(fs::absolute(path, error));
+    path_tip(whole_path(path));
     ImGui::SameLine();
     if (ImGui::Button("..."))
         choose(kind, path);

@@ -19,6 +19,13 @@ bool holds(const std::vector<fs::path>& files, const fs::path& path)
 
 }  // namespace
 
+fs::path whole_path(const fs::path& path)
+{
+    std::error_code error;
+    const fs::path whole = fs::absolute(path, error);
+    return (error ? path : whole).lexically_normal();
+}
+
 void OutputFiles::add_input(const fs::path& path)
 {
     inputs_.push_back(path);

@@ -8,6 +8,9 @@
 
 namespace surfelao {
 
+/// Absolute, without "." and "..": one name for one place, as it is shown to users.
+[[nodiscard]] std::filesystem::path whole_path(const std::filesystem::path& path);
+
 /// What stands where a file is to be written.
 enum class Standing {
     nothing,

@@ -40,11 +40,21 @@ std::string label_of(const Cell& cell, const CellView& view, Colors colors)
     return colors == Colors::radius ? who + ": radius" : who;
 }
 
-std::string label_of_rays(const Cell& cell, const CellView& view, Colors colors)
+PaneLabels labels_with_rays(const Cell& cell, const CellView& view, Colors colors,
+                            bool in_own_picture)
 {
-    if (!label_of_surface(colors).empty() || colors == Colors::difference)
-        return label_of(cell, view, colors);
-    return colors == Colors::bent_normals ? "rays: bent normals" : "rays";
+    const std::string left = label_of(cell, view, colors);
+    if (!view.has_reference())
+        return {left, left + " (no rays yet)"};
+    const Colors right = in_own_picture ? colors_of_rays(colors) : colors;
+    if (!label_of_surface(right).empty() || right == Colors::difference)
+        return {left, left};
+    return {left, right == Colors::bent_normals ? "rays: bent normals" : "rays"};
+}
+
+Colors colors_of_rays(Colors colors)
+{
+    return colors == Colors::difference ? Colors::visibility : colors;
 }
 
 }  // namespace surfelao

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 namespace surfelao {
 namespace {
@@ -24,7 +25,7 @@ constexpr float kGrip = 6.0f;      // how near to the wipe's line a press takes 
 constexpr const char* kWhereTip =
     "where values lie: at vertices, in a map, at each pixel, or in cube maps that pixels read";
 constexpr const char* kHowTip =
-    "who answers: masks (exact but for small parts), disks (fast, rough), rays (the witness); at "
+    "who answers: masks (near to rays), disks (rough), rays (the witness); at "
     "pixels also methods that know the picture alone";
 constexpr float kDegreesPerPixel = 0.35f;
 constexpr float kZoomPerNotch = 0.88f;
@@ -359,6 +360,32 @@ void name_model(const SessionState& state)
                 geometry.triangles.size());
 }
 
+/// What was drawn, and what is to be told. views: one may be null.
+void foot(PanelState& state, const PanelFigures& figures, const SessionState& shown_state,
+          std::initializer_list<const CellView*> views)
+{
+    ImGui::Separator();
+    ImGui::Text("%.1f ms (%.0f frames/s), %d samples", figures.frame_ms,
+                figures.frame_ms > 0.0 ? 1000.0 / figures.frame_ms : 0.0, figures.samples);
+    tip("to draw the model once; samples for each pixel so far, 32 at rest");
+    ImGui::TextDisabled("%s", figures.device.c_str());
+    tip("what draws");
+    if (ImGui::SmallButton("keys (H)"))
+        state.shows_help = !state.shows_help;
+    tip("lists what keys and the mouse do");
+    const ImVec4 warning(1.0f, 0.55f, 0.45f, 1.0f);
+    ImGui::PushTextWrapPos(0.0f);
+    if (!shown_state.message.empty())
+        ImGui::TextColored(warning, "%s", shown_state.message.c_str());
+    for (const CellView* view : views) {
+        if (view && !view->pixel_message().empty())
+            ImGui::TextColored(warning, "%s", view->pixel_message().c_str());
+    }
+    if (!figures.note.empty())
+        ImGui::TextUnformatted(figures.note.c_str());
+    ImGui::PopTextWrapPos();
+}
+
 }  // namespace
 
 void Panel::widgets(PanelState& state, const CellView& left, const CellView* right,
@@ -419,24 +446,7 @@ void Panel::widgets(PanelState& state, const CellView& left, const CellView* rig
         for (const std::filesystem::path& file : figures.written)
             ImGui::TextDisabled("wrote %s", file.c_str());
     }
-    ImGui::Separator();
-    ImGui::Text("%.1f ms (%.0f frames/s), %d samples", figures.frame_ms,
-                figures.frame_ms > 0.0 ? 1000.0 / figures.frame_ms : 0.0, figures.samples);
-    ImGui::TextDisabled("%s", figures.device.c_str());
-    if (ImGui::SmallButton("keys (H)"))
-        state.shows_help = !state.shows_help;
-    tip("lists what keys and the mouse do");
-    const ImVec4 warning(1.0f, 0.55f, 0.45f, 1.0f);
-    ImGui::PushTextWrapPos(0.0f);
-    if (!shown_state.message.empty())
-        ImGui::TextColored(warning, "%s", shown_state.message.c_str());
-    for (const CellView* view : {&left, right}) {
-        if (view && !view->pixel_message().empty())
-            ImGui::TextColored(warning, "%s", view->pixel_message().c_str());
-    }
-    if (!figures.note.empty())
-        ImGui::TextUnformatted(figures.note.c_str());
-    ImGui::PopTextWrapPos();
+    foot(state, figures, shown_state, {&left, right});
     ImGui::PopItemWidth();
     ImGui::End();
 }

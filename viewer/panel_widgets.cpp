@@ -309,6 +309,9 @@ void error_lines(const PixelError& error)
         "at pixels: RMSE %.4f   bias %+.4f\n95 %% %.4f   (%llu pixels, %u rays each)",
         error.found.rmse, error.found.bias, error.found.p95,
         static_cast<unsigned long long>(error.found.count), error.rays);
+    tip("what the picture shows against rays there, of occlusion 0 to 1; bias: positive is too "
+        "dark; "
+        "95 % of the pixels are off by less");
 }
 
 void map_lines(const CellView& view)
@@ -341,6 +344,7 @@ void stage_lines(const SessionState& s)
                            s.solve_s);
     else
         ImGui::Text("read %.3f s   solve %.3f s", s.read_s, s.solve_s);
+    tip("reading the file, building the engine's tree, solving");
     if (!s.reference.empty() && s.reference_s)
         ImGui::Text("reference %.3f s", *s.reference_s);
     else if (!s.reference.empty())
@@ -350,6 +354,10 @@ void stage_lines(const SessionState& s)
     if (s.map_error)
         ImGui::Text("seen %.4f (%.4f to %.4f)\nbias %+.4f   95 %% %.4f", s.map_error->rmse,
                     s.map_error->low, s.map_error->high, s.map_error->bias, s.map_error->p95);
+    if (s.map_error)
+        tip("against rays, of occlusion 0 to 1: RMSE all over the surface and where it lies in 95 "
+            "of "
+            "100 bakes; bias: positive is too dark; 95 % of the surface is off by less");
     if (!s.error)
         return;
     const ErrorStatistics& seen = s.error->seen;
@@ -359,6 +367,9 @@ void stage_lines(const SessionState& s)
         seen.rmse, s.error->floor, s.error->solve, seen.bias, seen.p95, seen.max,
         static_cast<unsigned long long>(seen.count),
         static_cast<unsigned long long>(s.error->left_out));
+    tip("against rays, of occlusion 0 to 1: RMSE all over the surface; floor: what the best values "
+        "at vertices would leave; solve: of the answers alone; bias: positive is too dark; 95 % of "
+        "the points are off by less");
 }
 
 void histogram(const Session& session)

@@ -1,6 +1,7 @@
 #include "viewer/recent_files.h"
 
 #include "surfels/atomic_file.h"
+#include "viewer/output_files.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -48,10 +49,9 @@ void RecentFiles::read()
 
 void RecentFiles::add(const fs::path& file)
 {
-    std::error_code error;
-    const fs::path added = fs::absolute(file, error).lexically_normal();
+    const fs::path added = whole_path(file);
     const bool is_one_line = added.string().find('\n') == std::string::npos;
-    if (list_.empty() || error || !is_one_line)
+    if (list_.empty() || !is_one_line)
         return;
     read();
     std::erase(files_, added);

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <system_error>
 #include <utility>
 
 namespace surfelao {
@@ -62,8 +61,7 @@ std::string Saver::save(Saved what, const fs::path& path, const Savable& content
 {
     if (std::string lack = lack_of(what, content); !lack.empty())
         return lack;
-    std::error_code error;
-    const fs::path whole = fs::absolute(path, error).lexically_normal();
+    const fs::path whole = whole_path(path);
     SaveQuestion question{.what = what, .path = whole, .there = {}};
     for (const fs::path& file : files_of(what, whole, content.session)) {
         const Standing standing = standing_of(file);

@@ -123,10 +123,8 @@ private:
 
     void list_open(const std::filesystem::path& path)
     {
-        std::error_code error;
-        const std::filesystem::path whole = std::filesystem::absolute(path, error);
-        if (std::ranges::find(open_files_, whole) == open_files_.end())
-            open_files_.push_back(whole);
+        if (std::ranges::find(open_files_, whole_path(path)) == open_files_.end())
+            open_files_.push_back(whole_path(path));
     }
 
     const SessionState& state() const { return left_.session().state(); }
@@ -318,9 +316,10 @@ private:
             look();
             draw_model(shown);
         }
+        panel_.draw();
+        // these draw elsewhere, which the widgets must not follow
         save_wanted(input);
         take_wishes(input.files);
-        panel_.draw();
 
         bool keep_open = !input.close;
         if (options_.on_frame)
@@ -382,6 +381,8 @@ private:
             return;
         ViewOptions view = shown_view(pane.as.right);
         view.wipe = pane.as.wipe;
+        if (panel_state_.beside == Beside::side_by_side && pane.as.wipe == 0.0f)
+            view.colors = colors_of_rays(view.colors);
         if (view.colors == Colors::textured) {
             if (const auto notes = cell.take_paint(); !notes.empty())
                 note_ = notes.front();
@@ -414,7 +415,8 @@ private:
                 .note = note_,
                 .device = info.renderer,
                 .written = saver_.written(),
-                .files = {open_files_, recent_.files(), shown_file(), up_},
+                .files = {open_files_, recent_.files(),
+                          has_view() ? whole_path(state().path) : std::filesystem::path(), up_},
                 .labels = labels(),
                 .question = saver_.question() ? &*saver_.question() : nullptr};
     }
@@ -468,24 +470,16 @@ private:
         }
     }
 
-    std::filesystem::path shown_file() const
-    {
-        std::error_code error;
-        return has_view() ? std::filesystem::absolute(state().path, error)
-                          : std::filesystem::path();
-    }
-
     /// What each side of the line shows.
     PaneLabels labels() const
     {
         if (!has_view() || panel_state_.beside == Beside::nothing)
             return {};
-        const Colors colors = shown_view(false).colors;
-        const std::string left = label_of(panel_state_.left, left_, colors);
         if (right_)
-            return {left, label_of(right_cell(panel_state_), *right_, shown_view(true).colors)};
-        return {left, left_.has_reference() ? label_of_rays(panel_state_.left, left_, colors)
-                                            : left + " (no rays yet)"};
+            return {label_of(panel_state_.left, left_, shown_view(false).colors),
+                    label_of(right_cell(panel_state_), *right_, shown_view(true).colors)};
+        return labels_with_rays(panel_state_.left, left_, shown_view(false).colors,
+                                panel_state_.beside == Beside::side_by_side);
     }
 
     /// After drawing, so that there is a picture.

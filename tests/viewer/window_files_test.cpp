@@ -9,7 +9,7 @@
 #include "widget_finder.h"
 #include "window_driver.h"
 
-#include <cmath>
+#include <algorithm>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -172,16 +172,42 @@ TEST_F(Window, ASavedPictureKeepsTheLineAndTheLabelsOfBothSides)
     EXPECT_LT(saved.at(160 + 8, 7).r, 0.02f);
 }
 
+// Saving reads from the device, where widgets must not be drawn then.
+TEST_F(Window, TheWidgetsStayWhileAPictureIsSaved)
+{
+    const TemporaryFolder folder;
+    int frames = 0;
+    double least = 1.0;
+    WindowOptions options;
+    options.input = box_file();
+    options.width = 740;
+    options.height = 300;
+    options.panel.paths.picture = folder / "x.png";
+    options.on_frame = [&](const Image& shown, const Session& session) {
+        if (!session.state().is_solved || session.state().is_draft)
+            return true;
+        if (frames == 2)
+            press(GLFW_KEY_P);
+        least = std::min(least, share(shown, [](const glm::vec4& p) {
+                             return p.b > 0.03f && p.b > 3.0f * p.r;
+                         }));
+        return ++frames < 6;
+    };
+    (void)show_window(options);
+    EXPECT_EQ(folder.file_count(), 1);
+    EXPECT_GT(least, 0.01);
+}
+
 // Under the mouse: the panel's left column. Titles of sections say what they do.
 TEST_F(Window, EveryWidgetSaysWhatItDoes)
 {
-    WidgetFinder finder({30.0f}, 25.0f, 590.0f, 10.0f);
+    WidgetFinder finder({30.0f}, 25.0f, 890.0f, 12.0f);
     std::size_t with_tip = 0;
     std::vector<float> without;
     WindowOptions options;
     options.input = box_file();
-    options.width = 800;
-    options.height = 600;
+    options.width = 740;
+    options.height = 900;
     options.panel.beside = Beside::side_by_side;
     options.panel.reference_rays = 2;
     options.panel.left.settings.engine.engine = Engine::disks;
