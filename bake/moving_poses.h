@@ -1,4 +1,4 @@
-/// moving_poses.h: scenes brought to the poses of a motion. Internal to bake/.
+/// moving_poses.h: scenes brought to the poses of a motion.
 #pragma once
 
 #include "files/motion.h"

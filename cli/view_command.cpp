@@ -9,6 +9,7 @@
 #include "engines/threads.h"
 #include "image/image_file.h"
 #include "surfels/errors.h"
+#include "viewer/recent_files.h"
 #include "viewer/window.h"
 
 #include <CLI/CLI.hpp>
@@ -21,12 +22,13 @@
 #include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace surfelao {
 namespace {
 
 struct ViewCommandOptions {
-    std::string input;
+    std::vector<std::string> inputs;
     ReadOptions reading;
     std::string camera;
     ShowOptions show;
@@ -94,7 +96,11 @@ int run(const ViewCommandOptions& options)
     if (options.threads)
         limit.emplace(*options.threads);
     WindowOptions window;
-    window.input = options.input;
+    window.recent_list = recent_list_path();
+    if (!options.inputs.empty()) {
+        window.input = options.inputs.front();
+        window.more_inputs.assign(options.inputs.begin() + 1, options.inputs.end());
+    }
     window.reading = options.reading;
     window.up = up_axis_of(options.show);
     window.camera = options.camera;
@@ -104,8 +110,10 @@ int run(const ViewCommandOptions& options)
         window.environment = read_image(*options.show.environment);
         window.other_inputs.push_back(*options.show.environment);
     }
-    if (!options.input.empty() && !std::filesystem::exists(options.input))
-        throw InputError(options.input + ": no such file");
+    for (const std::string& input : options.inputs) {
+        if (!std::filesystem::exists(input))
+            throw InputError(input + ": no such file");
+    }
 
     window.panel.left = cell_of(options);
     window.other_inputs.insert(window.other_inputs.end(), options.parts.occluders.begin(),
@@ -128,8 +136,10 @@ void add_view_command(CLI::App& app, Work& work)
         "view",
         "A window: orbit, engines, settings, display modes, comparison with rays, parts that move");
     command
-        ->add_option("IN", options->input,
-                     std::string(kMeshOrCloud) + "; without one, drop files on the window")
+        ->add_option("IN", options->inputs,
+                     std::string(kMeshOrCloud) +
+                         "; the first is shown, several are a list in the window; without one, "
+                         "open files there")
         ->type_name("");
     command
         ->add_option("--camera", options->camera,

@@ -110,15 +110,19 @@ float occlusion_of(GridStore store, const float* values, glm::vec3 normal)
     return std::clamp(sum, 0.0f, 1.0f);
 }
 
+void read_values_in_border(const AoGrid& grid, glm::dvec3 place, float* values)
+{
+    read_values(grid, place, values);
+    const float weight = border_weight(grid, place, moments_of(grid.store, values).w);
+    for (std::size_t c = 0; c < channels_of(grid.store); ++c)
+        values[c] *= weight;
+}
+
 float occlusion_at(const AoGrid& grid, glm::dvec3 place, glm::vec3 normal)
 {
     Harmonics values;
     static_assert(channels_of(GridStore::cone) <= kHarmonics);
-    read_values(grid, place, values.data());
-    const float alpha = moments_of(grid.store, values.data()).w;
-    const float weight = border_weight(grid, place, alpha);
-    for (float& value : values)
-        value *= weight;
+    read_values_in_border(grid, place, values.data());
     return occlusion_of(grid.store, values.data(), normal);
 }
 

@@ -97,6 +97,9 @@ void read_values(const AoGrid& grid, glm::dvec3 place, float* values);
 /// 0. In [0, 1]; 0 beyond the box.
 [[nodiscard]] float border_weight(const AoGrid& grid, glm::dvec3 place, float alpha);
 
+/// read_values() times border_weight().
+void read_values_in_border(const AoGrid& grid, glm::dvec3 place, float* values);
+
 /// The occlusion by the object at a place of its own space, with a normal of unit length: of the
 /// blended cone or harmonics, with the border. In [0, 1]; 0 beyond the box.
 [[nodiscard]] float occlusion_at(const AoGrid& grid, glm::dvec3 place, glm::vec3 normal);

@@ -18,9 +18,6 @@ constexpr float kBand2 = 1.09254843f;   // sqrt(15 / (4 pi))
 constexpr float kPole2 = 0.31539157f;   // sqrt(5 / (16 pi)), of 3 z^2 - 1
 constexpr float kPlane2 = 0.54627422f;  // sqrt(15 / (16 pi)), of x^2 - y^2
 
-/// Less is hidden than a float tells from nothing: no direction.
-constexpr float kNothing = 1e-7f;
-
 double clipped_narrow_cap(double cos_half, double cos_between)
 {
     const double sine_square = 1.0 - cos_half * cos_half;
@@ -63,11 +60,11 @@ double shared_by_caps(double cos_first, double cos_second, double cos_between)
 Cone cone_of(glm::vec4 moments)
 {
     const float alpha = std::clamp(moments.w, 0.0f, 1.0f);
-    if (alpha < kNothing)
+    if (alpha < kNothingHidden)
         return {};
     const glm::vec3 mean(moments);
     const float length = glm::length(mean);
-    const glm::vec3 axis = length > kNothing ? mean / length : glm::vec3(0.0f);
+    const glm::vec3 axis = length > kNothingHidden ? mean / length : glm::vec3(0.0f);
     const float spread = std::min(1.0f, length / alpha);
     const float cos_half = 2.0f * spread - 1.0f, cap = 1.0f - spread;
     if (cap <= alpha)

@@ -19,6 +19,9 @@
 
 namespace surfelao {
 
+/// Of the whole sphere: less is hidden than a float tells from nothing, and has no direction.
+inline constexpr float kNothingHidden = 1e-7f;
+
 struct Cone {
     glm::vec3 axis{0.0f};   ///< unit length; zero where nothing is hidden, or the same all around
     float cos_half = 1.0f;  ///< of the half angle, in [-1, 1]

@@ -80,6 +80,15 @@ void for_each_number(Grid& grid, const Map& sheet, const Visit& visit)
     }
 }
 
+/// The other way of sheet_of().
+void take_sheet(const Map& sheet, float zero, AoGrid& grid)
+{
+    grid.values.resize(grid.cell_count() * channels_of(grid.store));
+    for_each_number(grid, sheet, [&](float& value, std::size_t channel, std::size_t place) {
+        value = (sheet.values[place] - zero) / (1.0f - zero) * scale_of(grid.store, channel);
+    });
+}
+
 Json json_of(glm::dvec3 v)
 {
     return {v.x, v.y, v.z};
@@ -202,6 +211,8 @@ AoGrid grid_of(const TextReader& text)
     grid.store = text.is_second("/store", "cone", "sh") ? GridStore::sh : GridStore::cone;
     grid.border =
         text.is_second("/border/kind", "fade", "rescale") ? GridBorder::rescale : GridBorder::fade;
+    if (static_cast<float>(text.number("/border/fade")) != kGridFade)
+        text.refuse("border.fade is another share than what is faded here");
     grid.border_value = static_cast<float>(text.number("/border/value"));
     if (!(grid.border_value >= 0.0f && grid.border_value < 1.0f))
         text.refuse("border.value is not from 0 to less than 1");
@@ -246,7 +257,7 @@ bool is_grid_name(const fs::path& path)
 {
     const std::string extension = lower_extension(path);
     return (extension == ".exr" || extension == ".png") &&
-           lower_extension(path.stem()) == ".aogrid" && path.stem().has_stem();
+           lower_extension(path.stem()) == ".aogrid";
 }
 
 fs::path grid_text_path(const fs::path& picture)
@@ -275,14 +286,6 @@ Map sheet_of(const AoGrid& grid, float zero)
         sheet.values[place] = zero + (1.0f - zero) * x;
     });
     return sheet;
-}
-
-void take_sheet(const Map& sheet, float zero, AoGrid& grid)
-{
-    grid.values.resize(grid.cell_count() * channels_of(grid.store));
-    for_each_number(grid, sheet, [&](float& value, std::size_t channel, std::size_t place) {
-        value = (sheet.values[place] - zero) / (1.0f - zero) * scale_of(grid.store, channel);
-    });
 }
 
 void write_grid(const fs::path& picture, const AoGrid& grid, MapDepth depth, const GridNotes& notes)

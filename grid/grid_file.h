@@ -58,9 +58,8 @@ void write_grid(const std::filesystem::path& picture, const AoGrid& grid, MapDep
 /// The maker that a text beside a grid names; empty for any other file.
 [[nodiscard]] std::string grid_maker(const std::filesystem::path& text);
 
-/// The texels of a grid as they stand in the file, before they are rounded, and back.
+/// The texels of a grid as they stand in the file, before they are rounded.
 [[nodiscard]] Map sheet_of(const AoGrid& grid, float zero);
-void take_sheet(const Map& sheet, float zero, AoGrid& grid);
 
 /// Of the numbers in the file, before any compression.
 [[nodiscard]] std::uint64_t bytes_of(const AoGrid& grid, MapDepth depth);

@@ -1,6 +1,6 @@
 #include "pixels/grid_sources.h"
 
-#include "files/scene_io.h"
+#include "bake/moving_poses.h"
 #include "grid/grid_file.h"
 #include "surfels/errors.h"
 
@@ -11,12 +11,6 @@
 
 namespace surfelao {
 namespace {
-
-/// The scene as grids are made of it: without a moment.
-Scene scene_at_rest(const std::filesystem::path& input, const ReadOptions& reading)
-{
-    return read_scene(input, {.columns = reading.columns});
-}
 
 /// The part alone that the grid was baked of (bake --receivers); empty where it is not one.
 std::string node_named_by(const GridNotes& notes)
@@ -58,8 +52,8 @@ GridSources read_grids(const std::filesystem::path& input, const ReadOptions& re
         sources.grids.push_back({node, std::move(grid)});
     }
     if (reading.moment)
-        sources.motion = std::make_shared<const Motion>(scene_at_rest(input, reading),
-                                                        reading.moment->animation);
+        sources.motion =
+            std::make_shared<const Motion>(read_rest(input, reading), reading.moment->animation);
     return sources;
 }
 
@@ -67,7 +61,7 @@ GridSources bake_moving_grids(const std::filesystem::path& input, const ReadOpti
                               const GridSettings& settings, const EngineSettings& engine,
                               const StageProgress& progress)
 {
-    const Scene rest = scene_at_rest(input, reading);
+    const Scene rest = read_rest(input, reading);
     if (animations_of(rest).empty())
         throw InputError(rest.name +
                          ": nothing in it moves: --grid NODE=FILE tells whose grids there are");

@@ -11,12 +11,29 @@
 namespace surfelao {
 namespace {
 
-constexpr float kNothingHidden = 1e-7f;
-
 /// Share of the sphere that the cap of a cone has.
 double cap_share(const Cone& cone)
 {
     return 0.5 * (1.0 - static_cast<double>(cone.cos_half));
+}
+
+/// What is read of the object, with its border, in its own directions.
+Harmonics values_at(const PlacedGrid& object, glm::vec3 position)
+{
+    Harmonics values{};
+    read_values_in_border(*object.grid, in_object(object, position), values.data());
+    return values;
+}
+
+glm::vec4 moments_in_world(const PlacedGrid& object, const Harmonics& values)
+{
+    const glm::vec4 own = moments_of(object.grid->store, values.data());
+    return {glm::vec3(object.placement.rotation * glm::dvec3(own)), own.w};
+}
+
+glm::vec3 normal_in_object(const PlacedGrid& object, glm::vec3 normal)
+{
+    return glm::vec3(glm::dvec3(normal) * object.placement.rotation);
 }
 
 }  // namespace
@@ -43,12 +60,7 @@ glm::dvec3 in_object(const PlacedGrid& object, glm::vec3 position)
 
 glm::vec4 moments_at(const PlacedGrid& object, glm::vec3 position)
 {
-    const glm::dvec3 place = in_object(object, position);
-    float values[channels_of(GridStore::sh)];
-    read_values(*object.grid, place, values);
-    const glm::vec4 own = moments_of(object.grid->store, values);
-    const glm::dvec3 turned = object.placement.rotation * glm::dvec3(own);
-    return border_weight(*object.grid, place, own.w) * glm::vec4(glm::vec3(turned), own.w);
+    return moments_in_world(object, values_at(object, position));
 }
 
 glm::vec4 merged(const glm::vec4& a, const glm::vec4& b)
@@ -70,8 +82,8 @@ glm::vec4 merged(const glm::vec4& a, const glm::vec4& b)
 
 float occlusion_at(const PlacedGrid& object, glm::vec3 position, glm::vec3 normal)
 {
-    const glm::dvec3 turned = glm::dvec3(normal) * object.placement.rotation;
-    return occlusion_at(*object.grid, in_object(object, position), glm::vec3(turned));
+    return occlusion_at(*object.grid, in_object(object, position),
+                        normal_in_object(object, normal));
 }
 
 std::vector<TakenLight> taken_at(std::span<const PlacedGrid> objects, GridMerge merge,
@@ -80,14 +92,18 @@ std::vector<TakenLight> taken_at(std::span<const PlacedGrid> objects, GridMerge 
     std::vector<TakenLight> all;
     glm::vec4 joined(0.0f);
     for (const PlacedGrid& object : objects) {
-        const glm::vec4 moments = moments_at(object, position);
+        const Harmonics values = values_at(object, position);
+        const glm::vec4 moments = moments_in_world(object, values);
         if (moments.w < kNothingHidden)
             continue;
-        joined = merged(joined, moments);
-        if (merge == GridMerge::product)
-            all.push_back({occlusion_at(object, position, normal), moments});
+        if (merge == GridMerge::caps)
+            joined = merged(joined, moments);
+        else
+            all.push_back(
+                {occlusion_of(object.grid->store, values.data(), normal_in_object(object, normal)),
+                 moments});
     }
-    if (merge == GridMerge::caps && joined.w >= kNothingHidden)
+    if (joined.w >= kNothingHidden)
         all.push_back({occlusion_by(cone_of(joined), normal), joined});
     return all;
 }

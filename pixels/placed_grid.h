@@ -6,8 +6,7 @@
 /// Several objects:
 ///
 ///     product   1 - occlusion = product of (1 - occlusion_i): in any order the same; too dark
-///     where
-///               one hides what another one hides already
+///               where one hides what another one hides already
 ///     union     their cones are joined, and the joint one is asked. The caps' area is exact
 ///               (merged_caps), its mean direction that of both less what they share, which is
 ///               taken as lying between them, nearer to the smaller. Another order gives a little

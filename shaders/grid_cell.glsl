@@ -9,7 +9,7 @@
 //   u_near u_far u_far_start  half boxes to half textures: u_near x within a, beyond it
 //                    u_far x + u_far_start
 //   u_border         RESCALE: V_M, 1 / (1 - V_M)
-//   u_cells          RGBA16F, n^3: m / (4 pi), alpha; SH: coefficients 0 to 3
+//   u_cells          RGBA16F, a texel a cell: m / (4 pi), alpha; SH: coefficients 0 to 3
 //   u_surface        as in g_buffer.glsl: normal in view space, distance forward
 // CPU twin   read_values(), border_weight() in grid/ao_grid.cpp
 uniform mat3 u_start;

@@ -6,7 +6,7 @@
 //   u_caps  R32F, 64 x 64: T of caps that hide the share x of the sphere, y = (1 + cos b) / 2
 uniform sampler2D u_caps;
 
-// normal: in the moments' directions
+// In [0, 1]. normal: in the moments' directions
 float occlusion_by(vec4 moments, vec3 normal)
 {
     float square = dot(moments.xyz, moments.xyz);

@@ -12,13 +12,11 @@
 
 out float out_visibility;
 
-float occlusion_at(vec3 x, vec3 n) { return clamp(occlusion_by(moments_at(x), n), 0.0, 1.0); }
-
 void main()
 {
     vec4 seen = texelFetch(u_surface, ivec2(gl_FragCoord.xy), 0);
     vec3 x = place_in_box(seen.w);
     if (!(farthest_out(x) <= 1.0))
         discard;
-    out_visibility = 1.0 - occlusion_at(x, u_to_grid * seen.xyz);
+    out_visibility = 1.0 - occlusion_by(moments_at(x), u_to_grid * seen.xyz);
 }

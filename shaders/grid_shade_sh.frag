@@ -6,7 +6,7 @@
 // Vertices   grid_box.vert; blended by multiplication
 // Definitions  RESCALE: 0 or 1. GridBorder::rescale
 // Reads      grid_cell.glsl: u_cells has the coefficients 0 to 3
-//            u_cells_2 u_cells_3  RGBA16F, n^3: 4 to 7, and 8
+//            u_cells_2 u_cells_3  RGBA16F, a texel a cell: 4 to 7, and 8
 // Writes     out_visibility  1 - occlusion
 // CPU twin   occlusion_at() in grid/ao_grid.cpp
 

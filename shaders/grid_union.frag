@@ -18,5 +18,5 @@ void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec3 normal = texelFetch(u_surface, pixel, 0).xyz;
-    out_visibility = 1.0 - clamp(occlusion_by(texelFetch(u_before, pixel, 0), normal), 0.0, 1.0);
+    out_visibility = 1.0 - occlusion_by(texelFetch(u_before, pixel, 0), normal);
 }

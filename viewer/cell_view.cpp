@@ -106,7 +106,7 @@ void CellView::show_moved(const std::shared_ptr<const Model>& base,
 
 std::span<const glm::vec3> CellView::positions() const
 {
-    return moved_ ? moved_->shape.positions : session_.state().model->geometry().positions;
+    return moved_ ? moved_->shape.positions : drawn_->geometry().positions;
 }
 
 bool CellView::has_values() const
@@ -145,8 +145,7 @@ Texture2D CellView::upload(const PixelAnswers& found) const
 bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, const PixelRays& rays,
                     Colors colors)
 {
-    const std::shared_ptr<const Model>& model = is_moved() ? drawn_ : session_.state().model;
-    const Shot shot{model, camera, size};
+    const Shot shot{drawn_, camera, size};
     const bool is_same = shot == shot_;
     const bool rests = is_same && !is_moved();
     bool has_changed = !is_same && has_pixels();
@@ -154,7 +153,7 @@ bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, co
         forget_shot();
         shot_ = shot;
     }
-    if (model->geometry().triangles.empty())
+    if (drawn_->geometry().triangles.empty())
         return has_changed;
     const Where where = where_of(cell);
     const bool shows_radius = colors == Colors::radius && has_radius(cell);

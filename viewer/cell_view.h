@@ -60,6 +60,8 @@ public:
     void show_moved(const std::shared_ptr<const Model>& base,
                     const std::shared_ptr<const MovingFrame>& frame, bool has_values);
     bool is_moved() const { return moved_ != nullptr; }
+    /// That is shown, with its triangles; null until there is one.
+    const std::shared_ptr<const Model>& model() const { return drawn_; }
     /// Positions that are shown. A model must be there.
     std::span<const glm::vec3> positions() const;
     /// At vertices, in a map, or at pixels: there is something to show.

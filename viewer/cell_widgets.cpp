@@ -1,5 +1,7 @@
 #include "viewer/cell_widgets.h"
 
+#include "viewer/tip.h"
+
 #include <imgui.h>
 
 #include <algorithm>
@@ -26,17 +28,22 @@ bool edit_engine(EngineSettings& engine)
         ImGui::SliderInt("rays", &rays, 1, 4096, "%d",
                          ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
         engine.rays = static_cast<std::uint32_t>(rays);
-        return was_let_go();
+        apply = was_let_go();
+        tip("at each place, 1 to 4096: the error halves with four times as many");
+        return apply;
     }
     ImGui::SliderFloat("quality", &engine.quality, least_quality(engine.engine),
                        most_quality(engine.engine), "%.2f", ImGuiSliderFlags_AlwaysClamp);
     apply |= was_let_go();
+    tip("more is nearer to rays, and slower");
     if (engine.engine == Engine::disks) {
         ImGui::SliderInt("passes", &engine.passes, 1, 8, "%d", ImGuiSliderFlags_AlwaysClamp);
         apply |= was_let_go();
+        tip("each takes back what disks hide behind each other: 1 to 8");
         ImGui::SliderFloat("strength", &engine.strength, 0.0f, 2.0f, "%.2f",
                            ImGuiSliderFlags_AlwaysClamp);
         apply |= was_let_go();
+        tip("a factor on the occlusion, 0 to 2; 1 is what was found");
     }
     return apply;
 }
@@ -146,14 +153,15 @@ bool edit_screen(ScreenSettings& screen)
         screen.directions = screen_settings(screen.method, samples).directions;
         apply = true;
     }
+    tip("of the picture, at each pixel: 8 to 1024");
     for (const ScreenParameter& parameter : screen_parameters()) {
         if (std::ranges::find(parameter.methods, screen.method) == parameter.methods.end())
             continue;
         const float top = ImGui::GetCursorScreenPos().y;
         apply |= edit_parameter(parameter.name, screen);
         const bool is_drawn = ImGui::GetCursorScreenPos().y > top;
-        if (is_drawn && ImGui::IsItemHovered())
-            ImGui::SetTooltip("%s", std::string(parameter.meaning).c_str());
+        if (is_drawn)
+            tip(std::string(parameter.meaning).c_str());
     }
     return apply;
 }

@@ -80,10 +80,10 @@ struct Model {
     }
 };
 
-/// O(n log n). mesh: made with settings.normals. largest_splat: triangles that need larger
-/// disks at their corners are covered from inside; where that takes more than a few hundred
-/// thousand disks, larger ones are allowed. Infinite: one splat per surfel, however large.
-/// ground: that occludes, its up as `up` says. Throws as ground_of().
+/// O(n log n). mesh: made with settings.normals. largest_splat: triangles that need larger disks
+/// at their corners are covered from inside; where that takes more than a few hundred thousand
+/// disks, larger ones are allowed. Infinite: one splat per surfel, however large. ground: that
+/// occludes, its up as `up` says. Throws as ground_of().
 [[nodiscard]] Model make_model(Mesh mesh, UpAxis up, const TargetSettings& settings = {},
                                float largest_splat = kLargestSplat,
                                const std::optional<GroundPlane>& ground = {});

@@ -34,12 +34,6 @@ glm::vec3 turned(const glm::dmat3& by, glm::vec3 direction)
     return length > 0.0 ? glm::vec3(there / length) : glm::vec3(0.0f);
 }
 
-std::size_t part_of(const Scene& scene, std::uint32_t vertex)
-{
-    const auto behind = std::ranges::upper_bound(scene.parts, vertex, {}, &Part::first_vertex);
-    return static_cast<std::size_t>(behind - scene.parts.begin()) - 1;
-}
-
 /// A pose under way: all at rest, but for what was set.
 class Posing {
 public:
@@ -259,12 +253,11 @@ ModelPose pose_of(const Model& base, const Bodies& bodies, const Movables& movab
             continue;
         }
         posing.deform(b, [&](std::uint32_t v) {
-            const std::size_t p = part_of(base.mesh->scene, v);
+            const Scene& scene = base.mesh->scene;
             const glm::dvec3 world =
-                parts[p].positions.empty()
-                    ? glm::dvec3(parts[p].from_rest *
-                                 glm::dvec4(base.mesh->scene.positions[v], 1.0))
-                    : parts[p].positions[v - base.mesh->scene.parts[p].first_vertex];
+                part.positions.empty()
+                    ? glm::dvec3(part.from_rest * glm::dvec4(scene.positions[v], 1.0))
+                    : part.positions[v - scene.parts[body.part].first_vertex];
             return placed_point((world - frame.centre) / frame.diagonal, by_hand);
         });
     }

@@ -1,6 +1,7 @@
 #include "viewer/motion_panel.h"
 
 #include "pixels/seen.h"
+#include "viewer/tip.h"
 
 #include <imgui.h>
 
@@ -64,6 +65,11 @@ float arrow_pixels()
     return kArrow * ImGui::GetIO().FontGlobalScale * pixel_scale();
 }
 
+float reach_pixels()
+{
+    return kReach * ImGui::GetIO().FontGlobalScale * pixel_scale();
+}
+
 std::string title_of(const std::vector<std::string>& animations, std::size_t index)
 {
     const std::string& name = animations[index];
@@ -109,11 +115,13 @@ void MotionPanel::widgets(double draw_ms)
     ImGui::BeginDisabled(!mover_.is_moved());
     if (ImGui::SmallButton("reset all"))
         mover_.reset_all();
+    tip("all parts go back to where the file has them");
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::BeginDisabled(!mover_.can_undo());
     if (ImGui::SmallButton("undo (Z)"))
         mover_.undo();
+    tip("takes back the last move");
     ImGui::EndDisabled();
     if (!mover_.animations().empty())
         playing();
@@ -170,15 +178,18 @@ void MotionPanel::numbers(std::uint32_t movable)
     if (edited(ImGui::DragScalarN("move", ImGuiDataType_Double, &translation.x, 3,
                                   static_cast<float>(0.001 * diagonal), nullptr, nullptr, "%.4g")))
         move.translation = translation / diagonal;
+    tip("along x, y, z in the file's units: drag, or double-click to type");
     glm::dvec3 degrees = degrees_of(before.rotation);
     if (edited(ImGui::DragScalarN("turn", ImGuiDataType_Double, &degrees.x, 3, 0.5f, nullptr,
                                   nullptr, "%.1f")))
         move.rotation = rotation_of(degrees);
+    tip("about x, then y, then z, in degrees");
     constexpr double kLeastScale = 0.01, kMostScale = 100.0;
     double scale = before.scale;
     if (edited(ImGui::DragScalar("scale", ImGuiDataType_Double, &scale, 0.005f, &kLeastScale,
                                  &kMostScale, "%.3f", ImGuiSliderFlags_AlwaysClamp)))
         move.scale = scale;
+    tip("about the part's middle, 0.01 to 100");
     ImGui::PopItemWidth();
     if (move != before)
         mover_.set_move(movable, move);
@@ -187,6 +198,7 @@ void MotionPanel::numbers(std::uint32_t movable)
         mover_.remember();
         mover_.set_move(movable, {});
     }
+    tip("this part goes back to where the file has it");
     ImGui::EndDisabled();
     ImGui::SameLine();
 }
@@ -207,6 +219,7 @@ void MotionPanel::playing()
         }
         ImGui::EndCombo();
     }
+    tip("which of the file's animations is shown");
     if (!mover_.is_ready())
         return;
     Player& player = mover_.player();
@@ -217,13 +230,17 @@ void MotionPanel::playing()
         player.seek(seconds);
     }
     holds_widget_ |= ImGui::IsItemActive();
+    tip("the moment of the animation that is shown");
     if (ImGui::Button(player.is_playing ? "pause (space)" : "play (space)"))
         player.toggle();
+    tip("each frame shows the time at which it is asked for, however long solving takes");
     ImGui::SameLine();
     ImGui::Checkbox("loop", &player.loops);
+    tip("begins anew at its end");
     constexpr double kSlowest = 0.05, kFastest = 4.0;
     ImGui::SliderScalar("speed", ImGuiDataType_Double, &player.speed, &kSlowest, &kFastest,
                         "%.2f x", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    tip("times the file's own, 0.05 to 4");
 }
 
 void MotionPanel::figures(double draw_ms) const
@@ -269,7 +286,8 @@ void MotionPanel::draw_box(const MotionView& view, const Rect& picture)
             const auto a = corner(i), b = corner(i | bit);
             if ((i & bit) == 0 && a && b)
                 list.AddLine(place_in_window(corner_of(picture) + *a),
-                             place_in_window(corner_of(picture) + *b), kBox, 1.5f);
+                             place_in_window(corner_of(picture) + *b), kBox,
+                             1.5f * ImGui::GetIO().FontGlobalScale);
         }
     }
 }
@@ -299,10 +317,9 @@ bool MotionPanel::start_drag(const MotionView& view, const Rect& picture, glm::v
     const glm::dvec3 centre = centre_of(movable);
     const View seen = view_in(view, picture);
     const Gizmo gizmo(seen, picture.width, picture.height, centre, arrow_pixels());
-    const GizmoHandle handle =
-        is_in(picture, pixel) && !ImGui::GetIO().WantCaptureMouse
-            ? gizmo.handle_at(pixel - corner_of(picture), kReach * pixel_scale())
-            : GizmoHandle::none;
+    const GizmoHandle handle = is_in(picture, pixel) && !ImGui::GetIO().WantCaptureMouse
+                                   ? gizmo.handle_at(pixel - corner_of(picture), reach_pixels())
+                                   : GizmoHandle::none;
     draw_gizmo(gizmo, picture, handle);
     if (handle == GizmoHandle::none)
         return false;

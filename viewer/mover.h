@@ -83,7 +83,6 @@ public:
     /// Read in the background, then shown from its first key on. Nothing: the pose of the file.
     void choose(std::optional<std::size_t> animation);
     Player& player() { return player_; }
-    const Player& player() const { return player_; }
     bool is_ready() const { return motion_ != nullptr; }  ///< the animation that is chosen
 
     /// The last frame, for its figures; null where there was none.

@@ -72,6 +72,7 @@ WindowHandle open_window(int width, int height)
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
     WindowHandle window(glfwCreateWindow(width, height, "surfelao", nullptr, nullptr));
     if (!window)
         throw no_window();
@@ -97,9 +98,8 @@ float content_scale(GLFWwindow* window)
 Inbox::Inbox(GLFWwindow* window)
 {
     glfwSetWindowUserPointer(window, this);
-    glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
-        if (count > 0)
-            inbox_of(w).path = paths[count - 1];
+    glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** dropped) {
+        inbox_of(w).paths.insert(inbox_of(w).paths.end(), dropped, dropped + count);
     });
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
         const char sign = sign_of(key, scancode);

@@ -3,8 +3,10 @@
 
 #include "gpu/context.h"
 
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 struct GLFWwindow;
 
@@ -25,8 +27,8 @@ struct CloseWindow {
 };
 using WindowHandle = std::unique_ptr<GLFWwindow, CloseWindow>;
 
-/// A window with an OpenGL 3.3 context, pixels wide and high. Throws std::runtime_error with the
-/// system's reason.
+/// A window with an OpenGL 3.3 context, so wide and high in pixels of a display of 96 dpi. Throws
+/// std::runtime_error with the system's reason.
 [[nodiscard]] WindowHandle open_window(int width, int height);
 
 /// Takes part in the window's context, which is current in this thread afterwards.
@@ -38,8 +40,8 @@ using WindowHandle = std::unique_ptr<GLFWwindow, CloseWindow>;
 /// What was pressed and dropped since it was last looked at. A key that goes down and up again
 /// while one frame is drawn still counts. One per window, which it must not outlive.
 struct Inbox {
-    std::string keys;  ///< see Panel::build
-    std::string path;  ///< the last file dropped
+    std::string keys;                          ///< see Panel::build
+    std::vector<std::filesystem::path> paths;  ///< dropped
 
     explicit Inbox(GLFWwindow* window);
     Inbox(const Inbox&) = delete;

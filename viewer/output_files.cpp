@@ -19,6 +19,13 @@ bool holds(const std::vector<fs::path>& files, const fs::path& path)
 
 }  // namespace
 
+fs::path whole_path(const fs::path& path)
+{
+    std::error_code error;
+    const fs::path whole = fs::absolute(path, error);
+    return (error ? path : whole).lexically_normal();
+}
+
 void OutputFiles::add_input(const fs::path& path)
 {
     inputs_.push_back(path);
@@ -40,7 +47,7 @@ Standing OutputFiles::standing_of(const fs::path& path) const
     return holds(written_, path) ? Standing::written : Standing::foreign;
 }
 
-fs::path next_free_name(const fs::path& path)
+fs::path next_free_name(const fs::path& path, const FilesOf& files_of)
 {
     for (int number = 2;; ++number) {
         fs::path name = path.stem();
@@ -48,8 +55,11 @@ fs::path next_free_name(const fs::path& path)
         name += std::to_string(number);
         name += path.extension();
         const fs::path candidate = path.parent_path() / name;
-        std::error_code error;
-        if (!fs::exists(fs::symlink_status(candidate, error)))
+        const bool is_free = std::ranges::none_of(files_of(candidate), [](const fs::path& file) {
+            std::error_code error;
+            return fs::exists(fs::symlink_status(file, error));
+        });
+        if (is_free)
             return candidate;
     }
 }

@@ -3,9 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 namespace surfelao {
+
+/// Absolute, without "." and "..": one name for one place, as it is shown to users.
+[[nodiscard]] std::filesystem::path whole_path(const std::filesystem::path& path);
 
 /// What stands where a file is to be written.
 enum class Standing {
@@ -32,7 +36,12 @@ private:
     std::vector<std::filesystem::path> inputs_, written_;
 };
 
-/// folder/name-2.ply for folder/name.ply, or the first number above 2 under which nothing stands.
-[[nodiscard]] std::filesystem::path next_free_name(const std::filesystem::path& path);
+/// All that is written for a file of that name.
+using FilesOf = std::function<std::vector<std::filesystem::path>(const std::filesystem::path&)>;
+
+/// folder/name-2.ply for folder/name.ply, or the first number above 2 for which none of its files
+/// stands there.
+[[nodiscard]] std::filesystem::path next_free_name(const std::filesystem::path& path,
+                                                   const FilesOf& files_of);
 
 }  // namespace surfelao

@@ -1,9 +1,13 @@
 #include "viewer/panel.h"
 
 #include "viewer/cell_widgets.h"
+#include "viewer/native_window.h"
 #include "viewer/panel_widgets.h"
 #include "viewer/render.h"
+#include "viewer/tip.h"
+#include "viewer/ui_scale.h"
 
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 
 #include <backends/imgui_impl_glfw.h>
@@ -11,27 +15,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 namespace surfelao {
 namespace {
 
-constexpr float kWidth = 330.0f;  // of the panel, unscaled pixels
-constexpr float kGrip = 6.0f;     // how near to the wipe's line a press takes it, unscaled pixels
+constexpr float kLabels = 116.0f;  // right of widgets, unscaled pixels
+constexpr float kGrip = 6.0f;      // how near to the wipe's line a press takes it, unscaled pixels
+constexpr const char* kWhereTip =
+    "where values lie: at vertices, in a map, at each pixel, or in cube maps that pixels read";
+constexpr const char* kHowTip =
+    "who answers: masks (near to rays), disks (rough), rays (the witness); at "
+    "pixels also methods that know the picture alone";
 constexpr float kDegreesPerPixel = 0.35f;
 constexpr float kZoomPerNotch = 0.88f;
-void style_widgets(float scale)
-{
-    ImGui::StyleColorsDark();
-    ImGuiStyle& style = ImGui::GetStyle();
-    style.WindowRounding = 0.0f;
-    style.FrameRounding = 3.0f;
-    style.GrabRounding = 3.0f;
-    style.WindowBorderSize = 0.0f;
-    style.Colors[ImGuiCol_WindowBg].w = 0.92f;
-    style.Colors[ImGuiCol_PopupBg].w = 1.0f;
-    style.ScaleAllSizes(scale);
-    ImGui::GetIO().FontGlobalScale = scale;
-}
 
 void switch_beside(PanelState& state, Beside beside)
 {
@@ -71,10 +68,10 @@ void press(char key, PanelState& state, MotionPanel& motion, PanelInput& input)
             input.frame_all = true;
             break;
         case 'P':
-            input.save_picture = true;
+            input.files.save = Saved::picture;
             break;
         case 'B':
-            input.save_baked = true;
+            input.files.save = Saved::baked;
             break;
         case 'Q':
             input.close = true;
@@ -131,7 +128,8 @@ void place_labels(float x, const char* left, const char* right)
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const ImU32 color = IM_COL32(255, 255, 255, 150);
     const float margin = 8.0f * ImGui::GetIO().FontGlobalScale;
-    list.AddLine(ImVec2(x, 0.0f), ImVec2(x, ImGui::GetIO().DisplaySize.y), color, 1.0f);
+    list.AddLine(ImVec2(x, 0.0f), ImVec2(x, ImGui::GetIO().DisplaySize.y), color,
+                 ImGui::GetIO().FontGlobalScale);
     const auto label = [&](float from, const char* text) {
         const ImVec2 size = ImGui::CalcTextSize(text);
         const float around = 0.5f * margin;
@@ -144,32 +142,15 @@ void place_labels(float x, const char* left, const char* right)
     label(x + margin, right);
 }
 
-/// "masks at pixels"; what stands in is told.
-std::string label_of(const Cell& cell, const CellView& view)
-{
-    const Model* model = view.session().state().model.get();
-    const std::string label =
-        how_of(cell) + " at " + name_of(where_of(cell), model && model->cloud);
-    return cell.at_pixels && !view.has_pixels() ? label + ": not yet" : label;
-}
-
-std::string right_label(const PanelState& state, const CellView& left, const CellView* right)
-{
-    if (right)
-        return label_of(right_cell(state), *right);
-    return left.has_reference() ? "rays" : "no rays yet";
-}
-
 }  // namespace
 
-Panel::Panel(GLFWwindow* window, float scale)
+Panel::Panel(GLFWwindow* window) : window_(window)
 {
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;  // leaves no file behind
     ImGui_ImplGlfw_InitForOpenGL(window, true);
     ImGui_ImplOpenGL3_Init("#version 330 core");
-    style_widgets(scale);
 }
 
 Panel::~Panel()
@@ -206,16 +187,23 @@ PanelInput Panel::build(PanelState& state, const CellView& left_view, const Cell
                         std::string_view keys)
 {
     const Session& session = left_view.session();
+    fit_scale();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     PanelInput input;
-    if (!ImGui::GetIO().WantTextInput) {
-        for (const char key : keys) {
-            if (!state.question)
+    for (const char key : keys) {
+        if (figures.question) {
+            if (input.reply == SaveReply::none)
+                input.reply = reply_of(key, *figures.question);
+        } else if (files_.is_choosing()) {
+            if (key == kEscape)
+                files_.close();
+        } else if (!ImGui::GetIO().WantTextInput) {
+            if (key == 'O')
+                files_.choose(FileKind::model);
+            else
                 press(key, state, motion, input);
-            else if (input.reply == SaveReply::none)
-                input.reply = reply_of(key, *state.question);
         }
     }
     // beside the picture where there is room for both, else over it
@@ -230,8 +218,9 @@ PanelInput Panel::build(PanelState& state, const CellView& left_view, const Cell
     }
     if (state.shows_help)
         help_window(state.shows_help);
-    if (state.question)
-        question_window(*state.question, input.reply);
+    files_.dialog(state.paths, input.files);
+    if (figures.question)
+        question_window(*figures.question, input.reply);
     if (const std::shared_ptr<const Model>& model = session.state().model) {
         if (const auto shown = legend_of(*model, session.state().layout.get(),
                                          options_for(state.left, state.view)))
@@ -241,14 +230,30 @@ PanelInput Panel::build(PanelState& state, const CellView& left_view, const Cell
     const float line =
         left + (display.x - left) * (state.beside == Beside::wipe ? state.wipe : 0.5f);
     if (state.beside != Beside::nothing)
-        place_labels(line, label_of(state.left, left_view).c_str(),
-                     right_label(state, left_view, right_view).c_str());
-    if (state.question || !motion.mouse(moved))
+        place_labels(line, figures.labels.left.c_str(), figures.labels.right.c_str());
+    const bool is_modal = figures.question || files_.is_choosing();
+    if (is_modal || !motion.mouse(moved))
         mouse(state, input, line, left);
     if (input.view_changed && needs_reference(state))
         state.wants_reference = true;
     ImGui::Render();
     return input;
+}
+
+/// Sizes follow the display that the window is on.
+void Panel::fit_scale()
+{
+    int width = 0, height = 0, pixels = 0, unused = 0;
+    glfwGetWindowSize(window_, &width, &height);
+    glfwGetFramebufferSize(window_, &pixels, &unused);
+    const float ratio =
+        width > 0 && pixels > 0 ? static_cast<float>(pixels) / static_cast<float>(width) : 1.0f;
+    const float scale = content_scale(window_);
+    if (scale == content_scale_ && ratio == pixel_ratio_)
+        return;
+    content_scale_ = scale;
+    pixel_ratio_ = ratio;
+    set_ui_scale(scale, ratio);
 }
 
 void Panel::solver_widgets(PanelState& state, const Model* model)
@@ -258,7 +263,9 @@ void Panel::solver_widgets(PanelState& state, const Model* model)
     if (edited_.settings.texels)
         texels_ = *edited_.settings.texels;
     bool apply = choose_where(edited_, model, texels_);
+    tip(kWhereTip);
     apply |= choose_how(edited_, state.qualities);
+    tip(kHowTip);
     apply |= edit_how(edited_);
     SessionSettings& question = edited_.settings;
     if (question.texels)
@@ -278,12 +285,15 @@ void Panel::compare_widgets(PanelState& state, const CellView& left, const CellV
         state.beside = static_cast<Beside>(beside);
         input.view_changed = true;
     }
+    tip("W, S: a second picture by the same camera, right of a line or in a half of its own");
     if (state.beside != Beside::nothing) {
         ImGui::PushID("right");
         if (!ImGui::IsAnyItemActive())
             edited_right_ = right_cell(state);
         bool apply = choose_where(edited_right_, left.session().state().model.get(), texels_);
+        tip(kWhereTip);
         apply |= choose_how(edited_right_, state.qualities);
+        tip(kHowTip);
         if (state.right)
             apply |= edit_how(edited_right_);
         if (apply) {
@@ -296,11 +306,13 @@ void Panel::compare_widgets(PanelState& state, const CellView& left, const CellV
         ImGui::PopID();
     }
     ImGui::Checkbox("trace", &state.wants_reference);
+    tip("R: casts rays to tell the error of what is shown, and for the pictures that need them");
     ImGui::SameLine();
     int half = state.reference_rays / 2;
     if (ImGui::SliderInt("rays##reference", &half, 8, 4096, "2 x %d",
                          ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
         state.reference_rays = 2 * half;
+    tip("rays of the reference at each place, cast in two halves: 16 to 8192");
     if (right)
         cell_progress(*right);
     if (left.session().tracing())
@@ -348,6 +360,32 @@ void name_model(const SessionState& state)
                 geometry.triangles.size());
 }
 
+/// What was drawn, and what is to be told. views: one may be null.
+void foot(PanelState& state, const PanelFigures& figures, const SessionState& shown_state,
+          std::initializer_list<const CellView*> views)
+{
+    ImGui::Separator();
+    ImGui::Text("%.1f ms (%.0f frames/s), %d samples", figures.frame_ms,
+                figures.frame_ms > 0.0 ? 1000.0 / figures.frame_ms : 0.0, figures.samples);
+    tip("to draw the model once; samples for each pixel so far, 32 at rest");
+    ImGui::TextDisabled("%s", figures.device.c_str());
+    tip("what draws");
+    if (ImGui::SmallButton("keys (H)"))
+        state.shows_help = !state.shows_help;
+    tip("lists what keys and the mouse do");
+    const ImVec4 warning(1.0f, 0.55f, 0.45f, 1.0f);
+    ImGui::PushTextWrapPos(0.0f);
+    if (!shown_state.message.empty())
+        ImGui::TextColored(warning, "%s", shown_state.message.c_str());
+    for (const CellView* view : views) {
+        if (view && !view->pixel_message().empty())
+            ImGui::TextColored(warning, "%s", view->pixel_message().c_str());
+    }
+    if (!figures.note.empty())
+        ImGui::TextUnformatted(figures.note.c_str());
+    ImGui::PopTextWrapPos();
+}
+
 }  // namespace
 
 void Panel::widgets(PanelState& state, const CellView& left, const CellView* right,
@@ -357,11 +395,10 @@ void Panel::widgets(PanelState& state, const CellView& left, const CellView* rig
     const SessionState& shown_state = session.state();
     ImGui::Begin("surfelao", nullptr,
                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse);
-    ImGui::PushItemWidth(-100.0f * ImGui::GetIO().FontGlobalScale);
+    ImGui::PushItemWidth(-kLabels * ImGui::GetIO().FontGlobalScale);
+    files_.open_widgets(figures.files, input.files);
     if (shown_state.model)
         name_model(shown_state);
-    else if (!session.opening())
-        ImGui::TextUnformatted("Drop a mesh file on this window.");
     if (session.opening())
         ImGui::TextUnformatted("reading ...");
 
@@ -370,12 +407,14 @@ void Panel::widgets(PanelState& state, const CellView& left, const CellView* rig
         if ((session.solving() && !session.opening()) || left.pixel_progress()) {
             cell_progress(left);
             input.cancel |= ImGui::Button("cancel");
+            tip("Esc: stops it; what was found stays");
         } else if (left.was_cancelled() && shown_state.model) {
             ImGui::TextUnformatted(!shown_state.is_solved ? "cancelled"
                                    : shown_state.is_draft ? "cancelled: the draft is shown"
                                                           : "cancelled: the last answer is shown");
             ImGui::SameLine();
             input.solve_again |= ImGui::SmallButton("solve");
+            tip("solves it after all");
         }
         stage_lines(shown_state);
         if (state.left.from_maps)
@@ -394,38 +433,20 @@ void Panel::widgets(PanelState& state, const CellView& left, const CellView* rig
         input.view_changed |= view_widgets(state);
         ImGui::SameLine();
         input.frame_all |= ImGui::Button("frame all");
+        tip("F: the camera sees all of the model");
+        if (state.view.colors == Colors::environment)
+            files_.environment_widget();
     }
     if (ImGui::CollapsingHeader("Compare", ImGuiTreeNodeFlags_DefaultOpen))
         compare_widgets(state, left, right, input);
     if (shown_state.model)
         motion.widgets(figures.frame_ms);
     if (ImGui::CollapsingHeader("Save")) {
-        ImGui::InputText("##picture", state.picture_path, sizeof state.picture_path);
-        ImGui::SameLine();
-        input.save_picture |= ImGui::Button("picture");
-        ImGui::InputText("##baked", state.baked_path, sizeof state.baked_path);
-        ImGui::SameLine();
-        input.save_baked |= ImGui::Button("baked");
+        files_.save_widgets(state.paths, shown_state.layout != nullptr, input.files);
         for (const std::filesystem::path& file : figures.written)
             ImGui::TextDisabled("wrote %s", file.c_str());
     }
-    ImGui::Separator();
-    ImGui::Text("%.1f ms (%.0f frames/s), %d samples", figures.frame_ms,
-                figures.frame_ms > 0.0 ? 1000.0 / figures.frame_ms : 0.0, figures.samples);
-    ImGui::TextDisabled("%s", figures.device.c_str());
-    if (ImGui::SmallButton("keys (H)"))
-        state.shows_help = !state.shows_help;
-    const ImVec4 warning(1.0f, 0.55f, 0.45f, 1.0f);
-    ImGui::PushTextWrapPos(0.0f);
-    if (!shown_state.message.empty())
-        ImGui::TextColored(warning, "%s", shown_state.message.c_str());
-    for (const CellView* view : {&left, right}) {
-        if (view && !view->pixel_message().empty())
-            ImGui::TextColored(warning, "%s", view->pixel_message().c_str());
-    }
-    if (!figures.note.empty())
-        ImGui::TextUnformatted(figures.note.c_str());
-    ImGui::PopTextWrapPos();
+    foot(state, figures, shown_state, {&left, right});
     ImGui::PopItemWidth();
     ImGui::End();
 }

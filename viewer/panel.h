@@ -3,7 +3,10 @@
 
 #include "viewer/cell.h"
 #include "viewer/cell_view.h"
+#include "viewer/file_panel.h"
 #include "viewer/motion_panel.h"
+#include "viewer/pane.h"
+#include "viewer/saver.h"
 #include "viewer/view_options.h"
 
 #include <glm/vec2.hpp>
@@ -26,17 +29,6 @@ enum class Beside {
     side_by_side,  ///< in a picture of its own, by the same camera
 };
 
-/// What can be saved.
-enum class Saved { picture, baked };
-
-/// Asked before a file is written where another one stands.
-struct SaveQuestion {
-    Saved what = Saved::picture;
-    std::filesystem::path path;
-    bool is_input = false;  ///< then replacing it is not offered
-};
-enum class SaveReply { none, replace, keep_both, cancel };
-
 /// What the widgets show and change.
 struct PanelState {
     ViewOptions view;  ///< but its wipe, which follows from what is beside
@@ -51,9 +43,7 @@ struct PanelState {
     int reference_rays = 1024;          ///< even
     bool wants_reference = false;
     bool shows_help = false;
-    char picture_path[512] = "picture.png";
-    char baked_path[512] = "baked.ply";
-    std::optional<SaveQuestion> question;  ///< shown above all else until there is a reply
+    SavePaths paths;
 };
 
 /// What is shown besides, per frame.
@@ -63,6 +53,9 @@ struct PanelFigures {
     std::string note;       ///< of the window: saved files, failures; one line or empty
     std::string device;     ///< what draws
     std::span<const std::filesystem::path> written;
+    FileLists files;
+    PaneLabels labels;                       ///< of what is beside each other
+    const SaveQuestion* question = nullptr;  ///< shown above all else until there is a reply
 };
 
 /// What the user did in one frame.
@@ -70,12 +63,11 @@ struct PanelInput {
     bool view_changed = false;  ///< PanelState::view and what is beside
     bool frame_all = false;
     bool add_map = false;  ///< a cube map where the eye is
-    bool save_picture = false;
-    bool save_baked = false;
+    FileWishes files;
     bool cancel = false;
     bool solve_again = false;  ///< after it was cancelled
     bool close = false;
-    SaveReply reply = SaveReply::none;  ///< to PanelState::question
+    SaveReply reply = SaveReply::none;  ///< to PanelFigures::question
     glm::vec2 orbit_deg{0.0f};          ///< azimuth, elevation
     glm::vec2 pan{0.0f};                ///< shares of the window's height, y upwards
     float zoom = 1.0f;                  ///< factor on the distance
@@ -91,16 +83,16 @@ struct PanelInput {
 /// Dear ImGui in a window whose context is current in this thread. At most one at a time.
 class Panel {
 public:
-    /// scale: of all sizes, for displays of high density.
-    Panel(GLFWwindow* window, float scale);
+    static constexpr float kWidth = 360.0f;  ///< unscaled pixels
+
+    explicit Panel(GLFWwindow* window);
     ~Panel();
     Panel(const Panel&) = delete;
     Panel& operator=(const Panel&) = delete;
 
     /// Takes the input that came since the last call and lays the widgets out. right: null where
-    /// there is none of its own. moved: what motion shows.
-    /// keys: pressed since then, in order: capital letters, digits,
-    /// signs, and the two below.
+    /// there is none of its own. moved: what motion shows. keys: pressed since then, in order:
+    /// capital letters, digits, signs, and those below.
     PanelInput build(PanelState& state, const CellView& left, const CellView* right,
                      const PanelFigures& figures, MotionPanel& motion, const MotionView& moved,
                      std::string_view keys);
@@ -112,10 +104,14 @@ public:
 private:
     void widgets(PanelState& state, const CellView& left, const CellView* right,
                  const PanelFigures& figures, MotionPanel& motion, PanelInput& input);
+    void fit_scale();
     void solver_widgets(PanelState& state, const Model* model);
     void compare_widgets(PanelState& state, const CellView& left, const CellView* right,
                          PanelInput& input);
     void mouse(PanelState& state, PanelInput& input, float wipe_x, float left);
+    GLFWwindow* window_;
+    float content_scale_ = 0.0f, pixel_ratio_ = 0.0f;  ///< that sizes are made for
+    FilePanel files_;
     Cell edited_, edited_right_;       ///< what the widgets show while they are dragged
     Falloff falloff_ = Falloff::none;  ///< kept while the distance is unlimited
     TexelSettings texels_;             ///< kept while the values lie elsewhere

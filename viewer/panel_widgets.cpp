@@ -3,6 +3,7 @@
 #include "image/color_map.h"
 #include "viewer/part_list.h"
 #include "viewer/pixel_fill.h"
+#include "viewer/tip.h"
 
 #include <imgui.h>
 
@@ -16,10 +17,25 @@ namespace surfelao {
 namespace {
 
 constexpr int kBins = 48;
+constexpr float kQuestionWide = 32.0f;  // letters
 
 constexpr const char* kColorNames[] = {"visibility", "rays",     "difference",  "bent normals",
                                        "normals",    "levels",   "environment", "charts",
                                        "density",    "textured", "coverage",    "radius"};
+constexpr const char* kColorTips[] = {
+    "1: the share of light that comes in, 1 - occlusion, as grey",
+    "2: the same by rays",
+    "3: between the answer and rays, as a heat map",
+    "4: where light comes from on the mean: x, y, z as red, green, blue",
+    "5: which way the surface faces, likewise",
+    "6: how deep in the octree a surfel lies",
+    "7: the light of a panorama on a grey surface",
+    "8: of a map: the pieces that the surface was cut into",
+    "9: of a map: texels per unit of length",
+    "0: the file's colours, times visibility",
+    "of cube maps: red where none of them answers",
+    "of vo with a dynamic radius: that radius"};
+static_assert(std::size(kColorTips) == std::size(kColorNames));
 constexpr const char* kSurfaceNames[] = {"triangles", "splats", "affine", "points"};
 
 constexpr const char* kHelp[][2] = {
@@ -45,7 +61,8 @@ constexpr const char* kHelp[][2] = {
     {"B", "save the baked file"},
     {"H", "this help"},
     {"Q", "quit"},
-    {"drop a file", "open it"},
+    {"O", "open a file"},
+    {"drop files", "open them: the first is shown"},
 };
 
 ImVec4 shown(glm::vec3 linear)
@@ -71,11 +88,14 @@ bool edit_distance(DistanceLimit& limit, Falloff& falloff)
                            ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
         limit = percent > 0.0f ? DistanceLimit{percent, true, falloff} : DistanceLimit{};
     bool apply = was_set();
+    tip("how far occluders count, in % of the model's diagonal; 0: however far");
     bool smooth = falloff == Falloff::smooth;
     if (percent > 0.0f && ImGui::Checkbox("smooth falloff", &smooth)) {
         limit.falloff = smooth ? Falloff::smooth : Falloff::none;
         apply = true;
     }
+    if (percent > 0.0f)
+        tip("what occludes counts less towards that distance, not all or nothing");
     return apply;
 }
 
@@ -89,6 +109,7 @@ bool edit_ground(std::optional<GroundPlane>& ground, const Model* model)
             ground = GroundPlane{model ? up_direction(model->up) : GroundPlane{}.up};
         apply = true;
     }
+    tip("an endless plane under the model takes light from it");
     if (!ground || !model || !model->occluding_ground)
         return apply;
     const Frame& frame = model->geometry().frame;
@@ -98,10 +119,13 @@ bool edit_ground(std::optional<GroundPlane>& ground, const Model* model)
                           static_cast<float>(kPerPixel * frame.diagonal), nullptr, nullptr, "%.6g"))
         ground->height = height;
     apply |= was_set();
+    tip("of the ground, along the up axis, in the file's units");
     if (ground->height && ImGui::Button("below the lowest point")) {
         ground->height.reset();
         apply = true;
     }
+    if (ground->height)
+        tip("where it lies unless a height is given");
     return apply;
 }
 
@@ -113,14 +137,19 @@ bool edit_target(TargetSettings& target)
         target.normals.source = static_cast<NormalSource>(source);
         apply = true;
     }
+    tip("which way the surface faces: as the file says where that is usable, as it says in any "
+        "case, the mean of the faces around, or each face's own");
     ImGui::SliderFloat("crease", &target.normals.crease, 0.0f, 180.0f, "%.0f deg",
                        ImGuiSliderFlags_AlwaysClamp);
     apply |= was_set();
+    tip("faces that meet at more degrees are not smoothed together, 0 to 180");
     int values = static_cast<int>(target.values);
     if (ImGui::Combo("values", &values, "fit\0point\0")) {
         target.values = static_cast<VertexValues>(values);
         apply = true;
     }
+    tip("fit: values that are right all over the faces when they are interpolated; point: those at "
+        "the vertices themselves");
     return apply;
 }
 
@@ -138,6 +167,7 @@ bool edit_texels(TexelSettings& texels)
         }
         ImGui::EndCombo();
     }
+    tip("of the map, in texels each way");
     int uvs = texels.uvs != UvChoice::made ? 0 : texels.blended ? 2 : 1;
     if (ImGui::Combo("charts", &uvs, "the file's, or new\0new\0new, blended\0")) {
         texels.uvs = uvs == 0 ? UvChoice::automatic : UvChoice::made;
@@ -145,6 +175,8 @@ bool edit_texels(TexelSettings& texels)
         texels.udim = false;
         apply = true;
     }
+    tip("texture coordinates: the file's where it has usable ones, new ones, or new ones that fade "
+        "into each other at seams");
     return apply;
 }
 
@@ -154,6 +186,8 @@ std::optional<std::uint32_t> edit_parts(const Scene& scene, PartChoice& parts)
     int clear = static_cast<int>(parts.clear);
     if (ImGui::Combo("glass", &clear, "solid\0open\0cut by alpha\0"))
         parts.clear = static_cast<ClearSurfaces>(clear);
+    tip("surfaces that let light through: they occlude, do not, or occlude where their alpha is at "
+        "least a half");
     std::vector<PartTick> ticks = part_ticks(scene, parts);
     if (ticks.empty()) {
         ImGui::TextDisabled("no part of it has a name");
@@ -189,8 +223,10 @@ std::optional<std::uint32_t> edit_parts(const Scene& scene, PartChoice& parts)
                                   static_cast<unsigned long long>(tick.triangles));
             ImGui::TableNextColumn();
             ImGui::Checkbox("##occludes", &tick.occludes);
+            tip("takes light from others");
             ImGui::TableNextColumn();
             ImGui::Checkbox("##baked", &tick.is_baked);
+            tip("has values, and is shown");
             ImGui::PopID();
         }
     }
@@ -211,12 +247,14 @@ bool view_widgets(PanelState& state)
             view.colors = shows_holes ? Colors::coverage : Colors::visibility;
             changed = true;
         }
+        tip("shows the pixels that no cube map answers");
     }
     int colors = static_cast<int>(view.colors);
     if (ImGui::Combo("colours", &colors, kColorNames, IM_ARRAYSIZE(kColorNames))) {
         view.colors = static_cast<Colors>(colors);
         changed = true;
     }
+    tip(kColorTips[colors]);
     int surface = static_cast<int>(view.surface);
     if (state.left.settings.texels)
         changed |= ImGui::Checkbox("flat (A)", &state.shows_atlas);
@@ -225,16 +263,27 @@ bool view_widgets(PanelState& state)
         view.surface = static_cast<Shape>(surface);
         changed = true;
     }
-    if (view.surface != Shape::triangles && !state.left.settings.texels && !state.left.at_pixels)
+    if (state.left.settings.texels)
+        tip("the map itself in place of the model");
+    else if (!state.left.at_pixels)
+        tip("T: what is drawn: triangles, surfels as disks, the same drawn affinely, or as points");
+    if (view.surface != Shape::triangles && !state.left.settings.texels && !state.left.at_pixels) {
         changed |= ImGui::SliderFloat("splat radius", &view.radius_scale, 0.1f, 4.0f, "%.2f",
                                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-    if (view.colors == Colors::environment)
+        tip("of disks, times what covers the surface: 0.1 to 4");
+    }
+    if (view.colors == Colors::environment) {
         changed |= ImGui::SliderFloat("exposure", &view.exposure, -6.0f, 6.0f, "%.1f EV",
                                       ImGuiSliderFlags_AlwaysClamp);
-    if (view.colors == Colors::difference)
+        tip("brighter or darker by stops: each doubles or halves the light");
+    }
+    if (view.colors == Colors::difference) {
         changed |= ImGui::SliderFloat("full scale", &view.difference_scale, 0.001f, 1.0f, "%.3f",
                                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+        tip("the difference of occlusion that is hottest, 0.001 to 1");
+    }
     changed |= ImGui::Checkbox("shadow on the ground", &view.ground);
+    tip("G: what the model takes from the ground below it; for the picture alone");
     return changed;
 }
 
@@ -260,6 +309,9 @@ void error_lines(const PixelError& error)
         "at pixels: RMSE %.4f   bias %+.4f\n95 %% %.4f   (%llu pixels, %u rays each)",
         error.found.rmse, error.found.bias, error.found.p95,
         static_cast<unsigned long long>(error.found.count), error.rays);
+    tip("what the picture shows against rays there, of occlusion 0 to 1; bias: positive is too "
+        "dark; "
+        "95 % of the pixels are off by less");
 }
 
 void map_lines(const CellView& view)
@@ -292,6 +344,7 @@ void stage_lines(const SessionState& s)
                            s.solve_s);
     else
         ImGui::Text("read %.3f s   solve %.3f s", s.read_s, s.solve_s);
+    tip("reading the file, building the engine's tree, solving");
     if (!s.reference.empty() && s.reference_s)
         ImGui::Text("reference %.3f s", *s.reference_s);
     else if (!s.reference.empty())
@@ -301,6 +354,10 @@ void stage_lines(const SessionState& s)
     if (s.map_error)
         ImGui::Text("seen %.4f (%.4f to %.4f)\nbias %+.4f   95 %% %.4f", s.map_error->rmse,
                     s.map_error->low, s.map_error->high, s.map_error->bias, s.map_error->p95);
+    if (s.map_error)
+        tip("against rays, of occlusion 0 to 1: RMSE all over the surface and where it lies in 95 "
+            "of "
+            "100 bakes; bias: positive is too dark; 95 % of the surface is off by less");
     if (!s.error)
         return;
     const ErrorStatistics& seen = s.error->seen;
@@ -310,6 +367,9 @@ void stage_lines(const SessionState& s)
         seen.rmse, s.error->floor, s.error->solve, seen.bias, seen.p95, seen.max,
         static_cast<unsigned long long>(seen.count),
         static_cast<unsigned long long>(s.error->left_out));
+    tip("against rays, of occlusion 0 to 1: RMSE all over the surface; floor: what the best values "
+        "at vertices would leave; solve: of the answers alone; bias: positive is too dark; 95 % of "
+        "the points are off by less");
 }
 
 void histogram(const Session& session)
@@ -414,11 +474,16 @@ void question_window(const SaveQuestion& question, SaveReply& reply)
                                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
                                     ImGuiWindowFlags_NoSavedSettings))
         return;
-    const std::string name = question.path.string();
+    ImGui::PushTextWrapPos(kQuestionWide * ImGui::GetFontSize());
+    for (const std::filesystem::path& file : question.there)
+        ImGui::TextUnformatted(file.c_str());
+    ImGui::PopTextWrapPos();
+    const bool is_one = question.there.size() == 1;
     if (question.is_input)
-        ImGui::Text("%s was read and is never replaced.", name.c_str());
+        ImGui::TextUnformatted(is_one ? "was read and is never replaced."
+                                      : "exist; what was read is never replaced.");
     else
-        ImGui::Text("%s exists. Replace it?", name.c_str());
+        ImGui::TextUnformatted(is_one ? "exists. Replace it?" : "exist. Replace them?");
     const auto button = [&](const char* label, SaveReply meaning) {
         if (ImGui::Button(label))
             reply = meaning;

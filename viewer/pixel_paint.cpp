@@ -24,8 +24,8 @@ glm::vec3 direction_number(glm::vec3 direction)
     return 0.5f + 0.5f * direction;
 }
 
-/// Light from all around, along a bent normal; with AO grids, less what comes out of the
-/// cones that the objects hide.
+/// Light from all around, along a bent normal; with AO grids, less what comes out of the cones that
+/// the objects hide.
 class SkyLight {
 public:
     SkyLight(const ViewOptions& options, UpAxis up, const Image* panorama)

@@ -110,6 +110,24 @@ void Session::open(const std::filesystem::path& path, UpAxis up, const SessionSe
     open(path, up, reading);
 }
 
+void Session::set_up(UpAxis up)
+{
+    settings_.target.sky = up_direction(up);
+    if (settings_.ground)
+        settings_.ground = GroundPlane{up_direction(up)};
+    Making anew = making_.value_or(Making{.path = state_.path,
+                                          .up = up,
+                                          .scene = scene_,
+                                          .target = {},
+                                          .parts = settings_.parts,
+                                          .ground = {}});
+    anew.up = up;
+    anew.target = settings_.target;
+    anew.ground = settings_.ground;
+    if (making_ || state_.model)
+        start_making(std::move(anew));
+}
+
 void Session::open(const Session& other, const SessionSettings& settings)
 {
     const SessionState& shown = other.state_;

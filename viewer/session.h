@@ -91,6 +91,10 @@ public:
     void open(const std::filesystem::path& path, UpAxis up, const SessionSettings& settings,
               const ReadOptions& reading = {});
 
+    /// The same model, under another sky: its shadow and what is measured of the sky follow, also a
+    /// ground that occludes, which then lies below the lowest point.
+    void set_up(UpAxis up);
+
     /// The model that another session shows, without reading or making it again; of the settings,
     /// only engine, distance and texels count.
     void open(const Session& other, const SessionSettings& settings);

@@ -9,10 +9,12 @@
 #include "viewer/motion_panel.h"
 #include "viewer/mover.h"
 #include "viewer/native_window.h"
-#include "viewer/output_files.h"
+#include "viewer/pane.h"
+#include "viewer/pane_labels.h"
+#include "viewer/recent_files.h"
 #include "viewer/render.h"
 #include "viewer/renderer.h"
-#include "viewer/sample_sum.h"
+#include "viewer/saver.h"
 
 #include <GLFW/glfw3.h>
 
@@ -31,46 +33,6 @@ constexpr double kIdleSeconds = 0.5;
 constexpr double kMovingSeconds = 0.004;  // while something moves: little beside a picture
 constexpr int kEchoFrames = 4;  // after an event: widgets take some until they stand still
 
-/// Where a picture goes.
-struct PaneWish {
-    Rect place;
-    Rect shown;          ///< a part of it
-    float wipe = 1.0f;   ///< ViewOptions::wipe
-    bool right = false;  ///< of the right cell
-};
-
-/// A picture of the model in a part of the window, sample by sample.
-struct Pane {
-    Pane(const Renderer& renderer, const GlContext& context, const PaneWish& wish)
-        : as(wish),
-          target(renderer.make_target(wish.place.width, wish.place.height)),
-          sum(context, wish.place.width, wish.place.height)
-    {
-    }
-    PictureSize size() const { return {as.place.width, as.place.height}; }
-    PaneWish as;
-    Framebuffer target;
-    SampleSum sum;
-};
-
-/// What the panes show, without what is around them.
-Image joined(const std::vector<Pane>& panes)
-{
-    int right = 0;
-    for (const Pane& pane : panes)
-        right = std::max(right, pane.as.place.x + pane.as.place.width);
-    const Rect& first = panes.front().as.place;
-    Image all(right - first.x, first.height);
-    for (const Pane& pane : panes) {
-        const Image image = pane.sum.mean();
-        const int left = pane.as.shown.x - pane.as.place.x;
-        for (int y = 0; y < image.height; ++y)
-            for (int x = left; x < left + pane.as.shown.width; ++x)
-                all.at(pane.as.place.x - first.x + x, y) = image.at(x, y);
-    }
-    return all;
-}
-
 /// The window with all that belongs to it, made and destroyed with its context current.
 class Viewer {
 public:
@@ -82,17 +44,24 @@ public:
           left_(context_),
           motion_panel_(mover_),
           panel_state_(options.panel),
-          panel_(window, content_scale(window))
+          panel_(window),
+          environment_(options.environment),
+          recent_(options.recent_list),
+          up_(options.up)
     {
-        if (options.environment)
-            left_.renderer().set_environment(*options.environment);
+        if (environment_)
+            left_.renderer().set_environment(*environment_);
         for (const std::filesystem::path& path : options.other_inputs)
-            files_.add_input(path);
+            saver_.add_input(path);
+        if (!options.input.empty())
+            list_open(options.input);
+        for (const std::filesystem::path& path : options.more_inputs)
+            list_open(path);
         panel_state_.wants_reference |= needs_reference(panel_state_);
         left_.session().solve(panel_state_.left.settings);
         mover_.begin_at(options.reading.moment);
         if (!options.input.empty())
-            left_.session().open(options.input, options.up, options.reading);
+            left_.session().open(options.input, up_, options.reading);
     }
 
     void run()
@@ -110,7 +79,7 @@ public:
     }
 
     /// Every file that was saved.
-    const std::vector<std::filesystem::path>& written() const { return files_.written(); }
+    const std::vector<std::filesystem::path>& written() const { return saver_.written(); }
 
 private:
     void wait_for_events()
@@ -129,14 +98,33 @@ private:
             if (glfwGetTime() - start < timeout)
                 echo_frames_ = kEchoFrames;
         }
-        if (inbox_.path.empty())
+        take_dropped();
+    }
+
+    /// The first is shown; the others wait in the list.
+    void take_dropped()
+    {
+        const std::vector<std::filesystem::path> dropped = std::exchange(inbox_.paths, {});
+        if (dropped.empty())
             return;
+        for (const std::filesystem::path& path : dropped)
+            list_open(path);
+        open(dropped.front());
+    }
+
+    void open(const std::filesystem::path& path)
+    {
         PartChoice& parts =
             panel_state_.left.settings.parts;  // names are of the file that is shown
         parts.exclude = parts.receivers = {};
         mover_.begin_at({});
-        left_.session().open(std::exchange(inbox_.path, {}), options_.up,
-                             panel_state_.left.settings);
+        left_.session().open(path, up_, panel_state_.left.settings);
+    }
+
+    void list_open(const std::filesystem::path& path)
+    {
+        if (std::ranges::find(open_files_, whole_path(path)) == open_files_.end())
+            open_files_.push_back(whole_path(path));
     }
 
     const SessionState& state() const { return left_.session().state(); }
@@ -149,9 +137,13 @@ private:
             const CellView::Changes changes = left_.update();
             if (changes.model)
                 keep_view(state().model->geometry().frame);
+            if (changes.model && camera_.up != up_direction(state().model->up))
+                frame_all();
             if (changes.file) {
                 note_.clear();
-                files_.add_input(state().path);
+                saver_.add_input(state().path);
+                list_open(state().path);
+                recent_.add(state().path);
                 glfwSetWindowTitle(window_,
                                    (state().path.filename().string() + " - surfelao").c_str());
                 frame_all();
@@ -193,8 +185,8 @@ private:
         } else {
             if (!right_) {
                 right_.emplace(context_);
-                if (options_.environment)
-                    right_->renderer().set_environment(*options_.environment);
+                if (environment_)
+                    right_->renderer().set_environment(*environment_);
             }
             right_->session().open(left_.session(), settings);
         }
@@ -246,8 +238,7 @@ private:
 
     int samples() const { return panes_.empty() ? 0 : panes_.front().sum.count(); }
 
-    /// The pictures in this part of the window; they begin anew where anything is other than it
-    /// was.
+    /// The pictures in this part of the window; they begin anew where anything has changed.
     void lay_out(const Rect& part)
     {
         // a reference that is not there yet is not shown instead of the result
@@ -325,12 +316,14 @@ private:
             look();
             draw_model(shown);
         }
-        save_wanted(input);
         panel_.draw();
+        // these draw elsewhere, which the widgets must not follow
+        save_wanted(input);
+        take_wishes(input.files);
 
         bool keep_open = !input.close;
         if (options_.on_frame)
-            keep_open &= options_.on_frame(read_window(shown), left_.session());
+            keep_open &= options_.on_frame(picture_of(context_, shown), left_.session());
         glfwSwapBuffers(window_);
         return keep_open;
     }
@@ -364,8 +357,7 @@ private:
                 view.pictures.push_back(pane.as.place);
         }
         view.positions = left_.positions();
-        const Model& model = left_.is_moved() ? *mover_.base() : *state().model;
-        view.triangles = model.geometry().triangles;
+        view.triangles = left_.model()->geometry().triangles;
         return view;
     }
 
@@ -389,6 +381,8 @@ private:
             return;
         ViewOptions view = shown_view(pane.as.right);
         view.wipe = pane.as.wipe;
+        if (panel_state_.beside == Beside::side_by_side && pane.as.wipe == 0.0f)
+            view.colors = colors_of_rays(view.colors);
         if (view.colors == Colors::textured) {
             if (const auto notes = cell.take_paint(); !notes.empty())
                 note_ = notes.front();
@@ -416,7 +410,15 @@ private:
     PanelFigures figures() const
     {
         const GlInfo& info = context_.info();
-        return {frame_ms_, samples(), note_, info.renderer, files_.written()};
+        return {.frame_ms = frame_ms_,
+                .samples = samples(),
+                .note = note_,
+                .device = info.renderer,
+                .written = saver_.written(),
+                .files = {open_files_, recent_.files(),
+                          has_view() ? whole_path(state().path) : std::filesystem::path(), up_},
+                .labels = labels(),
+                .question = saver_.question() ? &*saver_.question() : nullptr};
     }
 
     void apply(const PanelInput& input)
@@ -468,93 +470,74 @@ private:
         }
     }
 
+    /// What each side of the line shows.
+    PaneLabels labels() const
+    {
+        if (!has_view() || panel_state_.beside == Beside::nothing)
+            return {};
+        if (right_)
+            return {label_of(panel_state_.left, left_, shown_view(false).colors),
+                    label_of(right_cell(panel_state_), *right_, shown_view(true).colors)};
+        return labels_with_rays(panel_state_.left, left_, shown_view(false).colors,
+                                panel_state_.beside == Beside::side_by_side);
+    }
+
     /// After drawing, so that there is a picture.
     void save_wanted(const PanelInput& input)
     {
-        if (input.save_picture)
-            ask_or_save(Saved::picture, panel_state_.picture_path);
-        if (input.save_baked)
-            ask_or_save(Saved::baked, panel_state_.baked_path);
-        if (input.reply != SaveReply::none && panel_state_.question)
-            answer(*std::exchange(panel_state_.question, std::nullopt), input.reply);
-    }
-
-    /// What would be lost is asked about first.
-    void ask_or_save(Saved what, const std::filesystem::path& path)
-    {
-        const Standing standing = files_.standing_of(path);
-        if (standing == Standing::nothing || standing == Standing::written)
-            save(what, path);
-        else
-            panel_state_.question = SaveQuestion{what, path, standing == Standing::input};
-    }
-
-    void answer(const SaveQuestion& question, SaveReply reply)
-    {
-        if (reply == SaveReply::keep_both)
-            save(question.what, next_free_name(question.path));
-        else if (reply == SaveReply::cancel)
-            note_ = "not saved";
-        else if (files_.standing_of(question.path) == Standing::input)
-            ask_or_save(question.what, question.path);  // it was opened meanwhile
-        else
-            save(question.what, question.path);
-    }
-
-    /// Whatever fails is told in the window.
-    void save(Saved what, const std::filesystem::path& path)
-    {
-        const bool has_content =
-            what == Saved::picture ? has_view() && samples() > 0 : state().is_solved;
-        if (!has_content) {
-            note_ = what == Saved::picture ? "there is no picture yet" : "nothing is solved yet";
-            return;
+        Savable content{.session = left_.session(), .is_moving = left_.is_moved(), .picture = {}};
+        if (has_view() && samples() > 0)
+            content.picture = [&] { return picture(); };
+        if (input.files.save) {
+            const SavePaths& paths = panel_state_.paths;
+            note_ = saver_.save(*input.files.save,
+                                *input.files.save == Saved::picture ? paths.picture : paths.baked,
+                                content);
         }
-        if (what == Saved::baked && left_.is_moved()) {
-            note_ = "not saved: this pose is not solved yet";
-            return;
+        if (input.reply != SaveReply::none)
+            note_ = saver_.reply(input.reply, content);
+    }
+
+    Image picture() const
+    {
+        const bool is_split = panel_state_.beside == Beside::side_by_side;
+        Image image = picture_of(panes_, labels(), is_split ? 0.5f : panel_state_.wipe);
+        if (const auto legend = legend_of(*state().model, state().layout.get(), shown_view(false)))
+            draw_heat_legend(image, legend->title, legend->low, legend->high);
+        return image;
+    }
+
+    void take_wishes(const FileWishes& wishes)
+    {
+        if (!wishes.open.empty()) {
+            list_open(wishes.open);
+            open(wishes.open);
         }
+        std::erase(open_files_, wishes.forget);
+        if (!wishes.environment.empty())
+            set_environment(wishes.environment);
+        if (wishes.up) {
+            up_ = *wishes.up;
+            Session& session = left_.session();
+            session.set_up(up_);
+            panel_state_.left.settings.target = session.settings().target;
+            panel_state_.left.settings.ground = session.settings().ground;
+        }
+    }
+
+    void set_environment(const std::filesystem::path& path)
+    {
         try {
-            if (what == Saved::picture)
-                save_picture(path);
-            else
-                left_.session().save(path);
-            files_.add_written(path);
-            note_ = "saved " + path.string();
-            if (what == Saved::baked && state().is_draft)
-                note_ += ", of the draft";
-            if (what == Saved::baked && !state().pose.is_rest())
-                note_ += ": values of this pose; a glTF keeps the file's own places";
+            environment_ = read_image(path);
+            left_.renderer().set_environment(*environment_);
+            if (right_)
+                right_->renderer().set_environment(*environment_);
+            saver_.add_input(path);
+            note_.clear();
+            restart();
         } catch (const std::exception& error) {
             note_ = error.what();
         }
-    }
-
-    void save_picture(const std::filesystem::path& path)
-    {
-        Image image = joined(panes_);
-        if (const auto legend = legend_of(*state().model, state().layout.get(), shown_view(false)))
-            draw_heat_legend(image, legend->title, legend->low, legend->high);
-        write_image(path, image);
-    }
-
-    /// What is on the window now, as light.
-    Image read_window(const Framebuffer& shown) const
-    {
-        Framebuffer copy(context_, {.width = shown.width(), .height = shown.height()});
-        shown.copy_to(copy);
-        const std::vector<glm::vec4> texels = copy.read_color(copy.rect());
-        Image image(shown.width(), shown.height());
-        for (int y = 0; y < image.height; ++y) {
-            for (int x = 0; x < image.width; ++x) {
-                const std::size_t row = static_cast<std::size_t>(image.height - 1 - y);
-                const glm::vec4 texel = texels[row * static_cast<std::size_t>(image.width) +
-                                               static_cast<std::size_t>(x)];
-                image.at(x, y) = glm::vec4(srgb_decode(texel.r), srgb_decode(texel.g),
-                                           srgb_decode(texel.b), 1.0f);
-            }
-        }
-        return image;
     }
 
     const WindowOptions& options_;
@@ -570,7 +553,11 @@ private:
     Camera camera_;
     Frame frame_;  ///< that the camera is in
     std::vector<Pane> panes_;
-    OutputFiles files_;
+    std::optional<Image> environment_;
+    RecentFiles recent_;
+    UpAxis up_;
+    std::vector<std::filesystem::path> open_files_;
+    Saver saver_;
     std::string note_;
     double frame_ms_ = 0.0;
     int echo_frames_ = 0;

@@ -14,8 +14,10 @@
 namespace surfelao {
 
 struct WindowOptions {
-    std::filesystem::path input;  ///< may be empty: files can be dropped on the window
+    std::filesystem::path input;  ///< may be empty: files can be opened in the window
     ReadOptions reading = {};     ///< of the input
+    std::vector<std::filesystem::path> more_inputs;  ///< in the list of open files behind it
+    std::filesystem::path recent_list;  ///< RecentFiles; empty: what was opened is not kept
     int width = 1280, height = 800;
     UpAxis up = UpAxis::y;
     std::string camera;                ///< parse_camera's words, for every file that is opened

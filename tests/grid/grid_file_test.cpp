@@ -176,6 +176,7 @@ TEST(GridFile, MalformedTextsAreRefusedWithASentence)
         {"\"cone\"", "\"cube\"", "cone or sh"},
         {"\"rescale\"", "7", "no text"},
         {"0.0625", "1.0", "border.value"},
+        {"\"fade\": 0.1", "\"fade\": 0.2", "border.fade"},
         {"\"columns\": 3", "\"columns\": 4", "slices"},
     };
     for (const Case& one : kCases) {

@@ -116,7 +116,7 @@ TEST(GridPass, SeesTheSameWithTheEyeInsideOfTheBoxAndWithoutPerspective)
 }
 
 // The floor below a ball, darkest under it: on the way out no step tells where the box ends.
-TEST(GridPass, NoBoxIsSeenOnTheFloor)
+TEST(PlacedGrids, NoBoxIsSeenOnTheFloor)
 {
     const auto step_at_border = [](GridBorder border, float place) {
         const PlacedGrid ball{

@@ -42,11 +42,15 @@ TEST(OutputFiles, WhatWasWrittenMayBeReplacedAndIsListedOnce)
 TEST(NextFreeName, IsTheFirstUnderWhichNothingStandsNotEvenALinkToNothing)
 {
     const TemporaryFolder folder;
-    EXPECT_EQ(next_free_name(folder / "a.b.ply"), folder / "a.b-2.ply");
+    const auto with_map = [](const fs::path& path) {
+        return std::vector{path, fs::path(path).replace_extension(".png")};
+    };
+    EXPECT_EQ(next_free_name(folder / "a.b.ply", with_map), folder / "a.b-2.ply");
     folder.file("a.b-2.ply", "x");
     fs::create_symlink("nothing", folder / "a.b-3.ply");
-    EXPECT_EQ(next_free_name(folder / "a.b.ply"), folder / "a.b-4.ply");
-    EXPECT_EQ(next_free_name("name"), "name-2");
+    folder.file("a.b-4.png", "x");
+    EXPECT_EQ(next_free_name(folder / "a.b.ply", with_map), folder / "a.b-5.ply");
+    EXPECT_EQ(next_free_name("name", with_map), "name-2");
 }
 
 TEST(ChooseEngine, EachEngineKeepsItsQuality)

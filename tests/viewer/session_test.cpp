@@ -135,6 +135,28 @@ TEST_F(SessionTest, OtherPartsMakeAnotherModel)
     EXPECT_EQ(session.state().model.get(), &model);
 }
 
+// The model that --up z and a ground make, without reading the file again.
+TEST_F(SessionTest, AnotherUpAxisMakesTheModelThatItIsOpenedWith)
+{
+    Session turned, opened;
+    SessionSettings settings;
+    settings.ground.emplace();
+    turned.open(ball(), UpAxis::y, settings);
+    ASSERT_TRUE(wait_for_whole_answer(turned));
+    turned.set_up(UpAxis::z);
+    ASSERT_TRUE(wait_for(
+        turned, [](const Session::Changes& changes) { return changes.model && !changes.file; }));
+    ASSERT_TRUE(wait_for_whole_answer(turned));
+    settings.target.sky = glm::vec3(0, 0, 1);
+    settings.ground = GroundPlane{glm::vec3(0, 0, 1)};
+    opened.open(ball(), UpAxis::z, settings);
+    ASSERT_TRUE(wait_for_whole_answer(opened));
+    EXPECT_EQ(turned.state().model->ground.up, glm::vec3(0, 0, 1));
+    EXPECT_EQ(turned.settings(), opened.settings());
+    EXPECT_EQ(first_values(turned.occlusion(), turned.occlusion().size()),
+              first_values(opened.occlusion(), opened.occlusion().size()));
+}
+
 TEST_F(SessionTest, EqualSettingsSolveNothing)
 {
     Session session;

@@ -7,6 +7,7 @@
 #include "image/image_file.h"
 #include "scenes.h"
 #include "temporary_folder.h"
+#include "widget_finder.h"
 #include "window_driver.h"
 
 #include <GLFW/glfw3.h>
@@ -15,7 +16,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -55,7 +55,7 @@ void drop(const std::filesystem::path& path)
     const GLFWdropfun callback = glfwSetDropCallback(window, nullptr);
     glfwSetDropCallback(window, callback);
     const std::string name = path.string();
-    const char* names[] = {"not this one.obj", name.c_str()};
+    const char* names[] = {name.c_str(), "not this one.obj"};
     callback(window, 2, names);
 }
 
@@ -88,7 +88,7 @@ TEST_F(Window, ShowsTheModelAndTheWidgetsAndMovesWithoutSolving)
     write_image(std::filesystem::path(testing::TempDir()) / "surfelao_window.png", last);
 }
 
-// The panel is 330 pixels wide; the box stands in the middle of the rest.
+// The box stands in the middle of what the panel leaves.
 TEST_F(Window, TheModelStandsBesideThePanelAndMovesWhenItIsHidden)
 {
     int frames = 0;
@@ -107,8 +107,8 @@ TEST_F(Window, TheModelStandsBesideThePanelAndMovesWhenItIsHidden)
         return frames < 6;
     };
     (void)show_window(options);
-    EXPECT_GT(beside.low, 330);
-    EXPECT_NEAR(beside.low - 330, 999 - beside.high, 60);
+    EXPECT_GT(beside.low, Panel::kWidth);
+    EXPECT_NEAR(beside.low - Panel::kWidth, 999 - beside.high, 60);
     EXPECT_NEAR(alone.low, 999 - alone.high, 60);
 }
 
@@ -301,9 +301,7 @@ WindowOptions saving_options(const std::filesystem::path& input,
     options.panel.is_hidden = true;
     options.panel.beside = Beside::side_by_side;
     options.panel.reference_rays = 2;
-    std::snprintf(options.panel.picture_path, sizeof options.panel.picture_path, "%s",
-                  picture.c_str());
-    std::snprintf(options.panel.baked_path, sizeof options.panel.baked_path, "%s", baked.c_str());
+    options.panel.paths = {picture.string(), baked.string()};
     return options;
 }
 
@@ -417,9 +415,10 @@ TEST_F(Window, AnswersOfTheGpuLookLikeTheCpus)
 // The widget opens a list of two, the second of which is taken. The box has become small before.
 TEST_F(Window, AnotherTargetInThePanelMakesTheModelAnewUnderTheSameCamera)
 {
-    constexpr double kX = 60.0, kWidget = 251.0, kSecond = 292.0;  // pixels: see the panel
     int frames = 0, frames_after = 0;
     double small = 0.0, after = 0.0;
+    WidgetFinder finder({60.0f}, 160.0f, 360.0f, 8.0f);
+    ImVec2 widget(0.0f, 0.0f);
     WindowOptions options;
     options.input = box_file();
     options.width = 1000;
@@ -433,17 +432,21 @@ TEST_F(Window, AnotherTargetInThePanelMakesTheModelAnewUnderTheSameCamera)
             after = light;
             return ++frames_after < 4;
         }
+        if (frames == 0 && finder.go_on())
+            return true;
         ++frames;
         if (frames == 2) {
+            widget = finder.place_of("values").value_or(widget);
             for (int i = 0; i < 5; ++i)
                 press(GLFW_KEY_MINUS);
         }
         if (frames == 6)
             small = light;
         if (frames == 8 || frames == 11)
-            click(kX, kWidget, frames == 8 ? GLFW_PRESS : GLFW_RELEASE);
+            click(widget.x, widget.y, frames == 8 ? GLFW_PRESS : GLFW_RELEASE);
+        const float second = widget.y + 2.2f * ImGui::GetFrameHeight();
         if (frames == 14 || frames == 17)
-            click(kX, kSecond, frames == 14 ? GLFW_PRESS : GLFW_RELEASE);
+            click(widget.x, second, frames == 14 ? GLFW_PRESS : GLFW_RELEASE);
         return frames < 200;
     };
     (void)show_window(options);
