@@ -534,7 +534,7 @@ private:
     {
         Image image = joined(panes_);
         if (const auto legend = legend_of(*state().model, state().layout.get(), shown_view(false)))
-            draw_heat_legend(image, legend->title, legend->low, legend->high);
+            draw_legend(image, *legend);
         write_image(path, image);
     }
 
