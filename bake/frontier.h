@@ -10,7 +10,6 @@
 #include "bake/compare.h"
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,14 +32,22 @@ enum class Cost {
 /// Errors beyond the floor at which ratios are stated.
 inline constexpr double kTargets[] = {0.010, 0.005};
 
+struct ReportPicture {
+    std::string caption;
+    std::string png;
+    bool is_error = false;  ///< in error_color(), full at kFullColorError; else visibility as grey
+};
+
 /// One scene: its comparison, or why there is none.
 struct FrontierScene {
     std::filesystem::path input;
     std::optional<Comparison> comparison;  ///< without its scene and geometry: counts and rows only
     std::string error;
-    std::vector<std::pair<std::string, std::string>> pictures;  ///< caption, PNG
+    std::vector<ReportPicture> pictures;
 };
 
+/// Over the scenes where both sides reach the error: whether these stand for all says
+/// stands_for_all().
 struct RatioSummary {
     std::size_t scenes = 0;    ///< that count
     std::size_t left_out = 0;  ///< extrapolated, or without a curve
@@ -67,14 +74,24 @@ struct Frontier {
 [[nodiscard]] RatioSummary summary_of(const Frontier& frontier, Engine engine, double beyond,
                                       Cost cost);
 
+/// Whether two of three scenes count at least. Where fewer do they are mostly the easy ones, and
+/// reports say on how many an error is reached, without a median.
+[[nodiscard]] bool stands_for_all(const RatioSummary& summary);
+
+/// "7 of 9"
+[[nodiscard]] std::string scenes_text(const RatioSummary& summary);
+
+/// Seconds of a row's job as they are counted.
+[[nodiscard]] double seconds_of(const Comparison& comparison, const CompareRow& row, Cost cost);
+
 /// Keys summary{at_010{median_ratio, worst_ratio, best_ratio, quartiles, scenes, left_out}, at_005,
 /// with_builds{at_010, at_005}, with_files{...}}, summary_of_engines{NAME{...}}, scenes[...].
 [[nodiscard]] std::string json_of(const Frontier& frontier);
 [[nodiscard]] std::string csv_of(const Frontier& frontier);
 [[nodiscard]] std::string table_of(const Frontier& frontier);
 
-/// A page of its own: plot of the error beyond the floor against time, pictures, worst
-/// points, settings, summary.
+/// A page of its own: machine and run, summary, and of each scene plots of the error beyond the
+/// floor against the time of solving and of the whole job, rows, pictures, worst points.
 /// Marked as a result of `compare` (files/maker_mark.h).
 [[nodiscard]] std::string html_of(const Frontier& frontier);
 

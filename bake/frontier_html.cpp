@@ -1,177 +1,114 @@
 #include "bake/compare_text.h"
 #include "bake/frontier.h"
 #include "bake/html.h"
+#include "bake/plot.h"
 #include "files/maker_mark.h"
 #include "image/color_map.h"
 #include "surfels/number_text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
+#include <utility>
 
 namespace surfelao {
 namespace {
 
-/// One line of the plot.
-struct Series {
-    std::string name;
-    std::string color;
-    std::vector<const CompareRow*> rows;
-};
+constexpr int kDigits = 3;  // significant ones of a time or an error
 
-std::vector<Series> series_of(const Comparison& comparison)
+std::string rounded(double value)
 {
-    std::vector<Series> series = {
-        {"masks", "#c0392b", {}}, {"disks", "#2471a3", {}}, {"Embree", "#1e8449", {}}};
-    for (const CompareRow& row : comparison.rows) {
-        const std::string name = is_opponent(row) ? "Embree" : name_of(row.settings.engine);
-        for (Series& one : series) {
-            if (one.name == name && row.beyond > 0.0 && row.solve_s > 0.0)
-                one.rows.push_back(&row);
-        }
-    }
-    std::erase_if(series, [](const Series& one) { return one.rows.empty(); });
-    for (Series& one : series) {
-        std::stable_sort(one.rows.begin(), one.rows.end(), [](const auto* a, const auto* b) {
-            return job_seconds(*a, false) < job_seconds(*b, false);
-        });
-    }
-    return series;
+    return significant(value, kDigits);
 }
 
-/// A logarithmic axis over whole decades.
-struct Axis {
-    double low = std::numeric_limits<double>::max();
-    double high = 0.0;
-    double from = 0.0, to = 0.0;  ///< pixels
-
-    void include(double value)
-    {
-        low = std::min(low, value);
-        high = std::max(high, value);
-    }
-    void to_decades()
-    {
-        low = std::pow(10.0, std::floor(std::log10(low)));
-        high = std::max(10.0 * low, std::pow(10.0, std::ceil(std::log10(high))));
-    }
-    double at(double value) const
-    {
-        return from + (to - from) * std::log(value / low) / std::log(high / low);
-    }
-};
-
-/// Error beyond the floor against seconds of the job without builds, log-log. Lower left is better.
-std::string plot_of(const Comparison& comparison)
+/// "64" of 64 rays, "0.5" of quality 0.5: short enough to stand at a point.
+std::string point_label(const EngineSettings& settings)
 {
-    const std::vector<Series> series = series_of(comparison);
-    if (series.empty())
-        return "<p>No errors to plot: nobody has any beyond the floor.</p>\n";
-    Axis x, y;
-    for (const Series& one : series) {
-        for (const CompareRow* row : one.rows) {
-            x.include(job_seconds(*row, false));
-            y.include(row->beyond);
-        }
-    }
-    x.to_decades();
-    y.to_decades();
-    x.from = 60;
-    x.to = 700;
-    y.from = 360;
-    y.to = 20;
+    if (settings.engine == Engine::rays)
+        return std::to_string(settings.rays);
+    const std::string setting = setting_of(settings);
+    constexpr std::string_view kWord = "quality ";
+    return setting.starts_with(kWord) ? setting.substr(kWord.size()) : setting;
+}
 
-    const auto number = [](double value) { return fixed(value, 1); };
-    std::string svg = "<svg viewBox=\"0 0 860 410\" width=\"860\" role=\"img\">\n";
-    const auto line = [&](double x1, double y1, double x2, double y2, const char* color) {
-        svg += "<line x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) +
-               "\" y2=\"" + number(y2) + "\" stroke=\"" + color + "\"/>\n";
-    };
-    const auto text = [&](double px, double py, const char* anchor, const std::string& words) {
-        svg += "<text x=\"" + number(px) + "\" y=\"" + number(py) + "\" text-anchor=\"" + anchor +
-               "\">" + escaped(words) + "</text>\n";
-    };
-    for (double decade = x.low; decade < x.high * 1.01; decade *= 10.0) {
-        for (int i = 1; i < 10 && decade * i < x.high * 1.01; ++i)
-            line(x.at(decade * i), y.from, x.at(decade * i), y.to, i == 1 ? "#bbb" : "#eee");
-        text(x.at(decade), y.from + 16, "middle", exact(decade));
+/// Lower left is better. Rows without an error beyond the floor, or without a time, have no place.
+std::optional<Plot> plot_of(const Comparison& comparison, Cost cost)
+{
+    const bool is_map = comparison.texels.has_value();
+    Plot plot;
+    plot.title = comparison.input.filename().string() +
+                 (cost == Cost::solve ? ": error against time of solving"
+                                      : ": error against time of the whole job");
+    plot.x_title = std::string(cost == Cost::solve ? "seconds: solve and "
+                                                   : "seconds: read, build, solve and ") +
+                   (is_map ? "fill" : "fit");
+    plot.y_title = "RMS error beyond the floor";
+    for (const CompareRow& row : comparison.rows) {
+        const std::string name = is_opponent(row) ? "Embree" : name_of(row.settings.engine);
+        const double seconds = seconds_of(comparison, row, cost);
+        if (!(row.beyond > 0.0) || !(seconds > 0.0))
+            continue;
+        auto line = std::ranges::find(plot.lines, name, &PlotLine::name);
+        if (line == plot.lines.end())
+            line = plot.lines.insert(line, {name, {}});
+        line->points.push_back({seconds, row.beyond, point_label(row.settings)});
     }
-    for (double decade = y.low; decade < y.high * 1.01; decade *= 10.0) {
-        for (int i = 1; i < 10 && decade * i < y.high * 1.01; ++i)
-            line(x.from, y.at(decade * i), x.to, y.at(decade * i), i == 1 ? "#bbb" : "#eee");
-        text(x.from - 6, y.at(decade) + 4, "end", exact(decade));
+    return plot.lines.empty() ? std::nullopt : std::optional(std::move(plot));
+}
+
+std::string plots_html(const Comparison& comparison)
+{
+    const std::string name = comparison.input.stem().string();
+    std::string html = "<div class=\"plots\">\n";
+    for (const auto& [cost, kind] :
+         {std::pair(Cost::solve, "-solve"), std::pair(Cost::file, "-job")}) {
+        const std::optional<Plot> plot = plot_of(comparison, cost);
+        if (!plot)
+            return "<p>No errors to plot: nobody has any beyond the floor.</p>\n";
+        html += plot_html(*plot, name + kind);
     }
-    text(0.5 * (x.from + x.to), y.from + 38, "middle",
-         "seconds of solving, and of fitting or filling");
-    text(x.from, 12, "start", "beyond the floor, RMS");
-    double legend = y.to + 16;
-    for (const Series& one : series) {
-        std::string points;
-        for (const CompareRow* row : one.rows)
-            points +=
-                number(x.at(job_seconds(*row, false))) + ',' + number(y.at(row->beyond)) + ' ';
-        svg += "<polyline fill=\"none\" stroke-width=\"2\" stroke=\"" + one.color + "\" points=\"" +
-               points + "\"/>\n";
-        for (const CompareRow* row : one.rows) {
-            svg +=
-                "<circle r=\"4\" fill=\"" + one.color + "\" cx=\"" +
-                number(x.at(job_seconds(*row, false))) + "\" cy=\"" + number(y.at(row->beyond)) +
-                "\"><title>" +
-                escaped(one.name + ", " + setting_of(row->settings) + ": beyond " +
-                        fixed(row->beyond, 4) + ", " + fixed(job_seconds(*row, false), 4) + " s") +
-                "</title></circle>\n";
-        }
-        svg += "<circle r=\"4\" fill=\"" + one.color + "\" cx=\"720\" cy=\"" + number(legend - 4) +
-               "\"/>\n";
-        text(730, legend, "start", one.name);
-        legend += 20;
-    }
-    return svg + "</svg>\n";
+    return html + "</div>\n";
 }
 
 std::string rows_html(const Comparison& comparison)
 {
-    std::string html = "<table>\n";
     const bool is_map = comparison.texels.has_value();
-    html +=
-        row_of_cells({"engine", "setting", "build s", "solve s", is_map ? "fill s" : "fit s",
-                      "µs/receiver", "seen RMSE", "bias", "p95", "max", "bent mean °", "bent p95 °",
-                      "solve RMSE", "solve max", "beyond", "Embree/ours", "with builds"},
-                     "th");
+    std::vector<std::vector<std::string>> rows;
     for (const CompareRow& row : comparison.rows) {
-        html += row_of_cells(
-            {name_of(row.settings.engine), setting_of(row.settings), fixed(row.build_s, 4),
-             fixed(row.solve_s, 4), fixed(is_map ? row.fill_s : row.fit_s, 4),
-             fixed(row.us_per_receiver, 3), fixed(row.seen.rmse, 4), signed_fixed(row.seen.bias, 4),
-             fixed(row.seen.p95, 4), fixed(row.seen.max, 3),
-             bent_text(comparison, row.seen.bent_mean_deg),
-             bent_text(comparison, row.seen.bent_p95_deg), fixed(row.solve.rmse, 4),
-             fixed(row.solve.max, 3), fixed(row.beyond, 4), text_of(row.ratio),
-             text_of(row.ratio_with_builds)},
-            "td");
+        rows.push_back(
+            {name_of(row.settings.engine), setting_of(row.settings), rounded(row.build_s),
+             rounded(row.solve_s), rounded(is_map ? row.fill_s : row.fit_s),
+             rounded(seconds_of(comparison, row, Cost::file)), rounded(row.us_per_receiver),
+             rounded(row.seen.rmse), signed_fixed(row.seen.bias, 4), rounded(row.seen.p95),
+             rounded(row.seen.max), bent_text(comparison, row.seen.bent_mean_deg),
+             bent_text(comparison, row.seen.bent_p95_deg), rounded(row.solve.rmse),
+             rounded(row.solve.max), rounded(row.beyond), text_of(row.ratio),
+             text_of(row.ratio_with_builds)});
     }
-    return html + "</table>\n";
+    return table_html(
+        {"engine", "setting", "build s", "solve s", is_map ? "fill s" : "fit s", "whole job s",
+         "µs/receiver", "seen RMSE", "bias", "p95", "max", "bent mean °", "bent p95 °",
+         "solve RMSE", "solve max", "beyond", "Embree/ours", "with builds"},
+        rows);
 }
 
 std::string worst_html(const Comparison& comparison)
 {
-    std::string html = "<table>\n" + row_of_cells({"engine", "worst point, in triangle", "position",
-                                                   "displayed", "by rays", "error"},
-                                                  "th");
+    std::vector<std::vector<std::string>> rows;
     for (const CompareRow& row : comparison.rows) {
         if (is_opponent(row) || row.settings.quality != kGood)
             continue;
         for (const WorstPoint& point : row.worst) {
             const glm::dvec3 p = point.position;
-            html += row_of_cells(
-                {name_of(row.settings.engine) + ", " + setting_of(row.settings),
-                 std::to_string(point.triangle), exact(p.x) + ", " + exact(p.y) + ", " + exact(p.z),
-                 fixed(point.displayed, 3), fixed(point.reference, 3),
-                 signed_fixed(point.displayed - point.reference, 3)},
-                "td");
+            rows.push_back({name_of(row.settings.engine) + ", " + setting_of(row.settings),
+                            std::to_string(point.triangle),
+                            exact(p.x) + ", " + exact(p.y) + ", " + exact(p.z),
+                            fixed(point.displayed, 3), fixed(point.reference, 3),
+                            signed_fixed(point.displayed - point.reference, 3)});
         }
     }
-    return html + "</table>\n";
+    return table_html(
+        {"engine", "worst point, in triangle", "position", "displayed", "by rays", "error"}, rows);
 }
 
 std::string scene_html(const FrontierScene& scene)
@@ -187,27 +124,23 @@ std::string scene_html(const FrontierScene& scene)
         std::to_string(comparison.triangles) + " triangles (" +
         std::to_string(comparison.dropped_triangles) + " without area dropped); " +
         (comparison.texels ? "a map of " + target_text(comparison) + "; " : "") +
-        errors_text(comparison) + ". " + std::to_string(comparison.threads) +
+        lines_html(errors_text(comparison)) + ". " + std::to_string(comparison.threads) +
         " threads, medians of " + std::to_string(comparison.rounds) + " rounds. Distance limit " +
         (std::isfinite(definition.max_distance) ? exact(definition.max_distance) : "none") +
         (definition.falloff == Falloff::smooth ? " with smooth falloff" : "") + " (in diagonals)" +
         (comparison.ground.empty() ? "" : ", a ground at " + comparison.ground) + ".</p>\n";
-    html +=
-        plot_of(comparison) + rows_html(comparison) + "<p>" + rows_run_once(comparison) + "</p>\n";
-    for (const auto& [caption, png] : scene.pictures)
-        html += figure_html(png, caption);
-    return html + worst_html(comparison);
+    html += plots_html(comparison) + rows_html(comparison) + "<p>" +
+            lines_html(rows_run_once(comparison)) + "</p>\n<div class=\"pictures\">\n";
+    for (const ReportPicture& picture : scene.pictures)
+        html +=
+            figure_html(picture.png, picture.caption,
+                        picture.is_error ? error_bar(rounded(kFullColorError)) : visibility_bar());
+    return html + "</div>\n" + worst_html(comparison);
 }
 
 std::string summary_html(const Frontier& frontier)
 {
-    std::string html =
-        "<h2>Summary</h2>\n<p>Embree's time over ours for the same job at equal error beyond the "
-        "floor, each side interpolated inside its own family of settings; scenes where one side "
-        "had to be extrapolated are left out.</p>\n<table>\n";
-    html += row_of_cells({"engine", "at beyond", "counted", "median", "quartiles", "worst", "best",
-                          "scenes", "left out"},
-                         "th");
+    std::vector<std::vector<std::string>> rows;
     for (const Engine engine : frontier.engines) {
         for (const auto& [cost, words] :
              {std::pair(Cost::solve, "solve, fit or fill"), std::pair(Cost::build, "with builds"),
@@ -215,17 +148,23 @@ std::string summary_html(const Frontier& frontier)
             for (const double beyond : kTargets) {
                 const RatioSummary s = summary_of(frontier, engine, beyond, cost);
                 const auto number = [&](double value) {
-                    return s.scenes > 0 ? fixed(value, 2) : std::string("-");
+                    return stands_for_all(s) ? rounded(value) : std::string("-");
                 };
-                html += row_of_cells(
-                    {name_of(engine), fixed(beyond, 3), words, number(s.median),
-                     number(s.low_quartile) + " to " + number(s.high_quartile), number(s.worst),
-                     number(s.best), std::to_string(s.scenes), std::to_string(s.left_out)},
-                    "td");
+                rows.push_back(
+                    {name_of(engine), words, fixed(beyond, 3), scenes_text(s), number(s.median),
+                     stands_for_all(s) ? rounded(s.low_quartile) + " to " + rounded(s.high_quartile)
+                                       : "-",
+                     number(s.worst), number(s.best)});
             }
         }
     }
-    return html + "</table>\n";
+    return "<h2>Summary</h2>\n<p>Embree's time over ours for the same job at equal error beyond "
+           "the floor, each side interpolated inside its own family of settings. A scene counts "
+           "where both sides reach the error; where fewer than two of three scenes do, no median "
+           "is given, for they do not stand for all.</p>\n" +
+           table_html({"engine", "time", "at beyond", "reached on", "median", "quartiles", "worst",
+                       "best"},
+                      rows);
 }
 
 }  // namespace
@@ -245,9 +184,11 @@ std::string html_of(const Frontier& frontier)
         "of "
         "the best values that vertices or texels can hold, and <i>beyond</i> what an engine adds "
         "to it: "
-        "seen² = floor² + beyond². In the plots lower left is better. In the pictures red is "
+        "seen² = floor² + beyond². In the plots lower left is better; "
+        "points are named by quality, those of Embree by rays. In the pictures red is "
         "too dark, blue too bright against the floor's values, full colour at an error of " +
-        fixed(kFullColorError, 1) + ".</p>\n";
+        fixed(kFullColorError, 1) + ".</p>\n" + facts_html(run_facts()) +
+        csv_link(csv_of(frontier), "surfelao-compare");
     if (frontier.scenes.size() > 1)
         html += summary_html(frontier);
     for (const FrontierScene& scene : frontier.scenes)

@@ -1,5 +1,10 @@
-/// html.h: parts of pages that reports are.
+/// html.h: parts of pages that reports are. A page is one file: nothing is fetched, pictures, plots
+/// and tables to save are in it. It is well-formed XML too, readable on a phone, light or dark as
+/// the reader's system is.
 #pragma once
+
+#include "bake/run_facts.h"
+#include "image/color_map.h"
 
 #include <string>
 #include <string_view>
@@ -7,11 +12,17 @@
 
 namespace surfelao {
 
+struct Plot;
+
 /// As text of a page.
 [[nodiscard]] std::string escaped(std::string_view text);
 
-/// A row of a table; tag: "td" or "th". The cells are escaped.
-[[nodiscard]] std::string row_of_cells(const std::vector<std::string>& cells, std::string_view tag);
+/// The same, each line below the other.
+[[nodiscard]] std::string lines_html(std::string_view text);
+
+/// A table that scrolls by itself where the page is narrow. rows: as wide as the head.
+[[nodiscard]] std::string table_html(const std::vector<std::string>& head,
+                                     const std::vector<std::vector<std::string>>& rows);
 
 /// From the doctype to the heading, with the style of all reports; it ends with close_page(). mark:
 /// make_mark().
@@ -19,7 +30,28 @@ namespace surfelao {
                                     const std::string& heading);
 [[nodiscard]] std::string close_page();
 
+/// Machine, versions, date, command line, and how to cite them.
+[[nodiscard]] std::string facts_html(const RunFacts& facts);
+
+/// What the colours of a picture mean: a bar with words at its ends and in its middle.
+struct ColorBar {
+    std::string low, middle, high;
+    std::vector<Rgb> colors;  ///< evenly spread, two at least
+};
+
+/// Black 0 to white 1.
+[[nodiscard]] ColorBar visibility_bar();
+/// Of error_color(): -full too bright to +full too dark.
+[[nodiscard]] ColorBar error_bar(const std::string& full);
+
 /// A picture in the page itself. png: the bytes of a file.
-[[nodiscard]] std::string figure_html(std::string_view png, const std::string& caption);
+[[nodiscard]] std::string figure_html(std::string_view png, const std::string& caption,
+                                      const ColorBar& bar);
+
+/// A plot with a link that saves it as NAME.svg.
+[[nodiscard]] std::string plot_html(const Plot& plot, const std::string& name);
+
+/// A link that saves the rows as NAME.csv.
+[[nodiscard]] std::string csv_link(const std::string& csv, const std::string& name);
 
 }  // namespace surfelao

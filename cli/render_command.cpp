@@ -7,6 +7,7 @@
 #include "cli/render_options.h"
 #include "engines/threads.h"
 #include "image/image_file.h"
+#include "surfels/extension.h"
 #include "surfels/number_text.h"
 #include "surfels/stopwatch.h"
 #include "viewer/atlas_picture.h"
@@ -48,6 +49,17 @@ void check_files(const RenderCommandOptions& options)
         plan.writes(frame.output, "the picture");
     if (!options.frames.frames)
         plan.writes(options.output, "the picture");
+}
+
+/// Throws UsageError for a background that the file or the picture has not.
+void check_background(const RenderCommandOptions& options, const ViewOptions& view)
+{
+    if (options.atlas && (view.background || fits_scale(options.show)))
+        throw UsageError("--background and --difference-scale auto are not for --atlas.");
+    const std::string extension = lower_extension(options.output);
+    if (view.background && view.background->a == 0.0f &&
+        (extension == ".jpg" || extension == ".jpeg"))
+        throw UsageError("--background transparent is for .png and .exr: .jpg has no alpha.");
 }
 
 /// Throws UsageError for an engine that does not answer there, or not that.
@@ -234,6 +246,7 @@ int run(const RenderCommandOptions& options, FrameSequence* sequence)
     picture.samples = options.samples;
     picture.backend = backend_of(options.backend);
     picture.view = view_options_of(options.show);
+    picture.fit_scale = fits_scale(options.show);
     picture.view.ground &= !options.atlas;
     if (options.show.environment)
         picture.environment = read_image(*options.show.environment);
@@ -334,8 +347,8 @@ void add_render_command(CLI::App& app, Work& work)
     command
         ->add_option(
             "-o,--output", options->output,
-            "Picture: .png .jpg .exr; at pixels what sees nothing is transparent (.jpg: stands "
-            "before the background)")
+            "Picture: .png .jpg .exr (linear, alpha premultiplied); at pixels what sees nothing is "
+            "transparent (.jpg: stands before the background)")
         ->required()
         ->type_name("OUT");
     add_read_options(*command, options->reading);
@@ -392,6 +405,7 @@ void add_render_command(CLI::App& app, Work& work)
             check_shown_pixels(view, options->atlas, has_cube_maps);
         else
             check_shown_map(view, has_map, options->atlas);
+        check_background(*options, view);
         check_files(*options);
         work = [options, asks_pixels] { return run_frames(*options, asks_pixels); };
     });

@@ -6,7 +6,6 @@
 #include "cli/progress_bar.h"
 #include "cli/render_options.h"
 #include "engines/threads.h"
-#include "image/color_map.h"
 #include "image/image_file.h"
 #include "pixels/pixel_picture.h"
 #include "surfels/errors.h"
@@ -97,10 +96,12 @@ void finish(const GlContext& context, const RenderCommandOptions& options, const
     const std::string extension = lower_extension(options.output);
     if (shows_numbers(job.shown.colors) && extension != ".exr")
         show_numbers(image);
-    if (extension == ".jpg" || extension == ".jpeg")
-        put_on_background(context, image, job.camera, job.shown, job.sky());
     if (job.shown.colors == Colors::difference)
-        draw_heat_legend(image, "occlusion difference to rays", 0.0f, job.shown.difference_scale);
+        show_difference(image, job.shown, fits_scale(options.show));
+    const bool is_opaque = job.shown.background ? job.shown.background->a == 1.0f
+                                                : extension == ".jpg" || extension == ".jpeg";
+    if (is_opaque)
+        put_on_background(context, image, job.camera, job.shown, job.sky());
 }
 
 /// What was drawn, and how long it took. maps: a line about cube maps, or nothing.

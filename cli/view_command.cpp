@@ -78,6 +78,8 @@ void check_view(const ViewCommandOptions& options)
     if (options.pixels.guard)
         throw UsageError("--guard is for render and compare.");
     const Cell cell = cell_of(options);
+    if (fits_scale(options.show))
+        throw UsageError("--difference-scale auto is for render.");
     const ViewOptions view = view_options_of(options.show);
     if (cell.at_pixels)
         check_shown_pixels(view, options.atlas, cell.from_maps);

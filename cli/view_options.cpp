@@ -3,10 +3,13 @@
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "reference/rays.h"
+#include "surfels/srgb.h"
 
 #include <CLI/CLI.hpp>
 
 #include <array>
+#include <charconv>
+#include <cstdint>
 #include <string_view>
 #include <utility>
 
@@ -53,7 +56,60 @@ std::vector<std::string> names_of(const Table& table)
     return names;
 }
 
+/// "#RRGGBB" as a screen shows it, to linear; "white", "black".
+glm::vec4 background_of(const std::string& text)
+{
+    if (text == "transparent")
+        return glm::vec4(0.0f);
+    const std::string digits = text == "white"   ? "ffffff"
+                               : text == "black" ? "000000"
+                               : text[0] == '#'  ? text.substr(1)
+                                                 : "";
+    std::uint32_t number = 0;
+    const auto [end, error] =
+        std::from_chars(digits.data(), digits.data() + digits.size(), number, 16);
+    if (digits.size() != 6 || error != std::errc() || end != digits.data() + digits.size())
+        throw UsageError("--background is transparent, white, black or #RRGGBB, not \"" + text +
+                         "\".");
+    glm::vec4 color(1.0f);
+    for (int c = 0; c < 3; ++c)
+        color[c] = srgb_decode(static_cast<float>(number >> (16 - 8 * c) & 255u) / 255.0f);
+    return color;
+}
+
+/// How numbers become colours.
+void add_color_options(CLI::App& command, ShowOptions& options)
+{
+    command
+        .add_option(
+            "--difference-scale", options.difference_scale,
+            "For --mode difference: the difference at the end of the colours (0.0001 to "
+            "1); auto = what 95 % of the pixels stay below, rounded up to 1, 2 or 5 times a "
+            "power of ten")
+        ->check(CLI::Range(0.0001f, 1.0f) | CLI::IsMember({"auto"}))
+        ->type_name("D|auto")
+        ->capture_default_str()
+        ->group("Picture");
+    command
+        .add_flag("--signed", options.is_signed,
+                  "For --mode difference: red is too dark, blue too bright, white right")
+        ->group("Picture");
+    command
+        .add_option("--colormap", options.color_map,
+                    "Colours of numbers: heat, viridis and inferno and grey rise evenly in "
+                    "lightness; turbo tells most steps apart")
+        ->check(CLI::IsMember(names_of(kColorMaps)))
+        ->type_name("NAME")
+        ->capture_default_str()
+        ->group("Picture");
+}
+
 }  // namespace
+
+bool fits_scale(const ShowOptions& options)
+{
+    return options.difference_scale == "auto";
+}
 
 void add_show_options(CLI::App& command, ShowOptions& options)
 {
@@ -61,7 +117,7 @@ void add_show_options(CLI::App& command, ShowOptions& options)
         .add_option(
             "--mode", options.mode,
             "What the colours tell: visibility = 1 - occlusion; rays = the same by ray "
-            "casting; difference = to rays, as a heat map; bent-normals; normals at "
+            "casting; difference = to rays, in colours; bent-normals; normals at "
             "corners, or of the disks; levels = depth in the octree; environment = light "
             "of a panorama; charts, density = of a map (--at texels): a colour for each "
             "chart, texels "
@@ -100,12 +156,13 @@ void add_show_options(CLI::App& command, ShowOptions& options)
         ->type_name("F")
         ->capture_default_str()
         ->group("Picture");
+    add_color_options(command, options);
     command
-        .add_option("--difference-scale", options.difference_scale,
-                    "The difference that is shown hottest (0.0001 to 1)")
-        ->check(CLI::Range(0.0001f, 1.0f))
-        ->type_name("D")
-        ->capture_default_str()
+        .add_option("--background", options.background,
+                    "What is behind the model: transparent, white, black or a colour as #RRGGBB; "
+                    "default: a gradient, in --mode environment the panorama; at pixels: "
+                    "transparent")
+        ->type_name("COLOR")
         ->group("Picture");
     command
         .add_option("--reference-rays", options.reference_rays,
@@ -134,7 +191,17 @@ ViewOptions view_options_of(const ShowOptions& options)
         throw UsageError("--mode textured is for --surface triangles.");
     view.exposure = options.exposure;
     view.radius_scale = options.radius_scale;
-    view.difference_scale = options.difference_scale;
+    const bool is_difference = view.colors == Colors::difference;
+    if (options.is_signed && !is_difference)
+        throw UsageError("--signed is for --mode difference.");
+    if (fits_scale(options) && !is_difference)
+        throw UsageError("--difference-scale auto is for --mode difference.");
+    if (!fits_scale(options))
+        view.difference_scale = std::stof(options.difference_scale);
+    view.is_signed = options.is_signed;
+    view.color_map = value_of(kColorMaps, options.color_map);
+    if (options.background)
+        view.background = background_of(*options.background);
     view.ground = !options.no_ground;
     return view;
 }

@@ -22,13 +22,18 @@ struct ShowOptions {
     std::optional<std::string> environment;  ///< a panorama's path
     float exposure = 0.0f;
     float radius_scale = 1.0f;
-    float difference_scale = 0.1f;
+    std::string difference_scale = "0.1";  ///< or "auto"
+    bool is_signed = false;
+    std::string color_map = "heat";
+    std::optional<std::string> background;
     std::uint32_t reference_rays = 1024;
     bool no_ground = false;
 };
 
 void add_show_options(CLI::App& command, ShowOptions& options);
 
+/// Whether the difference's scale follows from what is shown.
+[[nodiscard]] bool fits_scale(const ShowOptions& options);
 /// Throws UsageError for what contradicts itself.
 [[nodiscard]] ViewOptions view_options_of(const ShowOptions& options);
 /// Throws UsageError for what cannot be shown with or without a map.

@@ -45,8 +45,9 @@ Image difference_image(const Image& a, const Image& b, float full_scale)
     SURFELAO_CHECK(full_scale > 0.0f);
     Image result(a.width, a.height);
     for (std::size_t i = 0; i < a.pixels.size(); ++i)
-        result.pixels[i] =
-            glm::vec4(heat_color(shown_difference(a.pixels[i], b.pixels[i]) / full_scale), 1.0f);
+        result.pixels[i] = glm::vec4(
+            map_color(ColorMap::heat, shown_difference(a.pixels[i], b.pixels[i]) / full_scale),
+            1.0f);
     return result;
 }
 

@@ -1,9 +1,11 @@
 #include "bake/html.h"
+#include "bake/plot.h"
 #include "bake/table.h"
 #include "files/maker_mark.h"
 #include "pixels/pixel_compare.h"
 #include "surfels/number_text.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace surfelao {
@@ -113,38 +115,54 @@ std::string csv_cells(const PixelEngine& engine, const std::string& camera, cons
     return line + ',' + csv_field(clock) + '\n';
 }
 
-/// One column of a camera's strip.
-std::string column_html(const std::string& caption, const std::vector<const std::string*>& pngs)
+/// Rows of PixelRow or PixelMean.
+template <class Rows>
+std::string rows_html(const Rows& rows)
 {
-    std::string html = "<div style=\"display:inline-block;vertical-align:top;margin-right:1em\">";
-    for (std::size_t i = 0; i < pngs.size(); ++i)
-        html += figure_html(*pngs[i], i + 1 == pngs.size() ? caption : "") + "<br>";
-    return html + "</div>\n";
+    std::vector<std::vector<std::string>> cells;
+    for (const auto& row : rows)
+        cells.push_back(cells_of(row.engine, row.error, row.ms));
+    return table_html(kPixelColumns, cells);
 }
 
-std::string table_html(std::span<const PixelMean> means)
+/// Error against time; nothing where nobody errs. Lower left is better.
+std::string plot_html(const PixelComparison& comparison)
 {
-    std::string html = "<table>\n" + row_of_cells(kPixelColumns, "th");
-    for (const PixelMean& mean : means)
-        html += row_of_cells(cells_of(mean.engine, mean.error, mean.ms), "td");
-    return html + "</table>\n";
+    Plot plot{comparison.input.filename().string() + ": error against time at pixels",
+              "milliseconds a picture, of solving or of the pass",
+              "RMSE on surfaces, % of full occlusion",
+              {}};
+    for (const PixelMean& mean : comparison.means) {
+        if (!(mean.ms > 0.0) || !(mean.error.rmse > 0.0))
+            continue;
+        auto line = std::ranges::find(plot.lines, name_of(mean.engine), &PlotLine::name);
+        if (line == plot.lines.end())
+            line = plot.lines.insert(line, {name_of(mean.engine), {}});
+        line->points.push_back({mean.ms, mean.error.rmse, setting_of(mean.engine)});
+    }
+    return plot.lines.empty() ? std::string()
+                              : plot_html(plot, comparison.input.stem().string() + "-pixels");
 }
 
 std::string camera_html(const PixelComparison& comparison, std::size_t index)
 {
     const PixelCamera& camera = comparison.cameras[index];
-    std::string html = "<h2>" + escaped(camera_text(comparison, index)) + "</h2>\n<table>\n" +
-                       row_of_cells(kPixelColumns, "th");
-    for (const PixelRow& row : rows_at(comparison, index))
-        html += row_of_cells(cells_of(row.engine, row.error, row.ms), "td");
-    html += "</table>\n<div style=\"overflow-x:auto;white-space:nowrap\">\n" +
-            column_html("rays, " + std::to_string(comparison.reference_rays) + " a pixel",
-                        {&camera.reference_png});
-    for (const PixelRow& row : rows_at(comparison, index))
-        html += column_html(name_of(row.engine) + ", " + setting_of(row.engine) + ": " +
-                                fixed(row.error.rmse, 2) + " %, bias " +
+    const std::string full = significant(static_cast<double>(kFullPixelError), 2);
+    std::string html =
+        "<h2>" + escaped(camera_text(comparison, index)) + "</h2>\n" +
+        rows_html(rows_at(comparison, index)) + "<div class=\"strip\">\n" +
+        figure_html(camera.reference_png,
+                    "rays, " + std::to_string(comparison.reference_rays) + " a pixel",
+                    visibility_bar());
+    for (const PixelRow& row : rows_at(comparison, index)) {
+        const std::string name = name_of(row.engine) + ", " + setting_of(row.engine);
+        html += "<div>" + figure_html(row.picture_png, name, visibility_bar()) +
+                figure_html(row.difference_png,
+                            name + ": " + fixed(row.error.rmse, 2) + " %, bias " +
                                 signed_fixed(row.error.bias, 2) + " %",
-                            {&row.picture_png, &row.difference_png});
+                            error_bar(full)) +
+                "</div>\n";
+    }
     return html + "</div>\n";
 }
 
@@ -192,9 +210,11 @@ std::string html_of(const PixelComparison& comparison)
         "bright, full colour at " +
         fixed(100.0 * static_cast<double>(kFullPixelError), 0) +
         " %. Pictures are cut to what is seen, and reduced to at most " +
-        std::to_string(kWidestPicture) + " pixels.</p>\n<p>" + escaped(settings_text(comparison)) +
-        "</p>\n<h2>" + escaped(means_text(comparison)) + "</h2>\n";
-    html += table_html(comparison.means);
+        std::to_string(kWidestPicture) + " pixels.</p>\n" + facts_html(run_facts()) +
+        csv_link(csv_of(comparison), "surfelao-pixels") + "<p>" +
+        lines_html(settings_text(comparison)) + "</p>\n<h2>" + escaped(means_text(comparison)) +
+        "</h2>\n";
+    html += plot_html(comparison) + rows_html(comparison.means);
     if (comparison.sweep)
         html += "<pre>" + escaped(sweep_table(comparison, *comparison.sweep)) + "</pre>\n";
     for (std::size_t camera = 0; camera < comparison.cameras.size(); ++camera)

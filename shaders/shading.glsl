@@ -1,16 +1,19 @@
 // shading.glsl: the colour of a surface point, linear light, display-referred.
 //
 // Right of u_wipe_x (pixels) the reference stands in for the result.
-//   u_colors            the value of Colors in viewer/view_options.h; -1: occlusion as it is
-//   u_difference_scale  occlusion difference that is shown hottest
-//   u_heat              256 x 1, heat_colors() of image/color_map.h
+//   u_colors            the value of Colors in viewer/view_options.h; -1: occlusion and that of the
+//                       reference as they are, in red and green
+//   u_difference_scale  occlusion difference at the end of the colour map
+//   u_is_signed         1: the map is the diverging one, its middle no difference
+//   u_color_map         a row, colors_of() of image/color_map.h
 //   u_irradiance        irradiance_map() of viewer/environment.h, row 0 = sky
 #include "panorama.glsl"
 
 uniform int u_colors;
 uniform float u_wipe_x;
 uniform float u_difference_scale;
-uniform sampler2D u_heat;
+uniform int u_is_signed;
+uniform sampler2D u_color_map;
 uniform sampler2D u_irradiance;
 
 const float kAlbedo = 0.80;  // of the model in the environment
@@ -26,10 +29,18 @@ const int kLevels = 5;
 const int kEnvironment = 6;
 const int kRadius = 11;
 
-// Twin of heat_color in image/color_map.cpp: x = 0 and 1 are the middles of the outer texels.
-vec3 heat_color(float x)
+// Twin of map_color in image/color_map.cpp: x = 0 and 1 are the middles of the outer texels.
+vec3 map_color(float x)
 {
-    return texture(u_heat, vec2((clamp(x, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5)).rgb;
+    float steps = float(textureSize(u_color_map, 0).x);
+    return texture(u_color_map, vec2((clamp(x, 0.0, 1.0) * (steps - 1.0) + 0.5) / steps, 0.5)).rgb;
+}
+
+// Twin of difference_place there.
+float difference_place(float difference)
+{
+    float place = difference / u_difference_scale;
+    return u_is_signed == 1 ? 0.5 + 0.5 * place : abs(place);
 }
 
 // The linear light that a screen shows as that value (IEC 61966-2-1).
@@ -57,17 +68,17 @@ vec3 shade(vec4 normal_level, vec4 own, vec4 reference)
 {
     vec4 values = at_wipe(own, reference);
     if (u_colors == kAsNumbers)
-        return vec3(values.w);
+        return vec3(values.w, reference.w, 0.0);
     if (u_colors == kDifference)
-        return heat_color(abs(own.w - reference.w) / u_difference_scale);
+        return map_color(difference_place(own.w - reference.w));
     if (u_colors == kBentNormals)
         return direction_color(safe_normalize(values.xyz));
     if (u_colors == kNormals)
         return direction_color(safe_normalize(normal_level.xyz));
     if (u_colors == kLevels)
-        return heat_color(normal_level.w);
+        return map_color(normal_level.w);
     if (u_colors == kRadius)
-        return heat_color(values.w);
+        return map_color(values.w);
     float visibility = 1.0 - (u_colors == kRays ? reference.w : values.w);
     if (u_colors != kEnvironment)  // as the baked colours look in other programs
         return srgb_decode(vec3(kPaper * visibility));

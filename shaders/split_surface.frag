@@ -115,7 +115,7 @@ vec3 color()
         if (u_colors == kCharts)
             return values.chart * mix(1.0 - own.w, 1.0, kDimmest);
         if (u_colors == kDensity)
-            return heat_color(values.density);
+            return map_color(values.density);
     }
     if (u_colors == kTextured)
         return u_base_factor * texture(u_base, v_base_place).rgb * (1.0 - at_wipe(own, reference).w);

@@ -172,8 +172,10 @@ private:
     {
         switch (view_.colors) {
             case Colors::difference:
-                return heat_color(std::abs(visibility(pixel) - reference(pixel)) /
-                                  view_.difference_scale);
+                return map_color(
+                    map_of(view_),
+                    difference_place(map_of(view_), reference(pixel) - visibility(pixel),
+                                     view_.difference_scale));
             case Colors::bent_normals: {
                 glm::vec3 direction;
                 for (int k = 0; k < 3; ++k)
@@ -187,8 +189,9 @@ private:
             case Colors::charts:
                 return label_color(chart) * glm::mix(visibility(pixel), 1.0f, kDimmest);
             case Colors::density:
-                return heat_color(data_.layout->facts.densities[page_][point.triangle] /
-                                  most_density(data_.layout->facts));
+                return map_color(view_.color_map,
+                                 data_.layout->facts.densities[page_][point.triangle] /
+                                     most_density(data_.layout->facts));
             case Colors::textured:
                 return (data_.paint ? paint_at(*data_.paint, point) : glm::vec3(1.0f)) *
                        visibility(pixel);

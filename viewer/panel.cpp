@@ -224,7 +224,7 @@ PanelInput Panel::build(PanelState& state, const CellView& left_view, const Cell
     if (const std::shared_ptr<const Model>& model = session.state().model) {
         if (const auto shown = legend_of(*model, session.state().layout.get(),
                                          options_for(state.left, state.view)))
-            legend(shown->title, shown->low, shown->high);
+            legend(*shown);
     }
     const float left = input.covered * display.x;
     const float line =

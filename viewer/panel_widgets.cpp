@@ -1,6 +1,5 @@
 #include "viewer/panel_widgets.h"
 
-#include "image/color_map.h"
 #include "viewer/part_list.h"
 #include "viewer/pixel_fill.h"
 #include "viewer/tip.h"
@@ -65,7 +64,7 @@ constexpr const char* kHelp[][2] = {
     {"drop files", "open them: the first is shown"},
 };
 
-ImVec4 shown(glm::vec3 linear)
+ImVec4 as_shown(glm::vec3 linear)
 {
     return {srgb_encode(linear.r), srgb_encode(linear.g), srgb_encode(linear.b), 1.0f};
 }
@@ -74,6 +73,25 @@ ImVec4 shown(glm::vec3 linear)
 bool was_set()
 {
     return ImGui::IsItemDeactivatedAfterEdit();
+}
+
+bool color_map_combo(ColorMap& map)
+{
+    bool changed = false;
+    const auto name_of = [](std::size_t i) { return std::string(kColorMaps[i].first); };
+    const bool is_open =
+        ImGui::BeginCombo("colour map", name_of(static_cast<std::size_t>(map)).c_str());
+    tip("colours of what is shown as a number");
+    if (!is_open)
+        return changed;
+    for (std::size_t i = 0; i < kColorMaps.size(); ++i) {
+        if (ImGui::Selectable(name_of(i).c_str(), kColorMaps[i].second == map)) {
+            map = kColorMaps[i].second;
+            changed = true;
+        }
+    }
+    ImGui::EndCombo();
+    return changed;
 }
 
 }  // namespace
@@ -278,10 +296,14 @@ bool view_widgets(PanelState& state)
         tip("brighter or darker by stops: each doubles or halves the light");
     }
     if (view.colors == Colors::difference) {
+        changed |= ImGui::Checkbox("signed: red is too dark", &view.is_signed);
+        tip("shows which way it is wrong; else only by how much");
         changed |= ImGui::SliderFloat("full scale", &view.difference_scale, 0.001f, 1.0f, "%.3f",
                                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
-        tip("the difference of occlusion that is hottest, 0.001 to 1");
+        tip("the difference of occlusion at the end of the scale, 0.001 to 1");
     }
+    if (shows_color_map(view) && map_of(view) != ColorMap::diverging)
+        changed |= color_map_combo(view.color_map);
     changed |= ImGui::Checkbox("shadow on the ground", &view.ground);
     tip("G: what the model takes from the ground below it; for the picture alone");
     return changed;
@@ -412,7 +434,7 @@ void histogram(const Session& session)
     }
 }
 
-void legend(const char* title, float low, float high)
+void legend(const Legend& shown)
 {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos(ImVec2(display.x - 10.0f, display.y - 10.0f), ImGuiCond_Always,
@@ -420,7 +442,7 @@ void legend(const char* title, float low, float high)
     ImGui::Begin("##legend", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoSavedSettings);
-    ImGui::TextUnformatted(title);
+    ImGui::TextUnformatted(shown.title.c_str());
     const float scale = ImGui::GetIO().FontGlobalScale;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const ImVec2 size(220.0f * scale, 14.0f * scale);
@@ -429,17 +451,18 @@ void legend(const char* title, float low, float high)
         const auto at = [&](int step) {
             return corner.x + size.x * static_cast<float>(step) / kBars;
         };
-        const auto color = [](int step) {
-            return ImGui::GetColorU32(shown(heat_color(static_cast<float>(step) / kBars)));
+        const auto color = [&](int step) {
+            return ImGui::GetColorU32(
+                as_shown(map_color(shown.colors, static_cast<float>(step) / kBars)));
         };
         ImGui::GetWindowDrawList()->AddRectFilledMultiColor(
             ImVec2(at(i), corner.y), ImVec2(at(i + 1), corner.y + size.y), color(i), color(i + 1),
             color(i + 1), color(i));
     }
     ImGui::Dummy(size);
-    ImGui::Text("%.3g", static_cast<double>(low));
+    ImGui::TextUnformatted(legend_number(shown.low).c_str());
     ImGui::SameLine(size.x - 30.0f * scale);
-    ImGui::Text("%.3g", static_cast<double>(high));
+    ImGui::TextUnformatted(legend_number(shown.high).c_str());
     ImGui::End();
 }
 

@@ -2,6 +2,7 @@
 /// alone. All are called between ImGui's NewFrame and Render.
 #pragma once
 
+#include "image/legend.h"
 #include "viewer/panel.h"
 
 #include <cstdint>
@@ -50,8 +51,8 @@ void stage_lines(const SessionState& s);
 /// How many vertices are how closed.
 void histogram(const Session& session);
 
-/// The twin of draw_heat_legend, in the lower right corner of the window.
-void legend(const char* title, float low, float high);
+/// The twin of draw_legend, in the lower right corner of the window.
+void legend(const Legend& shown);
 
 /// The keys. open: false when it was closed.
 void help_window(bool& open);

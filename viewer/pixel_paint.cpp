@@ -1,10 +1,10 @@
 #include "viewer/pixel_paint.h"
 
-#include "image/color_map.h"
 #include "surfels/errors.h"
 #include "surfels/srgb.h"
 #include "viewer/environment.h"
 #include "viewer/renderer.h"
+#include "viewer/shown_error.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -94,9 +94,8 @@ PixelPaint pixel_paint(const ViewOptions& options, UpAxis up, const Image* panor
                 return glm::vec3(1.0f - pixel.reference.occlusion);
             }};
         case Colors::difference:
-            return {[scale = options.difference_scale](const AnsweredPixel& pixel) {
-                return heat_color(std::abs(pixel.value.occlusion - pixel.reference.occlusion) /
-                                  scale);
+            return {[](const AnsweredPixel& pixel) {
+                return glm::vec3(pixel.value.occlusion, pixel.reference.occlusion, 0.0f);
             }};
         case Colors::bent_normals:
             return {[](const AnsweredPixel& pixel) {
@@ -127,6 +126,22 @@ void show_numbers(Image& image)
         for (int c = 0; c < 3; ++c)
             pixel[c] = srgb_decode(pixel[c]);
     }
+}
+
+void show_difference(Image& image, ViewOptions options, bool fit_scale)
+{
+    const ErrorStatistics error = shown_error(image.pixels);
+    if (fit_scale)
+        options.difference_scale = fitting_scale(error);
+    const ColorMap map = map_of(options);
+    for (glm::vec4& pixel : image.pixels)
+        if (pixel.a > 0.0f)
+            pixel = glm::vec4(
+                map_color(map, difference_place(map, pixel.r - pixel.g, options.difference_scale)),
+                pixel.a);
+    Legend legend = difference_legend(options);
+    legend.note = note_of(error);
+    draw_legend(image, legend);
 }
 
 void put_on_background(const GlContext& context, Image& image, const Camera& camera,

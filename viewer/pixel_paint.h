@@ -20,7 +20,8 @@ namespace surfelao {
            colors == Colors::coverage;
 }
 
-/// Numbers for shows_numbers(), else display-referred linear light: the lit picture times the
+/// Numbers for shows_numbers(); of differences the occlusion in red and the reference in green;
+/// else display-referred linear light: the lit picture times the
 /// visibility. panorama: for Colors::environment; null = builtin_sky(). paint: for
 /// Colors::textured; what it returns refers to it. Colors that need a map or levels are no choice.
 [[nodiscard]] PixelPaint pixel_paint(const ViewOptions& options, UpAxis up, const Image* panorama,
@@ -29,7 +30,10 @@ namespace surfelao {
 /// Numbers as light that a screen shows as these numbers.
 void show_numbers(Image& image);
 
-/// Puts the picture on render()'s background: opaque then.
+/// A picture of differences in their colours, with its legend; fit_scale: as RenderOptions'.
+void show_difference(Image& image, ViewOptions options, bool fit_scale);
+
+/// Puts the picture on render()'s background: opaque then, where that is.
 void put_on_background(const GlContext& context, Image& image, const Camera& camera,
                        const ViewOptions& options, const Image* panorama);
 

@@ -1,12 +1,13 @@
 #include "viewer/render.h"
 
-#include "image/color_map.h"
 #include "surfels/errors.h"
 #include "viewer/renderer.h"
 #include "viewer/sample_sum.h"
+#include "viewer/shown_error.h"
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace surfelao {
 
@@ -41,33 +42,46 @@ Image render(const Model& model, std::span<const Occlusion> occlusion,
         renderer.set_paint(*options.data.paint);
 
     const Framebuffer target = renderer.make_target(options.width, options.height);
+    ViewOptions view = options.view;
+    std::string note;
+    if (view.colors == Colors::difference) {
+        renderer.draw_values(target, camera, {}, view.surface);
+        const ErrorStatistics error = shown_error(target.read_color(target.rect()));
+        if (options.fit_scale)
+            view.difference_scale = fitting_scale(error);
+        note = note_of(error);
+    }
     SampleSum sum(context, options.width, options.height);
     ProgressMeter meter(progress, static_cast<std::uint64_t>(options.samples));
     for (int i = 0; i < options.samples; ++i) {
-        renderer.draw_frame(target, camera, options.view, sample_shift(i));
+        renderer.draw_frame(target, camera, view, sample_shift(i));
         sum.add(target);
         meter.add(1);
     }
     context.finish("drawing the picture");
     Image image = sum.mean();
-    if (const auto legend = legend_of(model, options.data.layout, options.view))
-        draw_heat_legend(image, legend->title, legend->low, legend->high);
+    if (auto legend = legend_of(model, options.data.layout, view)) {
+        legend->note = std::move(note);
+        draw_legend(image, *legend);
+    }
     return image;
 }
 
 std::optional<Legend> legend_of(const Model& model, const ModelLayout* layout,
                                 const ViewOptions& options)
 {
+    const ColorMap map = map_of(options);
     if (options.colors == Colors::difference)
-        return Legend{"occlusion difference to rays", 0.0f, options.difference_scale};
+        return difference_legend(options);
     if (options.colors == Colors::levels) {
         const glm::vec2 range = level_range(model);
-        return Legend{"octree level", range.x, range.y};
+        return Legend{"octree level", range.x, range.y, map};
     }
     if (options.colors == Colors::radius)
-        return Legend{"radius over the distance", 0.0f, 1.0f};
+        return Legend{"radius over the distance", 0.0f, 1.0f, map};
     if (options.colors == Colors::density && layout)
-        return Legend{"texels per unit, median in the middle", 0.0f, most_density(layout->facts)};
+        return Legend{"texels per unit, median in the middle", 0.0f, most_density(layout->facts),
+                      map};
     return {};
 }
 

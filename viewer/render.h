@@ -3,6 +3,7 @@
 
 #include "gpu/context.h"
 #include "image/image.h"
+#include "image/legend.h"
 #include "pixels/camera.h"
 #include "surfels/occlusion.h"
 #include "surfels/progress.h"
@@ -21,24 +22,20 @@ struct RenderOptions {
     ViewOptions view;
     GlBackend backend = GlBackend::automatic;
     std::optional<Image> environment;  ///< a panorama (environment.h); none = builtin_sky()
+    bool fit_scale = false;            ///< the difference's scale is that of shown_error.h
     SurfaceData data = {};             ///< with a map, only the ground's values count
 };
 
 /// occlusion and reference: one per receiver of the model; the reference may be empty where
-/// needs_reference(options.view) is false. The result is display-referred linear light, opaque; a
-/// heat map carries its legend. Throws InputError for a size that the device cannot draw,
+/// needs_reference(options.view) is false. The result is display-referred linear light, opaque but
+/// for a transparent background; a colour map carries its legend, of differences with RMSE and bias
+/// over what is seen. Throws InputError for a size that the device cannot draw,
 /// std::runtime_error when there is no device, Cancelled. progress: of the samples.
 [[nodiscard]] Image render(const Model& model, std::span<const Occlusion> occlusion,
                            std::span<const Occlusion> reference, const Camera& camera,
                            const RenderOptions& options, const Progress& progress = {});
 
-/// What the heat map of some colours means.
-struct Legend {
-    const char* title;
-    float low, high;
-};
-
-/// Nothing for colours that are no heat map. layout: of the map that is shown, or null.
+/// Nothing for colours that are no numbers. layout: of the map that is shown, or null.
 [[nodiscard]] std::optional<Legend> legend_of(const Model& model, const ModelLayout* layout,
                                               const ViewOptions& options);
 

@@ -181,12 +181,17 @@ Texture2D upload_image(const GlContext& context, const Image& image, const Textu
             options};
 }
 
-Texture2D upload_heat_colors(const GlContext& context)
+/// In the order of ColorMap.
+std::vector<Texture2D> upload_color_maps(const GlContext& context)
 {
-    Image row(256, 1);
-    for (int x = 0; x < 256; ++x)
-        row.at(x, 0) = glm::vec4(heat_colors()[static_cast<std::size_t>(x)], 1.0f);
-    return upload_image(context, row, {.filter = TextureFilter::linear});
+    std::vector<Texture2D> maps;
+    for (int map = 0; map <= static_cast<int>(ColorMap::diverging); ++map) {
+        Image row(static_cast<int>(kMapSteps), 1);
+        for (std::size_t x = 0; x < kMapSteps; ++x)
+            row.pixels[x] = glm::vec4(colors_of(static_cast<ColorMap>(map))[x], 1.0f);
+        maps.push_back(upload_image(context, row, {.filter = TextureFilter::linear}));
+    }
+    return maps;
 }
 
 }  // namespace
@@ -204,7 +209,7 @@ struct Renderer::Impl {
           background(gl, "fullscreen.vert", "background.frag"),
           shadow(gl, "ground.vert", "ground.frag"),
           nothing(gl),
-          heat(upload_heat_colors(gl))
+          color_maps(upload_color_maps(gl))
     {
     }
 
@@ -239,7 +244,9 @@ struct Renderer::Impl {
         program.set("u_colors", static_cast<int>(frame.options.colors));
         program.set("u_wipe_x", frame.options.wipe * static_cast<float>(frame.target.width()));
         program.set("u_difference_scale", frame.options.difference_scale);
-        program.set("u_heat", heat);
+        const ColorMap map = map_of(frame.options);
+        program.set("u_is_signed", map == ColorMap::diverging ? 1 : 0);
+        program.set("u_color_map", color_maps[static_cast<std::size_t>(map)]);
         program.set("u_irradiance", *irradiance);
         program.set("u_sky_frame", sky_frame(frame.camera.up));
         program.set("u_exposure", base_exposure * std::exp2(frame.options.exposure));
@@ -271,6 +278,10 @@ struct Renderer::Impl {
 
     void draw_background(const Frame& frame)
     {
+        if (frame.options.background) {
+            frame.target.clear_color(*frame.options.background);
+            return;
+        }
         const glm::mat4 to_world = glm::inverse(frame.projection * frame.view);
         background.set("u_show_sky", frame.options.colors == Colors::environment ? 1 : 0);
         background.set("u_exposure", base_exposure * std::exp2(frame.options.exposure));
@@ -292,7 +303,7 @@ struct Renderer::Impl {
         program.set("u_extra_vertices", upload->extra_vertices);
         program.set("u_vertex_count", static_cast<int>(upload->vertex_count));
         program.set("u_view_projection", frame.projection * frame.view);
-        set_pixel_values(program, frame.pixels, heat);
+        set_pixel_values(program, frame.pixels, color_maps.front());
     }
 
     void draw_triangles(const Frame& frame)
@@ -351,6 +362,30 @@ struct Renderer::Impl {
         draw_fullscreen(frame.target, resolve, nothing, {.depth = DepthTest::less});
     }
 
+    void draw_model(const Frame& frame)
+    {
+        if (upload->splat_count == 0)
+            return;
+        Shape shape =
+            split.has_layout() || frame.pixels.own ? Shape::triangles : frame.options.surface;
+        if (shape == Shape::triangles && upload->index_count == 0)
+            shape = Shape::splats;
+        switch (shape) {
+            case Shape::triangles:
+                draw_triangles(frame);
+                break;
+            case Shape::splats:
+                draw_blended_splats(frame);
+                break;
+            case Shape::affine:
+                draw_plain_splats(frame, affine);
+                break;
+            case Shape::points:
+                draw_plain_splats(frame, points);
+                break;
+        }
+    }
+
     void draw_ground(const Frame& frame)
     {
         shadow.set("u_corner", upload->ground.corner);
@@ -394,7 +429,7 @@ struct Renderer::Impl {
     SplitSurface split;
     Program disks, disk_depth, resolve, affine, points, background, shadow;
     VertexArray nothing;
-    Texture2D heat;
+    std::vector<Texture2D> color_maps;
     std::optional<Texture2D> sky, irradiance;
     float base_exposure = 1.0f;
     std::optional<Upload> upload;
@@ -489,36 +524,17 @@ void Renderer::draw_frame(const Framebuffer& target, const Camera& camera,
     // ground
     if (shows_ground(options))
         impl_->draw_ground(frame);
-    if (impl_->upload->splat_count > 0) {
-        Shape shape = impl_->split.has_layout() || pixels.own ? Shape::triangles : options.surface;
-        if (shape == Shape::triangles && impl_->upload->index_count == 0)
-            shape = Shape::splats;
-        switch (shape) {
-            case Shape::triangles:
-                impl_->draw_triangles(frame);
-                break;
-            case Shape::splats:
-                impl_->draw_blended_splats(frame);
-                break;
-            case Shape::affine:
-                impl_->draw_plain_splats(frame, impl_->affine);
-                break;
-            case Shape::points:
-                impl_->draw_plain_splats(frame, impl_->points);
-                break;
-        }
-    }
+    impl_->draw_model(frame);
 }
 
 void Renderer::draw_values(const Framebuffer& target, const Camera& camera,
-                           const PixelValues& pixels)
+                           const PixelValues& pixels, Shape shape)
 {
     constexpr auto kAsNumbers = static_cast<Colors>(-1);
-    const ViewOptions options{.colors = kAsNumbers};
+    const ViewOptions options{.surface = shape, .colors = kAsNumbers};
     target.clear_color(glm::vec4(0.0f));
     target.clear_depth();
-    if (impl_->upload->index_count > 0)
-        impl_->draw_triangles(impl_->frame_of(target, camera, options, pixels, glm::vec2(0.0f)));
+    impl_->draw_model(impl_->frame_of(target, camera, options, pixels, glm::vec2(0.0f)));
 }
 
 void Renderer::draw_background(const Framebuffer& target, const Camera& camera,

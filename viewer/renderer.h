@@ -60,16 +60,17 @@ public:
     /// A target that draw_frame() can draw into: linear float colour and depth.
     [[nodiscard]] Framebuffer make_target(int width, int height) const;
 
-    /// Draws background, model and ground over all of the target. `shift`: the whole picture moved
+    /// Draws background, model and ground over all of the target; where the background is
+    /// transparent colours are premultiplied. `shift`: the whole picture moved
     /// by a part of a pixel, for samples between -0.5 and 0.5. pixels: of this camera and size;
     /// then triangles are drawn.
     void draw_frame(const Framebuffer& target, const Camera& camera, const ViewOptions& options,
                     glm::vec2 shift = glm::vec2(0.0f), const PixelValues& pixels = {});
 
-    /// The occlusion that draw_frame() would show on triangles at the pixels' middles, in red;
-    /// alpha 0 where there is none.
+    /// The occlusion that draw_frame() would show at the pixels' middles, in red, and that of the
+    /// reference, in green; alpha 0 where there is none.
     void draw_values(const Framebuffer& target, const Camera& camera,
-                     const PixelValues& pixels = {});
+                     const PixelValues& pixels = {}, Shape shape = Shape::triangles);
 
     /// The background alone; no model is needed.
     void draw_background(const Framebuffer& target, const Camera& camera,

@@ -77,14 +77,16 @@ Image SampleSum::mean() const
 {
     SURFELAO_CHECK(impl_->count > 0);
     const std::vector<glm::vec4> texels = impl_->sum.read_color(impl_->sum.rect());
-    const float share = 1.0f / static_cast<float>(impl_->count);
+    const auto count = static_cast<float>(impl_->count);
     Image image(impl_->sum.width(), impl_->sum.height());
     for (int y = 0; y < image.height; ++y) {
         const std::size_t row = static_cast<std::size_t>(image.height - 1 - y);
-        for (int x = 0; x < image.width; ++x)
-            image.at(x, y) =
-                share *
+        for (int x = 0; x < image.width; ++x) {
+            const glm::vec4& sum =
                 texels[row * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)];
+            const float opaque = sum.a > 0.0f ? sum.a : 1.0f;  // as colours are premultiplied
+            image.at(x, y) = glm::vec4(glm::vec3(sum) / opaque, sum.a / count);
+        }
     }
     return image;
 }

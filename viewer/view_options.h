@@ -1,6 +1,12 @@
 /// view_options.h: how a model is shown, without a word on how it is solved.
 #pragma once
 
+#include "image/color_map.h"
+
+#include <glm/vec4.hpp>
+
+#include <optional>
+
 namespace surfelao {
 
 /// What stands for the surface.
@@ -15,27 +21,38 @@ enum class Shape {
 enum class Colors {
     visibility = 0,    ///< 1 - occlusion as grey: what baked colours look like elsewhere
     rays = 1,          ///< the same by the ray reference
-    difference = 2,    ///< |occlusion - reference| as a heat map
+    difference = 2,    ///< occlusion less the reference, in the colour map
     bent_normals = 3,  ///< x, y, z as red, green, blue
     normals = 4,       ///< likewise: corner normals of triangles, the disks' own of splats
-    levels = 5,        ///< depth of the surfel's leaf in the octree, as a heat map
+    levels = 5,        ///< depth of the surfel's leaf in the octree, in the colour map
     environment = 6,   ///< light of a panorama along the bent normal, times visibility
     charts = 7,        ///< of a map: a colour for each, times visibility
-    density = 8,       ///< of a map: texels per unit of length, as a heat map
+    density = 8,       ///< of a map: texels per unit of length, in the colour map
     textured = 9,      ///< the surface's own colour times visibility
     coverage = 10,     ///< of cube maps: visibility, red where none of them answers
-    radius = 11,       ///< of vo with a dynamic radius: that radius, as a heat map
+    radius = 11,       ///< of vo with a dynamic radius: that radius, in the colour map
 };
 
 struct ViewOptions {
     Shape surface = Shape::triangles;
     Colors colors = Colors::visibility;
     float radius_scale = 1.0f;      ///< > 0, on covering_radii (model.h)
-    float difference_scale = 0.1f;  ///< > 0: the difference that is hottest
-    float wipe = 1.0f;              ///< share of the width from which on the reference is shown
-    float exposure = 0.0f;          ///< environment: stops, added to the automatic exposure
-    bool ground = true;             ///< shadow on the ground under the model
+    float difference_scale = 0.1f;  ///< > 0: the difference at the end of the map
+    bool is_signed = false;         ///< the difference says which way, in the diverging map
+    ColorMap color_map = ColorMap::heat;
+    float wipe = 1.0f;      ///< share of the width from which on the reference is shown
+    float exposure = 0.0f;  ///< environment: stops, added to the automatic exposure
+    bool ground = true;     ///< shadow on the ground under the model
+    /// Behind the model, linear, with an alpha of 0 or 1; empty: a gradient, or the environment.
+    std::optional<glm::vec4> background = {};
 };
+
+/// The map of their numbers.
+[[nodiscard]] constexpr ColorMap map_of(const ViewOptions& options)
+{
+    return options.is_signed && options.colors == Colors::difference ? ColorMap::diverging
+                                                                     : options.color_map;
+}
 
 /// Whether drawing this needs a ray reference.
 [[nodiscard]] constexpr bool needs_reference(const ViewOptions& options)
@@ -48,6 +65,13 @@ struct ViewOptions {
 [[nodiscard]] constexpr bool needs_map(Colors colors)
 {
     return colors == Colors::charts || colors == Colors::density;
+}
+
+/// Whether they are numbers in a colour map.
+[[nodiscard]] constexpr bool shows_color_map(const ViewOptions& options)
+{
+    return options.colors == Colors::difference || options.colors == Colors::levels ||
+           options.colors == Colors::density || options.colors == Colors::radius;
 }
 
 /// Whether they tell of cube maps.

@@ -503,7 +503,7 @@ private:
         const bool is_split = panel_state_.beside == Beside::side_by_side;
         Image image = picture_of(panes_, labels(), is_split ? 0.5f : panel_state_.wipe);
         if (const auto legend = legend_of(*state().model, state().layout.get(), shown_view(false)))
-            draw_heat_legend(image, legend->title, legend->low, legend->high);
+            draw_legend(image, *legend);
         return image;
     }
 

@@ -67,6 +67,22 @@ TEST(Frontier, WhatAFamilyDoesNotReachIsExtrapolatedAndLeftOut)
     EXPECT_NEAR(summary.best, 8.0, 1e-9);
 }
 
+// The median of the easy scenes is no median.
+TEST(Frontier, AnErrorThatIsReachedOnFewScenesHasNoMedian)
+{
+    Frontier frontier;
+    frontier.engines = {Engine::disks};
+    for (const double fine : {0.002, 0.002, 0.02})
+        frontier.scenes.push_back(made_up_scene(4.0, 0.05, fine));
+    const auto summary = [&] { return summary_of(frontier, Engine::disks, 0.010, Cost::solve); };
+    EXPECT_TRUE(stands_for_all(summary()));
+    EXPECT_NE(html_of(frontier).find("<td>2 of 3</td><td>4</td>"), std::string::npos);
+    frontier.scenes.push_back(made_up_scene(4.0, 0.05, 0.02));
+    EXPECT_FALSE(stands_for_all(summary()));
+    EXPECT_NE(html_of(frontier).find("<td>2 of 4</td><td>-</td>"), std::string::npos);
+    EXPECT_NE(table_of(frontier).find("reached on"), std::string::npos);
+}
+
 // More exact than asked at every setting: the cheapest one's time, and that is no extrapolation.
 TEST(Frontier, AFamilyBeyondTheTargetCountsAtItsCheapest)
 {

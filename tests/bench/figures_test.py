@@ -4,8 +4,10 @@
 import pathlib
 import shutil
 import subprocess
+import sys
 import tempfile
 
+sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 
@@ -58,3 +60,24 @@ allowed = "It is 0.5. <!-- stated: by definition -->\n`0.5` [x](0.5.png) $0.5$\n
 assert complaints(replaced(PRESENT, PRESENT + allowed)) == ""
 refuses("stands nowhere", stated="nine lives 0.5 # a reason\n")
 refuses("needs its reason", stated="at 0.005\n")
+
+# a median over few of the scenes stands for none
+sys.path.insert(0, str(ROOT / "docs"))
+import figure_views  # noqa: E402
+
+
+def some_scenes(reached):
+    """Nine scenes, of which so many reach the error."""
+    return {"frontier": {"scenes": [
+        {"name": str(i), "group": "models",
+         "ratios": {"masks": {"at_010": {"ratio": 2.0 + i, "extrapolated": i >= reached}}}}
+        for i in range(9)]}}
+
+
+assert figure_views.VIEWS["ratio_scenes"](some_scenes(6), "010") == "6 of 9"
+assert figure_views.VIEWS["ratio_quantile"](some_scenes(6), "0.5", "010") == "4.5"
+try:
+    figure_views.VIEWS["ratio_quantile"](some_scenes(5), "0.5", "010")
+    raise SystemExit("a median over 5 of 9 scenes was written")
+except ValueError as refused:
+    assert "5 of 9" in str(refused), refused

@@ -42,8 +42,8 @@ TEST(DifferenceImage, ShowsTheHottestColourAtFullScale)
     Image b = a;
     b.at(1, 0).r = srgb_decode(0.5f);
     const Image difference = difference_image(a, b, 0.25f);
-    EXPECT_EQ(glm::vec3(difference.at(0, 0)), heat_color(0.0f));
-    EXPECT_EQ(glm::vec3(difference.at(1, 0)), heat_color(1.0f));
+    EXPECT_EQ(glm::vec3(difference.at(0, 0)), map_color(ColorMap::heat, 0.0f));
+    EXPECT_EQ(glm::vec3(difference.at(1, 0)), map_color(ColorMap::heat, 1.0f));
 }
 
 }  // namespace

@@ -145,9 +145,9 @@ TEST(MapPicture, TheDifferenceIsThatOfTheTexels)
         frame_points(model.seen, UpAxis::z, 1.0f, {.azimuth_deg = 0, .elevation_deg = 90});
     const Image image =
         render(model, std::vector<Occlusion>(model.answer_count()), {}, camera, options);
-    EXPECT_LT(glm::distance(glm::vec3(image.at(48, 30)), heat_color(0.5f)), 0.01f);
+    EXPECT_LT(glm::distance(glm::vec3(image.at(48, 30)), map_color(ColorMap::heat, 0.5f)), 0.01f);
     const Image flat = atlas_picture(*model.mesh, options.data, options.view, kPixels, kPixels);
-    EXPECT_LT(glm::distance(glm::vec3(flat.at(48, 48)), heat_color(0.5f)), 0.01f);
+    EXPECT_LT(glm::distance(glm::vec3(flat.at(48, 48)), map_color(ColorMap::heat, 0.5f)), 0.01f);
 }
 
 /// Each of the six sides that a surface may face in a sixth of the map.

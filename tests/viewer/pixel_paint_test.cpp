@@ -58,6 +58,21 @@ TEST(PixelPaint, LightIsThatOfTheShaders)
     }
 }
 
+TEST(PixelPaint, DifferencesTakeTheirColoursFromThePicture)
+{
+    const ViewOptions options{.colors = Colors::difference, .is_signed = true};
+    Image image(3, 1);
+    image.at(0, 0) = {0.5f, 0.46f, 0.0f, 1.0f};
+    image.at(1, 0) = {0.5f, 0.54f, 0.0f, 0.25f};
+    show_difference(image, options, true);  // to 0.05
+    EXPECT_EQ(image.at(1, 0).a, 0.25f);
+    EXPECT_EQ(image.at(2, 0), glm::vec4(0.0f));
+    EXPECT_LT(glm::distance(glm::vec3(image.at(0, 0)), map_color(ColorMap::diverging, 0.9f)),
+              1e-5f);
+    EXPECT_LT(glm::distance(glm::vec3(image.at(1, 0)), map_color(ColorMap::diverging, 0.1f)),
+              1e-5f);
+}
+
 // Under an even sky it does not matter from where the light is that a grid takes; under half a sky
 // it does.
 TEST(PixelPaint, GridsTakeTheLightOfTheirCones)

@@ -267,10 +267,67 @@ TEST(Render, TheDifferenceIsAHeatMapWithItsLegend)
         EXPECT_LT(image.at(10, 290).r, 0.05f);  // the legend's plate
         return glm::vec3(image.at(150, 150));
     };
-    EXPECT_LT(glm::distance(middle(0.3f, 0.3f), heat_color(0.0f)), 0.01f);
-    EXPECT_LT(glm::distance(middle(0.3f, 0.4f), heat_color(0.5f)), 0.01f);
-    EXPECT_LT(glm::distance(middle(0.4f, 0.3f), heat_color(0.5f)), 0.01f);
-    EXPECT_LT(glm::distance(middle(0.9f, 0.1f), heat_color(1.0f)), 0.01f);
+    EXPECT_LT(glm::distance(middle(0.3f, 0.3f), map_color(ColorMap::heat, 0.0f)), 0.01f);
+    EXPECT_LT(glm::distance(middle(0.3f, 0.4f), map_color(ColorMap::heat, 0.5f)), 0.01f);
+    EXPECT_LT(glm::distance(middle(0.4f, 0.3f), map_color(ColorMap::heat, 0.5f)), 0.01f);
+    EXPECT_LT(glm::distance(middle(0.9f, 0.1f), map_color(ColorMap::heat, 1.0f)), 0.01f);
+}
+
+TEST(Render, ASignedDifferenceSaysWhichWayInASuitableScale)
+{
+    const Model model = model_of(scenes::sheet({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2));
+    const Camera camera =
+        frame_points(model.seen, UpAxis::z, 1.0f, {.azimuth_deg = 0, .elevation_deg = 90});
+    RenderOptions options = plain(Shape::triangles, 300, 300);
+    options.view.colors = Colors::difference;
+    options.view.is_signed = true;
+    options.view.difference_scale = 0.2f;
+    const auto middle = [&](float own, float reference) {
+        return glm::vec3(
+            render(model, all(model, own), all(model, reference), camera, options).at(150, 150));
+    };
+    const auto shown = [](float place) { return map_color(ColorMap::diverging, place); };
+    EXPECT_LT(glm::distance(middle(0.3f, 0.3f), glm::vec3(1.0f)), 0.01f);
+    EXPECT_LT(glm::distance(middle(0.4f, 0.3f), shown(0.75f)), 0.01f);
+    EXPECT_LT(glm::distance(middle(0.3f, 0.4f), shown(0.25f)), 0.01f);
+    // to 0.05, the next scale, of 0.04
+    options.fit_scale = true;
+    EXPECT_LT(glm::distance(middle(0.34f, 0.3f), shown(0.9f)), 0.01f);
+    for (const Shape shape : {Shape::splats, Shape::points}) {
+        options.view.surface = shape;
+        EXPECT_LT(glm::distance(middle(0.3f, 0.34f), shown(0.1f)), 0.01f);
+    }
+}
+
+// Put over a colour, the transparent picture is the one that was drawn on it: edges, shadow and
+// all.
+TEST(Render, ATransparentBackgroundTakesAnyColour)
+{
+    const Model model = model_of(scenes::box({0, 0, 0}, {1, 1, 1}, 1));
+    const Camera camera = frame_points(model.seen, UpAxis::z, 1.5f);
+    RenderOptions options = plain(Shape::triangles, 60, 40);
+    options.samples = 5;
+    options.view.ground = true;
+    const auto on = [&](glm::vec4 background) {
+        options.view.background = background;
+        return render(model, all(model, 0.5f), {}, camera, options);
+    };
+    const Image clear = on(glm::vec4(0.0f));
+    for (const glm::vec3 color : {glm::vec3(1.0f), glm::vec3(0.0f), glm::vec3(0.1f, 0.5f, 0.9f)}) {
+        const Image opaque = on(glm::vec4(color, 1.0f));
+        for (std::size_t i = 0; i < clear.pixels.size(); ++i) {
+            const glm::vec4& pixel = clear.pixels[i];
+            EXPECT_LT(glm::distance(glm::mix(color, glm::vec3(pixel), pixel.a),
+                                    glm::vec3(opaque.pixels[i])),
+                      1e-5f);
+            EXPECT_EQ(opaque.pixels[i].a, 1.0f);
+        }
+    }
+    EXPECT_EQ(clear.at(0, 0), glm::vec4(0.0f));
+    EXPECT_EQ(clear.at(30, 20).a, 1.0f);
+    EXPECT_TRUE(std::ranges::any_of(clear.pixels, [](const glm::vec4& pixel) {
+        return pixel.a > 0.1f && pixel.a < 0.9f && pixel.r > 0.1f;  // an edge of the box
+    }));
 }
 
 // A cube of eight vertices: each of the three faces in sight is of one colour, its edges too. Mean
