@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <limits>
 #include <string>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -87,7 +88,6 @@ glm::dvec3 MotionPanel::centre_of(std::uint32_t movable) const
 
 void MotionPanel::widgets(double draw_ms)
 {
-    holds_widget_ = false;
     const bool has_something = mover_.selected() || !mover_.animations().empty();
     if (has_something && !was_open_) {
         ImGui::SetNextItemOpen(true);
@@ -356,7 +356,8 @@ bool MotionPanel::mouse(const MotionView& view)
             for (const Rect& picture : view.pictures)
                 is_taken |= start_drag(view, picture, pixel);
     }
-    mover_.hold(drag_.has_value() || holds_widget_);
+    // widgets that are not drawn any more hold nothing
+    mover_.hold(drag_.has_value() || std::exchange(holds_widget_, false));
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left))
         is_pressed_ = !io.WantCaptureMouse && !is_taken;
     if (is_pressed_ && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) {
