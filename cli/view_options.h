@@ -25,6 +25,8 @@ struct ShowOptions {
     float difference_scale = 0.1f;
     std::uint32_t reference_rays = 1024;
     bool no_ground = false;
+    bool wireframe = false;
+    bool cull = false;
 };
 
 void add_show_options(CLI::App& command, ShowOptions& options);

@@ -333,9 +333,9 @@ void MotionPanel::pick(const MotionView& view, const Rect& picture, glm::vec2 pi
 {
     const SightRay ray = sight_ray(view_in(view, picture), picture.width, picture.height,
                                    pixel - corner_of(picture));
-    const auto triangle = triangle_under(view.positions, view.triangles, ray);
-    if (triangle)
-        mover_.select_vertex(view.triangles[*triangle].x);
+    const auto found = point_under(view.positions, view.triangles, ray, view.is_culled);
+    if (found)
+        mover_.select_vertex(view.triangles[found->triangle].x);
     else
         mover_.select(std::nullopt);
 }

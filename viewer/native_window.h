@@ -40,6 +40,8 @@ using WindowHandle = std::unique_ptr<GLFWwindow, CloseWindow>;
 struct Inbox {
     std::string keys;  ///< see Panel::build
     std::string path;  ///< the last file dropped
+    std::string
+        held;  ///< of kFlightKeys (flight.h), by their place on the keyboard: those down now
 
     explicit Inbox(GLFWwindow* window);
     Inbox(const Inbox&) = delete;

@@ -3,6 +3,7 @@
 #include "image/color_map.h"
 #include "viewer/part_list.h"
 #include "viewer/pixel_fill.h"
+#include "viewer/tip.h"
 
 #include <imgui.h>
 
@@ -17,9 +18,9 @@ namespace {
 
 constexpr int kBins = 48;
 
-constexpr const char* kColorNames[] = {"visibility", "rays",     "difference",  "bent normals",
-                                       "normals",    "levels",   "environment", "charts",
-                                       "density",    "textured", "coverage",    "radius"};
+constexpr const char* kColorNames[] = {
+    "visibility", "rays",    "difference", "bent normals", "normals", "levels",   "environment",
+    "charts",     "density", "textured",   "coverage",     "radius",  "headlight"};
 constexpr const char* kSurfaceNames[] = {"triangles", "splats", "affine", "points"};
 
 constexpr const char* kHelp[][2] = {
@@ -33,6 +34,12 @@ constexpr const char* kHelp[][2] = {
     {"R", "rays on or off"},
     {"W", "wipe to the right cell on or off; drag the line"},
     {"S", "the right cell side by side on or off"},
+    {"L", "a light at the eye"},
+    {"X", "wireframe on or off"},
+    {"K", "cull backs on or off: look into a room"},
+    {"I", "values under the mouse on or off"},
+    {"V", "fly: W S forward and back, A D aside, E Q up and down"},
+    {"  in flight", "left drag looks, wheel changes the speed, V or Esc ends it"},
     {"C", "with cube maps: one where the eye is"},
     {"G", "shadow on the ground on or off"},
     {"click", "select the part under the mouse"},
@@ -201,6 +208,39 @@ std::optional<std::uint32_t> edit_parts(const Scene& scene, PartChoice& parts)
     return clicked;
 }
 
+namespace {
+
+bool surface_ticks(PanelState& state)
+{
+    ViewOptions& view = state.view;
+    bool changed = ImGui::Checkbox("wireframe (X)", &view.wireframe);
+    tip("the edges of triangles over what they show");
+    ImGui::SameLine();
+    changed |= ImGui::Checkbox("cull backs (K)", &view.cull);
+    tip("without triangles that show their back: a room seen from outside shows its inside");
+    return changed;
+}
+
+void flight_widgets(PanelState& state)
+{
+    ImGui::Checkbox("values under the mouse (I)", &state.inspects);
+    tip("occlusion, rays' and the error, position in the file's units, normals, vertex, "
+        "triangle and part");
+    ImGui::Checkbox("fly (V)", &state.flight.is_on);
+    tip("W S forward and back, A D aside, E Q up and down; left drag looks, the wheel changes "
+        "the speed");
+    if (!state.flight.is_on)
+        return;
+    float percent = 100.0f * state.flight.speed;
+    if (ImGui::SliderFloat("speed##flight", &percent, 100.0f * kLeastFlightSpeed,
+                           100.0f * kMostFlightSpeed, "%.1f %%/s",
+                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
+        state.flight.speed = 0.01f * percent;
+    tip("of the model's diagonal, a second");
+}
+
+}  // namespace
+
 bool view_widgets(PanelState& state)
 {
     ViewOptions& view = state.view;
@@ -234,6 +274,8 @@ bool view_widgets(PanelState& state)
     if (view.colors == Colors::difference)
         changed |= ImGui::SliderFloat("full scale", &view.difference_scale, 0.001f, 1.0f, "%.3f",
                                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    changed |= surface_ticks(state);
+    flight_widgets(state);
     changed |= ImGui::Checkbox("shadow on the ground", &view.ground);
     return changed;
 }

@@ -25,6 +25,7 @@ enum class Colors {
     textured = 9,      ///< the surface's own colour times visibility
     coverage = 10,     ///< of cube maps: visibility, red where none of them answers
     radius = 11,       ///< of vo with a dynamic radius: that radius, as a heat map
+    headlight = 12,    ///< a light at the eye: Lambert's cosine times visibility
 };
 
 struct ViewOptions {
@@ -35,6 +36,9 @@ struct ViewOptions {
     float wipe = 1.0f;              ///< share of the width from which on the reference is shown
     float exposure = 0.0f;          ///< environment: stops, added to the automatic exposure
     bool ground = true;             ///< shadow on the ground under the model
+    bool wireframe = false;         ///< triangles: with their edges
+    bool cull = false;              ///< triangles: not those that show their back to the eye
+    bool coarse = false;            ///< fewer of what is drawn: Renderer::set_coarse()
 };
 
 /// Whether drawing this needs a ray reference.
@@ -61,7 +65,8 @@ struct ViewOptions {
 {
     return options.ground &&
            (options.colors == Colors::visibility || options.colors == Colors::rays ||
-            options.colors == Colors::environment || options.colors == Colors::textured);
+            options.colors == Colors::environment || options.colors == Colors::textured ||
+            options.colors == Colors::headlight);
 }
 
 }  // namespace surfelao

@@ -80,9 +80,9 @@ TEST_F(TwoPieces, AreFoundAndPickedByTheRayOfAPixel)
     const Geometry& geometry = base->geometry();
     const auto under = [&](glm::dvec3 point) {
         const auto pixel = pixel_of(view, kPickWidth, kPickHeight, point);
-        const auto triangle = triangle_under(geometry.positions, geometry.triangles,
-                                             sight_ray(view, kPickWidth, kPickHeight, *pixel));
-        return triangle ? movables->of_vertex[geometry.triangles[*triangle].x] : Movables::kNone;
+        const auto found = point_under(geometry.positions, geometry.triangles,
+                                       sight_ray(view, kPickWidth, kPickHeight, *pixel));
+        return found ? movables->of_vertex[geometry.triangles[found->triangle].x] : Movables::kNone;
     };
     EXPECT_EQ(under(movables->list[1].middle()), 1u);
     EXPECT_EQ(under(0.9f * movables->list[0].high + 0.1f * movables->list[0].middle()), 0u);
@@ -91,8 +91,8 @@ TEST_F(TwoPieces, AreFoundAndPickedByTheRayOfAPixel)
     // the nearer one, from below and from above
     const auto along_y = [&](double from) {
         const SightRay ray{{0.03, from, 0.02}, {0.0, from < 0.0 ? 1.0 : -1.0, 0.0}};
-        const auto triangle = triangle_under(geometry.positions, geometry.triangles, ray);
-        return triangle ? movables->of_vertex[geometry.triangles[*triangle].x] : Movables::kNone;
+        const auto found = point_under(geometry.positions, geometry.triangles, ray);
+        return found ? movables->of_vertex[geometry.triangles[found->triangle].x] : Movables::kNone;
     };
     EXPECT_EQ(along_y(-2.0), 0u);
     EXPECT_EQ(along_y(2.0), 1u);
