@@ -269,6 +269,9 @@ int run(const RenderCommandOptions& options, FrameSequence* sequence)
     const auto texels = shown_texels_of(options.texels);
     if (texels && model.cloud)
         throw UsageError(options.input + ": has points only, no faces: --at points");
+    if (model.cloud && (picture.view.wireframe || picture.view.cull))
+        throw UsageError(options.input +
+                         ": has points only, no faces: --wireframe and --cull are for faces.");
     const Camera camera = camera_of(options, model.seen, frame);
     Shown shown;
     if (picture.view.colors == Colors::textured && !model.cloud)
@@ -401,6 +404,8 @@ void add_render_command(CLI::App& app, Work& work)
         const bool has_map = shown_texels_of(options->texels).has_value();
         const bool has_cube_maps = is_at_cube_maps(options->texels);
         const bool asks_pixels = has_cube_maps || is_at_pixels(options->texels);
+        if (asks_pixels && (view.wireframe || view.cull))
+            throw UsageError("--wireframe and --cull are for --at vertices and texels.");
         if (asks_pixels)
             check_shown_pixels(view, options->atlas, has_cube_maps);
         else

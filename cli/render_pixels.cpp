@@ -164,11 +164,9 @@ int render_pixels(const RenderCommandOptions& options)
         job.settings.white_holes = options.cubes.holes == "white";
     }
     const double upload_s = maps ? 0.0 : watch.lap();
-    PixelPicture picture =
-        pixel_picture(context, job.mesh, drawn, occluders, job.view, job.settings,
-                      pixel_paint(job.shown, up_axis_of(options.show), job.sky(),
-                                  job.paint ? &*job.paint : nullptr),
-                      update);
+    PixelPicture picture = pixel_picture(
+        context, job.mesh, drawn, occluders, job.view, job.settings,
+        pixel_paint(job.shown, job.camera, job.sky(), job.paint ? &*job.paint : nullptr), update);
     picture.prepare_s += upload_s;
     watch.lap();
     finish(context, options, job, picture.image);

@@ -16,7 +16,7 @@
 namespace surfelao {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Colors>, 11> kModes = {{
+constexpr std::array<std::pair<std::string_view, Colors>, 12> kModes = {{
     {"visibility", Colors::visibility},
     {"rays", Colors::rays},
     {"difference", Colors::difference},
@@ -28,6 +28,7 @@ constexpr std::array<std::pair<std::string_view, Colors>, 11> kModes = {{
     {"density", Colors::density},
     {"textured", Colors::textured},
     {"coverage", Colors::coverage},
+    {"headlight", Colors::headlight},
 }};
 
 constexpr std::array<std::pair<std::string_view, Shape>, 4> kSurfaces = {{
@@ -122,7 +123,8 @@ void add_show_options(CLI::App& command, ShowOptions& options)
             "of a panorama; charts, density = of a map (--at texels): a colour for each "
             "chart, texels "
             "per unit of length; textured = the file's base colours times visibility; coverage = "
-            "of cube maps (--at cubemaps): red where none answers")
+            "of cube maps (--at cubemaps): red where none answers; headlight = a light at the "
+            "camera times visibility")
         ->check(CLI::IsMember(names_of(kModes)))
         ->type_name("MODE")
         ->default_str("visibility")
@@ -171,6 +173,15 @@ void add_show_options(CLI::App& command, ShowOptions& options)
         ->type_name("N")
         ->capture_default_str()
         ->group("Picture");
+    command
+        .add_flag("--wireframe", options.wireframe,
+                  "The edges of triangles over what they show (not --at pixels, cubemaps)")
+        ->group("Picture");
+    command
+        .add_flag("--cull", options.cull,
+                  "Without triangles that show their back: a room seen from outside shows its "
+                  "inside (not --at pixels, cubemaps)")
+        ->group("Picture");
     command.add_flag("--no-ground", options.no_ground, "No shadow on the ground under the model")
         ->group("Picture");
 }
@@ -203,6 +214,10 @@ ViewOptions view_options_of(const ShowOptions& options)
     if (options.background)
         view.background = background_of(*options.background);
     view.ground = !options.no_ground;
+    view.wireframe = options.wireframe;
+    view.cull = options.cull;
+    if ((view.wireframe || view.cull) && view.surface != Shape::triangles)
+        throw UsageError("--wireframe and --cull are for --surface triangles.");
     return view;
 }
 
@@ -214,6 +229,8 @@ void check_shown_map(const ViewOptions& view, bool has_map, bool atlas)
         throw UsageError("--mode charts and density are for --at texels.");
     if (needs_cube_maps(view.colors))
         throw UsageError("--mode coverage is for --at cubemaps.");
+    if (atlas && (view.colors == Colors::headlight || view.wireframe || view.cull))
+        throw UsageError("--mode headlight, --wireframe and --cull show the model, not --atlas.");
     if (has_map && view.surface != Shape::triangles)
         throw UsageError("--at texels is for --surface triangles.");
     if (has_map && view.colors == Colors::levels)

@@ -28,6 +28,8 @@ struct ShowOptions {
     std::optional<std::string> background;
     std::uint32_t reference_rays = 1024;
     bool no_ground = false;
+    bool wireframe = false;
+    bool cull = false;
 };
 
 void add_show_options(CLI::App& command, ShowOptions& options);

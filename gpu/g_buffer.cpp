@@ -114,7 +114,7 @@ GBuffer::GBuffer(const GlContext& context, int width, int height)
 {
 }
 
-void GBuffer::draw_triangles(const DrawnMesh& mesh, const View& view)
+void GBuffer::draw_triangles(const DrawnMesh& mesh, const View& view, Cull cull)
 {
     view_ = view;
     Program& program = context_.program("g_triangles.vert", "g_triangles.frag");
@@ -129,12 +129,13 @@ void GBuffer::draw_triangles(const DrawnMesh& mesh, const View& view)
     triangles_.clear_color(glm::uvec4(0));
     triangles_.clear_depth();
     surfelao::draw(triangles_, program, mesh.vertices_,
-                   {.count = mesh.index_count_, .indexed = true}, {.depth = DepthTest::less});
+                   {.count = mesh.index_count_, .indexed = true},
+                   {.depth = DepthTest::less, .cull = cull});
 }
 
-void GBuffer::draw(const DrawnMesh& mesh, const View& view)
+void GBuffer::draw(const DrawnMesh& mesh, const View& view, Cull cull)
 {
-    draw_triangles(mesh, view);
+    draw_triangles(mesh, view, cull);
     Program& program = context_.program("fullscreen.vert", "g_surface.frag");
     set_view(program, view);
     program.set("u_size", glm::ivec2(width(), height()));

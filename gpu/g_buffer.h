@@ -16,6 +16,7 @@
 #pragma once
 
 #include "gpu/context.h"
+#include "gpu/draw.h"
 #include "gpu/objects.h"
 #include "surfels/geometry.h"
 #include "surfels/surface.h"
@@ -82,10 +83,10 @@ class GBuffer {
 public:
     GBuffer(const GlContext& context, int width, int height);
 
-    /// Both passes. Earlier pictures are forgotten.
-    void draw(const DrawnMesh& mesh, const View& view);
+    /// Both passes. Earlier pictures are forgotten. cull: those triangles are not there.
+    void draw(const DrawnMesh& mesh, const View& view, Cull cull = Cull::none);
     /// The first one alone: for samples inside pixels.
-    void draw_triangles(const DrawnMesh& mesh, const View& view);
+    void draw_triangles(const DrawnMesh& mesh, const View& view, Cull cull = Cull::none);
 
     int width() const { return triangles_.width(); }
     int height() const { return triangles_.height(); }

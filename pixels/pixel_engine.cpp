@@ -76,6 +76,7 @@ PixelAnswer answer(const PixelView& view, Occluders& occluders, ScreenSpace& scr
 PixelAnswer answer(const PixelView& view, GridPass& pass, const GridPixels& settings,
                    const Definition& definition, const Progress& progress)
 {
+    settings.world->prepare_rest(settings.rest);
     Stopwatch watch;
     GridPixels asked = settings;
     asked.rest.definition = definition;

@@ -40,6 +40,12 @@ ivec2 nearest_pixel()
 // Of the last read_pixels(): less than 1 where the model's own values stand in.
 float pixel_coverage = 1.0;
 
+// A hole of cube maps where these are told of (Colors::coverage).
+const int kCoverage = 10;
+const vec3 kHole = vec3(1.0, 0.0, 0.0);
+
+bool is_hole(int colors) { return colors == kCoverage && pixel_coverage == 0.0; }
+
 // normal: of the surface, which stands for a bent normal that is not known.
 void read_pixels(inout vec4 own, inout vec4 reference, vec3 normal)
 {

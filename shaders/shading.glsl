@@ -7,6 +7,7 @@
 //   u_is_signed         1: the map is the diverging one, its middle no difference
 //   u_color_map         a row, colors_of() of image/color_map.h
 //   u_irradiance        irradiance_map() of viewer/environment.h, row 0 = sky
+//   u_sight             from (pixel, 1) to the direction in which the eye sees it, of any length
 #include "panorama.glsl"
 
 uniform int u_colors;
@@ -15,6 +16,7 @@ uniform float u_difference_scale;
 uniform int u_is_signed;
 uniform sampler2D u_color_map;
 uniform sampler2D u_irradiance;
+uniform mat3 u_sight;
 
 const float kAlbedo = 0.80;  // of the model in the environment
 const float kPaper = 0.94;   // shown value of an open place: not pure white, so that edges show
@@ -28,6 +30,7 @@ const int kNormals = 4;
 const int kLevels = 5;
 const int kEnvironment = 6;
 const int kRadius = 11;
+const int kHeadlight = 12;
 
 // Twin of map_color in image/color_map.cpp: x = 0 and 1 are the middles of the outer texels.
 vec3 map_color(float x)
@@ -62,6 +65,12 @@ vec3 direction_color(vec3 d) { return srgb_decode(0.5 + 0.5 * d); }
 // What stands at this pixel: the result, or right of the wipe the reference.
 vec4 at_wipe(vec4 own, vec4 reference) { return gl_FragCoord.x < u_wipe_x ? own : reference; }
 
+// Lambert's cosine to a light at the eye, for either side of a surface.
+float headlight(vec3 normal)
+{
+    return abs(dot(safe_normalize(normal), normalize(u_sight * vec3(gl_FragCoord.xy, 1.0))));
+}
+
 // normal_level: the normal of what is drawn, and the level of its surfel (model_shape.glsl). own and
 // reference: the texels of model_values.glsl.
 vec3 shade(vec4 normal_level, vec4 own, vec4 reference)
@@ -80,6 +89,8 @@ vec3 shade(vec4 normal_level, vec4 own, vec4 reference)
     if (u_colors == kRadius)
         return map_color(values.w);
     float visibility = 1.0 - (u_colors == kRays ? reference.w : values.w);
+    if (u_colors == kHeadlight)  // light, not a shown value: an open place that faces the eye is paper
+        return srgb_decode(vec3(kPaper)) * visibility * headlight(normal_level.xyz);
     if (u_colors != kEnvironment)  // as the baked colours look in other programs
         return srgb_decode(vec3(kPaper * visibility));
     vec2 uv = panorama_uv(u_sky_frame * safe_normalize(values.xyz));

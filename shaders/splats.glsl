@@ -2,11 +2,13 @@
 //
 // Squares instead of gl_PointSize: points end at 255 pixels or wherever the driver likes.
 // Goes with model_shape.glsl.
+//   u_splat_stride  every so many-th is drawn
 //   u_splats        RGBA32UI: Splat of viewer/model.h
 //   u_radii         R32F: its radius, unit frame
 //   u_radius_scale  factor on the radius
 //   u_view          unit frame to view space
 //   u_projection    view to clip space
+uniform int u_splat_stride;
 uniform usamplerBuffer u_splats;
 uniform samplerBuffer u_radii;
 uniform float u_radius_scale;
@@ -16,8 +18,8 @@ uniform mat4 u_projection;
 const vec2 kCorners[6] = vec2[6](vec2(-1, -1), vec2(1, -1), vec2(-1, 1),
                                  vec2(-1, 1), vec2(1, -1), vec2(1, 1));
 
-int splat_index() { return gl_VertexID / 6; }
-vec2 splat_corner() { return kCorners[gl_VertexID - 6 * splat_index()]; }
+int splat_index() { return u_splat_stride * (gl_VertexID / 6); }
+vec2 splat_corner() { return kCorners[gl_VertexID % 6]; }
 float splat_radius() { return u_radius_scale * texelFetch(u_radii, splat_index()).r; }
 
 // Whose values a splat shows: three vertices and their shares.

@@ -2,7 +2,7 @@
 #include "shading.glsl"
 #include "pixel_values.glsl"
 
-// split_surface.frag: a triangle's pixel, with the values of a map and a base colour.
+// split_surface.frag: a triangle's pixel, with the values of a map, a base colour, and its edges.
 //
 // Vertices   split_surface.vert
 // Reads      shading.glsl, pixel_values.glsl
@@ -15,7 +15,12 @@
 //            u_map_size         of a page
 //            u_base             the base colour's texture
 //            u_base_factor      linear
+//            u_wireframe        1: lines along the triangle's edges lie over what it shows
 // Writes     out_color          linear, opaque
+//
+// Based on, for the lines:
+//   Baerentzen, Munk-Lund, Gjoel, Larsen. Two Methods for Antialiased Wireframe Drawing with Hidden
+//   Line Removal. 2008
 
 uniform int u_place_count;
 uniform usamplerBuffer u_facts;
@@ -24,12 +29,14 @@ uniform samplerBuffer u_map_reference;
 uniform ivec2 u_map_size;
 uniform sampler2D u_base;
 uniform vec3 u_base_factor;
+uniform int u_wireframe;
 
 in vec4 v_normal_level;
 in vec4 v_own;
 in vec4 v_reference;
 in vec2 v_place[3];
 in vec2 v_base_place;
+in vec3 v_edges;
 flat in int v_triangle;
 out vec4 out_color;
 
@@ -39,6 +46,9 @@ const int kTextured = 9;
 
 const vec3 kNoPlace = vec3(0.05);  // what is not in the map
 const float kDimmest = 0.25;       // light that charts keep where nothing is visible
+
+const float kLineWidth = 1.25;                // of the wireframe, pixels
+const vec3 kLine = vec3(0.02, 0.15, 0.6);  // told from all greys, light and dark
 
 // Twin of fetch in image/map.h: linear between the four texels around, repeating.
 vec4 fetch_map(samplerBuffer map, int page, vec2 uv)
@@ -106,6 +116,8 @@ vec3 color()
     vec4 own = v_own;
     vec4 reference = v_reference;
     read_pixels(own, reference, v_normal_level.xyz);
+    if (is_hole(u_colors))
+        return kHole;
     if (u_place_count > 0 && u_has_pixels == 0) {
         MapValues values = map_values();
         if (!values.is_there)
@@ -122,4 +134,17 @@ vec3 color()
     return shade(v_normal_level, own, reference);
 }
 
-void main() { out_color = vec4(color(), 1.0); }
+// The share of the pixel that lines about the edges cover. Each side of an edge draws half of one.
+float line_share()
+{
+    vec3 right = dFdx(v_edges), up = dFdy(v_edges);
+    vec3 away = v_edges / max(sqrt(right * right + up * up), 1e-9);  // pixels
+    float nearest = min(away.x, min(away.y, away.z));
+    return clamp(0.5 * kLineWidth + 0.5 - nearest, 0.0, 1.0);
+}
+
+void main()
+{
+    float line = u_wireframe == 1 ? line_share() : 0.0;
+    out_color = vec4(mix(color(), kLine, line), 1.0);
+}

@@ -19,6 +19,7 @@
 // Writes     v_normal_level  normal of the wedge, level of the vertex
 //            v_own v_reference: the texels of the vertex
 //            v_place v_base_place: u v
+//            v_edges            from each edge of the triangle: 0 on it, 1 at the corner across
 //            v_triangle         in the order of u_corners
 
 uniform samplerBuffer u_wedge_normals;
@@ -36,6 +37,7 @@ out vec4 v_own;
 out vec4 v_reference;
 out vec2 v_place[3];
 out vec2 v_base_place;
+out vec3 v_edges;
 flat out int v_triangle;
 
 void main()
@@ -54,6 +56,7 @@ void main()
                          ? texelFetch(u_places, corner * u_place_count + k).rg
                          : vec2(0.0);
     v_base_place = texelFetch(u_base_places, corner).rg;
+    v_edges = vec3(equal(ivec3(corner % 3), ivec3(0, 1, 2)));
     v_triangle = corner / 3;
     gl_Position = u_view_projection * vec4(texelFetch(u_positions, vertex).xyz, 1.0);
 }

@@ -8,9 +8,6 @@
 // Reads      shading.glsl, pixel_values.glsl
 // Writes     out_color  linear, opaque
 
-const int kCoverage = 10;
-const vec3 kHole = vec3(1.0, 0.0, 0.0);
-
 in vec4 v_normal_level;
 in vec4 v_own;
 in vec4 v_reference;
@@ -21,6 +18,5 @@ void main()
     vec4 own = v_own;
     vec4 reference = v_reference;
     read_pixels(own, reference, v_normal_level.xyz);
-    bool is_hole = u_colors == kCoverage && pixel_coverage == 0.0;
-    out_color = vec4(is_hole ? kHole : shade(v_normal_level, own, reference), 1.0);
+    out_color = vec4(is_hole(u_colors) ? kHole : shade(v_normal_level, own, reference), 1.0);
 }

@@ -111,7 +111,8 @@ private:
     [[nodiscard]] bool is_grey() const
     {
         return view_.colors == Colors::visibility || view_.colors == Colors::rays ||
-               view_.colors == Colors::levels || view_.colors == Colors::environment;
+               view_.colors == Colors::levels || view_.colors == Colors::environment ||
+               view_.colors == Colors::headlight;
     }
 
     [[nodiscard]] glm::vec3 line_color() const { return is_grey() ? kBrightLine : kDarkLine; }

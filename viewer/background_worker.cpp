@@ -1,5 +1,7 @@
 #include "viewer/background_worker.h"
 
+#include "viewer/thread_priority.h"
+
 #include <utility>
 
 namespace surfelao {
@@ -47,6 +49,7 @@ bool BackgroundWorker::busy() const
 
 void BackgroundWorker::run()
 {
+    const BackgroundPriority priority;
     std::unique_lock lock(mutex_);
     for (;;) {
         wake_.wait(lock, [this] { return quit_ || next_; });

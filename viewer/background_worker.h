@@ -1,4 +1,5 @@
-/// background_worker.h: one thread for long work that can be replaced at any time.
+/// background_worker.h: one thread for long work that can be replaced at any time, and that leaves
+/// its time to drawing (thread_priority.h).
 #pragma once
 
 #include "surfels/progress.h"

@@ -1,6 +1,7 @@
 #include "viewer/cell_view.h"
 
 #include "pixels/seen.h"
+#include "viewer/coarse.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -73,6 +74,7 @@ void CellView::take_model(const Session::Changes& changes)
     layout_.reset();
     drawn_ = state.model;
     renderer_.set_model(*drawn_);
+    has_coarse_ = false;
     // triangles that a pose has left out take their paint with them
     const std::size_t triangles = drawn_->geometry().triangles.size();
     if (!changes.pose || (paint_ && paint_->triangles.size() != triangles))
@@ -88,6 +90,7 @@ void CellView::show_moved(const std::shared_ptr<const Model>& base,
         drawn_ = base;
         mesh_.reset();
         renderer_.set_model(*base);
+        has_coarse_ = false;
         if (paint_)
             renderer_.set_paint(*paint_);
     }
@@ -107,6 +110,22 @@ void CellView::show_moved(const std::shared_ptr<const Model>& base,
 std::span<const glm::vec3> CellView::positions() const
 {
     return moved_ ? moved_->shape.positions : drawn_->geometry().positions;
+}
+
+std::span<const glm::vec3> CellView::wedge_normals() const
+{
+    return moved_ ? moved_->shape.wedge_normals : session_.state().model->mesh->surface.normals;
+}
+
+std::span<const Occlusion> CellView::vertex_values() const
+{
+    if (moved_)
+        return moved_has_values_ ? std::span<const Occlusion>(moved_->values)
+                                 : std::span<const Occlusion>();
+    const SessionState& state = session_.state();
+    if (!state.is_solved || state.layout)
+        return {};
+    return std::span(session_.occlusion()).first(drawn_->geometry().positions.size());
 }
 
 bool CellView::has_values() const
@@ -143,11 +162,11 @@ Texture2D CellView::upload(const PixelAnswers& found) const
 }
 
 bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, const PixelRays& rays,
-                    Colors colors)
+                    const ViewOptions& view)
 {
-    const Shot shot{drawn_, camera, size};
+    const Shot shot{drawn_, camera, size, view.cull};
     const bool is_same = shot == shot_;
-    const bool rests = is_same && !is_moved();
+    const bool rests = is_same && !is_moved() && !view.coarse;
     bool has_changed = !is_same && has_pixels();
     if (!is_same) {
         forget_shot();
@@ -156,7 +175,7 @@ bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, co
     if (drawn_->geometry().triangles.empty())
         return has_changed;
     const Where where = where_of(cell);
-    const bool shows_radius = colors == Colors::radius && has_radius(cell);
+    const bool shows_radius = view.colors == Colors::radius && has_radius(cell);
     if (where != Where::pixels || cell.screen)
         has_changed |= forget_picture();
     if (where != Where::pixels || !cell.screen)
@@ -166,7 +185,7 @@ bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, co
     if (where == Where::cube_maps && !is_moved()) {
         ask_maps(cell.settings.engine);
         has_changed |= project(rests);
-        shows_holes_ = colors == Colors::coverage;
+        shows_holes_ = view.colors == Colors::coverage;
         if (rests && !shows_holes_)
             ask_holes(cell.settings.engine);
     } else if (where == Where::pixels && cell.screen) {
@@ -248,7 +267,8 @@ const GBuffer& CellView::drawn()
     if (!g_buffer_ || g_buffer_->width() != width || g_buffer_->height() != height)
         g_buffer_.emplace(context_, width, height);
     if (!is_drawn_)
-        g_buffer_->draw(*mesh_, view_of(shot_.camera, width, height));
+        g_buffer_->draw(*mesh_, view_of(shot_.camera, width, height),
+                        shot_.is_culled ? Cull::back : Cull::none);
     is_drawn_ = true;
     return *g_buffer_;
 }
@@ -457,7 +477,30 @@ PixelValues CellView::pixel_values() const
 void CellView::draw_frame(const Framebuffer& target, const Camera& camera,
                           const ViewOptions& options, glm::vec2 shift)
 {
+    if (options.coarse && !has_coarse_) {
+        const Mesh& mesh = *drawn_->mesh;
+        const std::vector<glm::uvec3> triangles =
+            coarse_triangles(mesh.geometry, mesh.surface, kCoarseTriangles);
+        if (!triangles.empty())
+            renderer_.set_coarse(triangles);
+        has_coarse_ = true;
+    }
     renderer_.draw_frame(target, camera, options, shift, pixel_values());
+}
+
+std::optional<float> CellView::told_by_picture(glm::ivec2 pixel) const
+{
+    const Rect part{pixel.x, pixel.y, 1, 1};
+    if (screen_asked_)
+        return screen_picture_->read_red(part).front();
+    if (!is_projected_)
+        return std::nullopt;
+    const glm::vec4 told = map_picture_->read_color(part).front();
+    if (told.g >= 1.0f || holes_.answers().picture.empty())
+        return told.g > 0.0f ? std::optional(told.r) : std::nullopt;
+    const std::size_t index =
+        static_cast<std::size_t>(pixel.x) + static_cast<std::size_t>(shot_.size.width * pixel.y);
+    return glm::mix(holes_.answers().picture[index].w, told.r, told.g);
 }
 
 /// Of what is shown at the pixels of the sample.
@@ -465,7 +508,7 @@ void CellView::measure()
 {
     is_measured_ = true;
     const Framebuffer target = renderer_.make_target(shot_.size.width, shot_.size.height);
-    renderer_.draw_values(target, shot_.camera, pixel_values());
+    renderer_.draw_values(target, shot_.camera, {.cull = shot_.is_culled}, pixel_values());
     const std::vector<glm::vec4> shown = target.read_color(target.rect());
     const PixelSample& sample = rays_.answers().sample;
     std::vector<Occlusion> own, traced;

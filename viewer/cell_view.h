@@ -64,14 +64,20 @@ public:
     const std::shared_ptr<const Model>& model() const { return drawn_; }
     /// Positions that are shown. A model must be there.
     std::span<const glm::vec3> positions() const;
+    std::span<const glm::vec3> wedge_normals() const;  ///< likewise
+    /// Answers at vertices that are shown there; empty where there are none, or a map.
+    std::span<const Occlusion> vertex_values() const;
     /// At vertices, in a map, or at pixels: there is something to show.
     bool has_values() const;
 
     /// Once a frame, before it is drawn. A model must be there. True where other values lie on the
-    /// pixels than before. colors: that are drawn; Colors::radius has values of its own. Throws
-    /// std::runtime_error where the device refuses, SettingsError for settings out of their ranges.
+    /// pixels than before. view: as it is drawn; Colors::radius has values of its own, and what is
+    /// coarse does not rest. Throws std::runtime_error where the device refuses, SettingsError for
+    /// settings out of their ranges.
     [[nodiscard]] bool look(const Cell& cell, const Camera& camera, PictureSize size,
-                            const PixelRays& rays, Colors colors = Colors::visibility);
+                            const PixelRays& rays, const ViewOptions& view = {});
+    /// Of the last look().
+    PictureSize picture_size() const { return shot_.size; }
 
     /// Puts a cube map where the camera of the last look() is. It must not be in a body: what is
     /// wrong with the place, or an empty text.
@@ -97,6 +103,10 @@ public:
     }
     const std::optional<PixelError>& pixel_error() const { return error_; }
     const PixelAnswers& pixels() const { return pixels_.answers(); }
+    const PixelAnswers& ray_pixels() const { return rays_.answers(); }
+    /// The occlusion at a pixel of the last look() where a method of the picture or cube maps tell
+    /// it alone. Waits for the device.
+    [[nodiscard]] std::optional<float> told_by_picture(glm::ivec2 pixel) const;
     bool is_busy() const;
     bool was_cancelled() const { return session_.was_cancelled() || was_cancelled_; }
     /// 0 to 1 where pixels are solved, or rays traced at them.
@@ -116,6 +126,7 @@ private:
         std::shared_ptr<const Model> model;
         Camera camera;
         PictureSize size;
+        bool is_culled = false;
         bool operator==(const Shot&) const = default;
     };
     const GBuffer& drawn();
@@ -150,6 +161,7 @@ private:
     std::shared_ptr<const MovingFrame> moved_;  ///< null: the session's model is shown
     bool moved_has_values_ = false;
     std::shared_ptr<const Model> drawn_;  ///< that the renderer has
+    bool has_coarse_ = false;             ///< the renderer has its coarse triangles, too
 
     Shot shot_;
     std::optional<DrawnMesh> mesh_;  ///< of the model; empty until it is wanted

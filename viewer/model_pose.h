@@ -1,8 +1,10 @@
 /// model_pose.h: a model with its parts elsewhere: by an animation, and by hand.
 ///
 /// All is told from the model as it was read, the base: its frame stays, its ground stays, and
-/// normals turn with what they are on. Where both move a part, the animation does so first and the
-/// hand then moves what it has made of it, about the place where the part's middle is by then.
+/// normals turn with what they are on. Of what bends they are made of its triangles anew, smooth
+/// where they were so at rest, and are not those that the file's skins and morphs give. Where both
+/// move a part, the animation does so first and the hand then moves what it has made of it, about
+/// the place where the part's middle is by then.
 #pragma once
 
 #include "engines/moving.h"

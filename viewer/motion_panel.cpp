@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <limits>
 #include <string>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -93,7 +94,6 @@ glm::dvec3 MotionPanel::centre_of(std::uint32_t movable) const
 
 void MotionPanel::widgets(double draw_ms)
 {
-    holds_widget_ = false;
     const bool has_something = mover_.selected() || !mover_.animations().empty();
     if (has_something && !was_open_) {
         ImGui::SetNextItemOpen(true);
@@ -350,9 +350,9 @@ void MotionPanel::pick(const MotionView& view, const Rect& picture, glm::vec2 pi
 {
     const SightRay ray = sight_ray(view_in(view, picture), picture.width, picture.height,
                                    pixel - corner_of(picture));
-    const auto triangle = triangle_under(view.positions, view.triangles, ray);
-    if (triangle)
-        mover_.select_vertex(view.triangles[*triangle].x);
+    const auto found = point_under(view.positions, view.triangles, ray, view.is_culled);
+    if (found)
+        mover_.select_vertex(view.triangles[found->triangle].x);
     else
         mover_.select(std::nullopt);
 }
@@ -373,7 +373,8 @@ bool MotionPanel::mouse(const MotionView& view)
             for (const Rect& picture : view.pictures)
                 is_taken |= start_drag(view, picture, pixel);
     }
-    mover_.hold(drag_.has_value() || holds_widget_);
+    // widgets that are not drawn any more hold nothing
+    mover_.hold(drag_.has_value() || std::exchange(holds_widget_, false));
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left))
         is_pressed_ = !io.WantCaptureMouse && !is_taken;
     if (is_pressed_ && ImGui::IsMouseReleased(ImGuiMouseButton_Left)) {

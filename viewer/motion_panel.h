@@ -22,6 +22,7 @@ struct MotionView {
     std::vector<Rect> pictures;            ///< apart from each other, all by the same camera
     std::span<const glm::vec3> positions;  ///< as they are shown
     std::span<const glm::uvec3> triangles;
+    bool is_culled = false;  ///< ViewOptions::cull
 };
 
 /// All are called between ImGui's NewFrame and Render.

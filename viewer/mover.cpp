@@ -133,6 +133,7 @@ void Mover::choose(std::optional<std::size_t> animation)
     if (animation == chosen_)
         return;
     chosen_ = animation;
+    begin_.reset();  // it was of the animation that the file was read with
     motion_.reset();
     player_.is_playing = false;
     if (chosen_)

@@ -233,9 +233,7 @@ void MovingSession::ask(const MovingQuestion& question, std::optional<KnownAnswe
     question_ = question;
     known_ = std::move(known);
     const std::lock_guard lock(mutex_);
-    ++number_;
-    wanted_.reset();
-    is_running_ = false;
+    begin_anew();
     start_if_idle();
 }
 
@@ -246,10 +244,19 @@ void MovingSession::forget()
     frame_.reset();
     message_.clear();
     const std::lock_guard lock(mutex_);
+    begin_anew();
+    worker_.start([this](const Progress&) { built_.reset(); });
+}
+
+/// Nothing of the last question comes any more, not even what was found and not taken over.
+/// mutex_ is held.
+void MovingSession::begin_anew()
+{
     ++number_;
     wanted_.reset();
+    found_.reset();
+    failure_.clear();
     is_running_ = false;
-    worker_.start([this](const Progress&) { built_.reset(); });
 }
 
 void MovingSession::pose(const MovingPose& pose, bool rests)

@@ -95,6 +95,7 @@ private:
         bool rests = false;
     };
     struct Built;
+    void begin_anew();
     void start_if_idle();
     void run(std::uint64_t number, const MovingQuestion& question,
              const std::optional<KnownAnswer>& known, const Progress& progress);

@@ -1,11 +1,14 @@
 #include "viewer/native_window.h"
 
+#include "viewer/flight.h"
 #include "viewer/panel.h"
 
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 namespace surfelao {
 namespace {
@@ -46,6 +49,20 @@ char sign_of(int key, int scancode)
     if (name == nullptr || name[0] == 0 || name[1] != 0)
         return 0;
     return name[0] >= 'a' && name[0] <= 'z' ? static_cast<char>(name[0] - 'a' + 'A') : name[0];
+}
+
+/// Keys are where they are on a US layout, whatever is printed there.
+void hold_key(std::string& held, int key, int action)
+{
+    if (key < GLFW_KEY_A || key > GLFW_KEY_Z)
+        return;
+    const char sign = static_cast<char>('A' + (key - GLFW_KEY_A));
+    if (kFlightKeys.find(sign) == std::string_view::npos)
+        return;
+    if (action == GLFW_PRESS)
+        held += sign;
+    else if (action == GLFW_RELEASE)
+        std::erase(held, sign);
 }
 
 }  // namespace
@@ -102,6 +119,7 @@ Inbox::Inbox(GLFWwindow* window)
         inbox_of(w).paths.insert(inbox_of(w).paths.end(), dropped, dropped + count);
     });
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
+        hold_key(inbox_of(w).held, key, action);
         const char sign = sign_of(key, scancode);
         const bool zooms = sign == '+' || sign == '=' || sign == '-';
         const bool down = action == GLFW_PRESS || (action == GLFW_REPEAT && zooms);

@@ -42,6 +42,8 @@ using WindowHandle = std::unique_ptr<GLFWwindow, CloseWindow>;
 struct Inbox {
     std::string keys;                          ///< see Panel::build
     std::vector<std::filesystem::path> paths;  ///< dropped
+    /// Of kFlightKeys (flight.h), by their place on the keyboard: those down now.
+    std::string held;
 
     explicit Inbox(GLFWwindow* window);
     Inbox(const Inbox&) = delete;

@@ -3,6 +3,7 @@
 #include "viewer/cell_widgets.h"
 #include "viewer/native_window.h"
 #include "viewer/panel_widgets.h"
+#include "viewer/probe_box.h"
 #include "viewer/render.h"
 #include "viewer/tip.h"
 #include "viewer/ui_scale.h"
@@ -16,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <utility>
 
 namespace surfelao {
 namespace {
@@ -35,19 +37,47 @@ void switch_beside(PanelState& state, Beside beside)
     state.beside = state.beside == beside ? Beside::nothing : beside;
 }
 
+/// Those of how the model looks.
+void press_look(char key, ViewOptions& view)
+{
+    switch (key) {
+        case 'T':
+            view.surface = static_cast<Shape>((static_cast<int>(view.surface) + 1) % 4);
+            break;
+        case 'G':
+            view.ground = !view.ground;
+            break;
+        case 'L':
+            view.colors = Colors::headlight;
+            break;
+        case 'X':
+            view.wireframe = !view.wireframe;
+            break;
+        case 'K':
+            view.cull = !view.cull;
+            break;
+        default:
+            if (key >= '0' && key <= '9')
+                view.colors = static_cast<Colors>((key - '1' + 10) % 10);
+    }
+}
+
 /// One key that the widgets leave to the picture.
 void press(char key, PanelState& state, MotionPanel& motion, PanelInput& input)
 {
-    input.view_changed |= std::string_view("1234567890ATGWS").find(key) != std::string_view::npos;
+    if (state.flight.is_on && kFlightKeys.find(key) != std::string_view::npos)
+        return;  // while it is held
+    input.view_changed |=
+        std::string_view("1234567890ATGWSLXK").find(key) != std::string_view::npos;
     switch (key) {
+        case 'V':
+            state.flight.is_on = !state.flight.is_on;
+            break;
+        case 'I':
+            state.inspects = !state.inspects;
+            break;
         case 'A':
             state.shows_atlas = !state.shows_atlas;
-            break;
-        case 'T':
-            state.view.surface = static_cast<Shape>((static_cast<int>(state.view.surface) + 1) % 4);
-            break;
-        case 'G':
-            state.view.ground = !state.view.ground;
             break;
         case 'W':
             switch_beside(state, Beside::wipe);
@@ -77,7 +107,8 @@ void press(char key, PanelState& state, MotionPanel& motion, PanelInput& input)
             input.close = true;
             break;
         case Panel::kEscape:
-            input.cancel = !motion.deselect();
+            if (!std::exchange(state.flight.is_on, false))
+                input.cancel = !motion.deselect();
             break;
         case Panel::kSpace:
             motion.play();
@@ -96,8 +127,7 @@ void press(char key, PanelState& state, MotionPanel& motion, PanelInput& input)
             input.zoom /= kZoomPerNotch;
             break;
         default:
-            if (key >= '0' && key <= '9')
-                state.view.colors = static_cast<Colors>((key - '1' + 10) % 10);
+            press_look(key, state.view);
     }
 }
 
@@ -232,6 +262,13 @@ PanelInput Panel::build(PanelState& state, const CellView& left_view, const Cell
     if (state.beside != Beside::nothing)
         place_labels(line, figures.labels.left.c_str(), figures.labels.right.c_str());
     const bool is_modal = figures.question || files_.is_choosing();
+    input.flies = state.flight.is_on && !is_modal && !ImGui::GetIO().WantTextInput;
+    if (state.inspects && !is_modal && session.state().model) {
+        const bool is_right =
+            right_view && state.beside != Beside::nothing && ImGui::GetIO().MousePos.x >= line;
+        tell_place(moved, is_right ? *right_view : left_view,
+                   is_right ? right_cell(state) : state.left);
+    }
     if (is_modal || !motion.mouse(moved))
         mouse(state, input, line, left);
     if (input.view_changed && needs_reference(state))
@@ -342,12 +379,18 @@ void Panel::mouse(PanelState& state, PanelInput& input, float wipe_x, float left
             state.wipe = std::clamp((io.MousePos.x - left) / width, 0.0f, 1.0f);
             input.view_changed = true;
         } else {
-            input.orbit_deg = kDegreesPerPixel * glm::vec2(-io.MouseDelta.x, io.MouseDelta.y);
+            const glm::vec2 by = kDegreesPerPixel * glm::vec2(io.MouseDelta.x, -io.MouseDelta.y);
+            (state.flight.is_on ? input.look_deg : input.orbit_deg) = state.flight.is_on ? by : -by;
         }
     }
     if (drags(ImGuiMouseButton_Right) || drags(ImGuiMouseButton_Middle))
         input.pan = glm::vec2(io.MouseDelta.x, -io.MouseDelta.y) / std::max(1.0f, io.DisplaySize.y);
-    input.zoom *= std::pow(kZoomPerNotch, io.MouseWheel);
+    const float notches = std::pow(kZoomPerNotch, io.MouseWheel);
+    if (state.flight.is_on)
+        state.flight.speed =
+            std::clamp(state.flight.speed / notches, kLeastFlightSpeed, kMostFlightSpeed);
+    else
+        input.zoom *= notches;
 }
 
 namespace {

@@ -4,6 +4,7 @@
 #include "viewer/cell.h"
 #include "viewer/cell_view.h"
 #include "viewer/file_panel.h"
+#include "viewer/flight.h"
 #include "viewer/motion_panel.h"
 #include "viewer/pane.h"
 #include "viewer/saver.h"
@@ -36,6 +37,8 @@ struct PanelState {
     float wipe = 0.5f;         ///< where the line is, as a share of the picture's width
     bool shows_atlas = false;  ///< in place of the model, where there is a map
     bool is_hidden = false;
+    bool inspects = false;  ///< what is under the mouse is told
+    Flight flight;
     Cell left;
     /// Of its settings, only engine and texels count. None: rays, where the left one's values lie.
     std::optional<Cell> right;
@@ -71,6 +74,8 @@ struct PanelInput {
     glm::vec2 orbit_deg{0.0f};          ///< azimuth, elevation
     glm::vec2 pan{0.0f};                ///< shares of the window's height, y upwards
     float zoom = 1.0f;                  ///< factor on the distance
+    glm::vec2 look_deg{0.0f};           ///< in flight: to the right, upwards
+    bool flies = false;                 ///< where the keys that are held lead
     float covered = 0.0f;  ///< share of the window's width, from the left, that the widgets keep
 };
 

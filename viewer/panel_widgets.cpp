@@ -18,13 +18,13 @@ namespace {
 constexpr int kBins = 48;
 constexpr float kQuestionWide = 32.0f;  // letters
 
-constexpr const char* kColorNames[] = {"visibility", "rays",     "difference",  "bent normals",
-                                       "normals",    "levels",   "environment", "charts",
-                                       "density",    "textured", "coverage",    "radius"};
+constexpr const char* kColorNames[] = {
+    "visibility", "rays",    "difference", "bent normals", "normals", "levels",   "environment",
+    "charts",     "density", "textured",   "coverage",     "radius",  "headlight"};
 constexpr const char* kColorTips[] = {
     "1: the share of light that comes in, 1 - occlusion, as grey",
     "2: the same by rays",
-    "3: between the answer and rays, as a heat map",
+    "3: between the answer and rays, in colours",
     "4: where light comes from on the mean: x, y, z as red, green, blue",
     "5: which way the surface faces, likewise",
     "6: how deep in the octree a surfel lies",
@@ -33,7 +33,8 @@ constexpr const char* kColorTips[] = {
     "9: of a map: texels per unit of length",
     "0: the file's colours, times visibility",
     "of cube maps: red where none of them answers",
-    "of vo with a dynamic radius: that radius"};
+    "of vo with a dynamic radius: that radius",
+    "a lamp at the eye, times visibility"};
 static_assert(std::size(kColorTips) == std::size(kColorNames));
 constexpr const char* kSurfaceNames[] = {"triangles", "splats", "affine", "points"};
 
@@ -48,6 +49,12 @@ constexpr const char* kHelp[][2] = {
     {"R", "rays on or off"},
     {"W", "wipe to the right cell on or off; drag the line"},
     {"S", "the right cell side by side on or off"},
+    {"L", "a light at the eye"},
+    {"X", "wireframe on or off"},
+    {"K", "cull backs on or off: look into a room"},
+    {"I", "values under the mouse on or off"},
+    {"V", "fly: W S forward and back, A D aside, E Q up and down"},
+    {"  in flight", "left drag looks, wheel changes the speed, V or Esc ends it"},
     {"C", "with cube maps: one where the eye is"},
     {"G", "shadow on the ground on or off"},
     {"click", "select the part under the mouse"},
@@ -255,6 +262,39 @@ std::optional<std::uint32_t> edit_parts(const Scene& scene, PartChoice& parts)
     return clicked;
 }
 
+namespace {
+
+bool surface_ticks(PanelState& state)
+{
+    ViewOptions& view = state.view;
+    bool changed = ImGui::Checkbox("wireframe (X)", &view.wireframe);
+    tip("the edges of triangles over what they show");
+    ImGui::SameLine();
+    changed |= ImGui::Checkbox("cull backs (K)", &view.cull);
+    tip("without triangles that show their back: a room seen from outside shows its inside");
+    return changed;
+}
+
+void flight_widgets(PanelState& state)
+{
+    ImGui::Checkbox("values under the mouse (I)", &state.inspects);
+    tip("occlusion, rays' and the error, position in the file's units, normals, vertex, "
+        "triangle and part");
+    ImGui::Checkbox("fly (V)", &state.flight.is_on);
+    tip("W S forward and back, A D aside, E Q up and down; left drag looks, the wheel changes "
+        "the speed");
+    if (!state.flight.is_on)
+        return;
+    float percent = 100.0f * state.flight.speed;
+    if (ImGui::SliderFloat("speed##flight", &percent, 100.0f * kLeastFlightSpeed,
+                           100.0f * kMostFlightSpeed, "%.1f %%/s",
+                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
+        state.flight.speed = 0.01f * percent;
+    tip("of the model's diagonal, a second");
+}
+
+}  // namespace
+
 bool view_widgets(PanelState& state)
 {
     ViewOptions& view = state.view;
@@ -304,6 +344,8 @@ bool view_widgets(PanelState& state)
     }
     if (shows_color_map(view) && map_of(view) != ColorMap::diverging)
         changed |= color_map_combo(view.color_map);
+    changed |= surface_ticks(state);
+    flight_widgets(state);
     changed |= ImGui::Checkbox("shadow on the ground", &view.ground);
     tip("G: what the model takes from the ground below it; for the picture alone");
     return changed;

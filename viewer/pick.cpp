@@ -23,11 +23,11 @@ std::optional<glm::vec2> pixel_of(const View& view, int width, int height, glm::
     return (place - view.lens.low) / (view.lens.high - view.lens.low) * glm::vec2(width, height);
 }
 
-std::optional<std::uint32_t> triangle_under(std::span<const glm::vec3> positions,
-                                            std::span<const glm::uvec3> triangles,
-                                            const SightRay& ray)
+std::optional<SurfacePoint> point_under(std::span<const glm::vec3> positions,
+                                        std::span<const glm::uvec3> triangles, const SightRay& ray,
+                                        bool culls)
 {
-    std::optional<std::uint32_t> found;
+    std::optional<SurfacePoint> found;
     double nearest = std::numeric_limits<double>::infinity();
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
         // Moeller, Trumbore. Fast, Minimum Storage Ray/Triangle Intersection. 1997
@@ -36,7 +36,7 @@ std::optional<std::uint32_t> triangle_under(std::span<const glm::vec3> positions
         const glm::dvec3 ac = glm::dvec3(positions[triangles[t].z]) - a;
         const glm::dvec3 across = glm::cross(ray.direction, ac);
         const double facing = glm::dot(ab, across);
-        if (facing == 0.0)
+        if (facing == 0.0 || (culls && facing < 0.0))
             continue;
         const glm::dvec3 from = ray.origin - a;
         const double u = glm::dot(from, across) / facing;
@@ -45,7 +45,7 @@ std::optional<std::uint32_t> triangle_under(std::span<const glm::vec3> positions
         const double distance = glm::dot(ac, turned) / facing;
         if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0 && distance < nearest) {
             nearest = distance;
-            found = t;
+            found = SurfacePoint{t, glm::vec2(u, v)};
         }
     }
     return found;

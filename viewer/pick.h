@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gpu/g_buffer.h"
+#include "surfels/surface.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -24,9 +25,10 @@ struct SightRay {
 [[nodiscard]] std::optional<glm::vec2> pixel_of(const View& view, int width, int height,
                                                 glm::dvec3 point);
 
-/// The nearest triangle that the ray meets, from either side. O(n).
-[[nodiscard]] std::optional<std::uint32_t> triangle_under(std::span<const glm::vec3> positions,
-                                                          std::span<const glm::uvec3> triangles,
-                                                          const SightRay& ray);
+/// The nearest point of a triangle that the ray meets; culls: none that it meets from behind, else
+/// from either side. O(n).
+[[nodiscard]] std::optional<SurfacePoint> point_under(std::span<const glm::vec3> positions,
+                                                      std::span<const glm::uvec3> triangles,
+                                                      const SightRay& ray, bool culls = false);
 
 }  // namespace surfelao

@@ -17,6 +17,7 @@ namespace surfelao {
 namespace {
 
 constexpr float kAlbedo = 0.80f;          // of the model in the environment, as in shading.glsl
+constexpr float kPaperValue = 0.94f;      // shown value of an open place, likewise
 constexpr int kLargestBackground = 2048;  // pixels each way: it is smooth, and stretched beyond
 
 glm::vec3 direction_number(glm::vec3 direction)
@@ -28,7 +29,7 @@ glm::vec3 direction_number(glm::vec3 direction)
 /// the objects hide.
 class SkyLight {
 public:
-    SkyLight(const ViewOptions& options, UpAxis up, const Image* panorama)
+    SkyLight(const ViewOptions& options, glm::vec3 up, const Image* panorama)
         : SkyLight(options, up, panorama ? *panorama : builtin_sky())
     {
     }
@@ -44,10 +45,10 @@ public:
     }
 
 private:
-    SkyLight(const ViewOptions& options, UpAxis up, const Image& panorama)
+    SkyLight(const ViewOptions& options, glm::vec3 up, const Image& panorama)
         : irradiance_(irradiance_map(panorama)),
           halves_(halved_panoramas(panorama)),
-          frame_(sky_frame(up_direction(up))),
+          frame_(sky_frame(up)),
           exposure_(automatic_exposure(irradiance_) * std::exp2(options.exposure))
     {
     }
@@ -82,7 +83,7 @@ private:
 
 }  // namespace
 
-PixelPaint pixel_paint(const ViewOptions& options, UpAxis up, const Image* panorama,
+PixelPaint pixel_paint(const ViewOptions& options, const Camera& camera, const Image* panorama,
                        const BasePaint* paint)
 {
     const auto visibility = [](const AnsweredPixel& pixel) {
@@ -105,7 +106,15 @@ PixelPaint pixel_paint(const ViewOptions& options, UpAxis up, const Image* panor
             return {
                 [](const AnsweredPixel& pixel) { return direction_number(pixel.receiver.normal); }};
         case Colors::environment:
-            return {SkyLight(options, up, panorama)};
+            return {SkyLight(options, camera.up, panorama)};
+        case Colors::headlight:
+            return {[eye = camera.eye](const AnsweredPixel& pixel) {
+                const Receiver& at = pixel.receiver;
+                const float facing =
+                    std::abs(glm::dot(at.normal, glm::normalize(eye - at.position)));
+                return glm::vec3(srgb_decode(kPaperValue) * (1.0f - pixel.value.occlusion) *
+                                 facing);
+            }};
         case Colors::textured:
             SURFELAO_CHECK(paint != nullptr);
             return {visibility,

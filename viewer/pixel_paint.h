@@ -21,11 +21,12 @@ namespace surfelao {
 }
 
 /// Numbers for shows_numbers(); of differences the occlusion in red and the reference in green;
-/// else display-referred linear light: the lit picture times the
-/// visibility. panorama: for Colors::environment; null = builtin_sky(). paint: for
-/// Colors::textured; what it returns refers to it. Colors that need a map or levels are no choice.
-[[nodiscard]] PixelPaint pixel_paint(const ViewOptions& options, UpAxis up, const Image* panorama,
-                                     const BasePaint* paint);
+/// else display-referred linear light: the lit picture times the visibility. camera: for
+/// Colors::headlight, and whose up is the panorama's. panorama: for Colors::environment; null =
+/// builtin_sky(). paint: for Colors::textured; what it returns refers to it. Colors that need a map
+/// or levels are no choice.
+[[nodiscard]] PixelPaint pixel_paint(const ViewOptions& options, const Camera& camera,
+                                     const Image* panorama, const BasePaint* paint);
 
 /// Numbers as light that a screen shows as these numbers.
 void show_numbers(Image& image);

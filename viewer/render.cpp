@@ -45,7 +45,7 @@ Image render(const Model& model, std::span<const Occlusion> occlusion,
     ViewOptions view = options.view;
     std::string note;
     if (view.colors == Colors::difference) {
-        renderer.draw_values(target, camera, {}, view.surface);
+        renderer.draw_values(target, camera, view);
         const ErrorStatistics error = shown_error(target.read_color(target.rect()));
         if (options.fit_scale)
             view.difference_scale = fitting_scale(error);

@@ -11,6 +11,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
+#include <glm/trigonometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +27,8 @@ namespace {
 constexpr int kMaxSkyWidth = 1024;      // the background is out of focus: more would not be seen
 constexpr float kSkyBlurWidth = 64.0f;  // columns of the panorama that can still be told apart
 constexpr float kNearest =
-    1e-4f;                     // near plane as a share of the far one, for eyes inside the scene
+    1e-4f;  // near plane as a share of the far one, for eyes inside the scene
+constexpr std::size_t kCoarseSplats = 30'000;
 constexpr float kPush = 0.3f;  // of a splat's radius: how far apart overlapping disks may lie
 
 /// Empty buffers are an error of the device: a scene without area draws one unused element instead.
@@ -46,6 +48,31 @@ std::vector<glm::vec4> occlusion_texels(std::span<const Occlusion> values)
         texels.emplace_back(value.bent_normal, value.occlusion);
     return texels;
 }
+
+/// From (pixel, 1) to the direction in which it is seen, where the picture is moved by `shift`.
+glm::mat3 sight_matrix(const Camera& camera, glm::vec2 size, glm::vec2 shift)
+{
+    const CameraAxes axes = camera_axes(camera);
+    const float half = std::tan(0.5f * glm::radians(camera.fovy_deg));
+    const glm::vec3 across = 2.0f * half / size.y * axes.right;
+    const glm::vec3 along = 2.0f * half / size.y * axes.upwards;
+    const glm::vec2 middle = 0.5f * size + shift;
+    return {across, along, -axes.backwards - middle.x * across - middle.y * along};
+}
+
+/// Triangles of a model that stand for all of them.
+struct CoarseTriangles {
+    CoarseTriangles(const GlContext& context, std::span<const glm::uvec3> wedges)
+        : corners(context, TexelFormat::r32ui, wedges),
+          triangles(context),
+          index_count(3 * wedges.size())
+    {
+        triangles.indices(corners.buffer());
+    }
+    TextureBuffer corners;
+    VertexArray triangles;
+    std::size_t index_count;
+};
 
 /// What depends on the model alone.
 struct Upload {
@@ -163,6 +190,7 @@ struct Upload {
     bool has_paint;
     TextureBuffer radii, corners;
     VertexArray triangles;
+    std::optional<CoarseTriangles> coarse;
     std::size_t vertex_count = 0, index_count, splat_count;
     ShadowSquare ground;
     float radius = 0.0f;  ///< radius_of()
@@ -220,6 +248,8 @@ struct Renderer::Impl {
         const ViewOptions& options;
         const PixelValues& pixels;
         glm::mat4 view, projection;
+        glm::mat3 sight;
+        [[nodiscard]] Cull cull() const { return options.cull ? Cull::back : Cull::none; }
     };
 
     [[nodiscard]] Frame frame_of(const Framebuffer& target, const Camera& camera,
@@ -236,7 +266,8 @@ struct Renderer::Impl {
                 options,
                 pixels,
                 view_matrix(camera),
-                projection_matrix(camera, size.x / size.y, near, far, 2.0f * shift / size)};
+                projection_matrix(camera, size.x / size.y, near, far, 2.0f * shift / size),
+                sight_matrix(camera, size, shift)};
     }
 
     void set_shading(Program& program, const Frame& frame)
@@ -250,6 +281,7 @@ struct Renderer::Impl {
         program.set("u_irradiance", *irradiance);
         program.set("u_sky_frame", sky_frame(frame.camera.up));
         program.set("u_exposure", base_exposure * std::exp2(frame.options.exposure));
+        program.set("u_sight", frame.sight);
     }
 
     void set_model_texels(Program& program)
@@ -264,9 +296,22 @@ struct Renderer::Impl {
         program.set("u_surfels", upload->surfels);
         program.set("u_splats", upload->splats);
         program.set("u_radii", upload->radii);
-        program.set("u_radius_scale", frame.options.radius_scale);
+        const std::size_t stride = splat_stride(frame);
+        program.set("u_splat_stride", static_cast<int>(stride));
+        // the same area in all
+        program.set("u_radius_scale",
+                    frame.options.radius_scale * std::sqrt(static_cast<float>(stride)));
         program.set("u_view", frame.view);
         program.set("u_projection", frame.projection);
+    }
+
+    [[nodiscard]] std::size_t splat_stride(const Frame& frame) const
+    {
+        return frame.options.coarse ? upload->splat_count / kCoarseSplats + 1 : 1;
+    }
+    [[nodiscard]] DrawCall splat_call(const Frame& frame) const
+    {
+        return {.count = 6 * ((upload->splat_count - 1) / splat_stride(frame) + 1)};
     }
 
     void set_paint(Program& program, const Frame& frame)
@@ -309,15 +354,18 @@ struct Renderer::Impl {
     void draw_triangles(const Frame& frame)
     {
         const bool is_textured = frame.options.colors == Colors::textured;
-        if (split.has_layout() || is_textured) {
+        if (split.has_layout() || is_textured || frame.options.wireframe) {
             set_triangles(split.program(), frame);
             split.program().set("u_corners", upload->corners);
-            split.draw(frame.target, nothing, is_textured);
+            split.draw(frame.target, nothing, {is_textured, frame.options.wireframe, frame.cull()});
             return;
         }
         set_triangles(surface, frame);
-        draw(frame.target, surface, upload->triangles,
-             {.count = upload->index_count, .indexed = true}, {.depth = DepthTest::less});
+        const bool is_coarse = frame.options.coarse && upload->coarse;
+        draw(frame.target, surface, is_coarse ? upload->coarse->triangles : upload->triangles,
+             {.count = is_coarse ? upload->coarse->index_count : upload->index_count,
+              .indexed = true},
+             {.depth = DepthTest::less, .cull = frame.cull()});
     }
 
     /// The report's way: nearest splat wins.
@@ -327,8 +375,7 @@ struct Renderer::Impl {
         set_model_texels(program);
         set_splats(program, frame);
         set_paint(program, frame);
-        draw(frame.target, program, nothing, {.count = 6 * upload->splat_count},
-             {.depth = DepthTest::less});
+        draw(frame.target, program, nothing, splat_call(frame), {.depth = DepthTest::less});
     }
 
     /// Depth first, a little too far; then the sum of all that is not behind it; then its mean.
@@ -342,7 +389,7 @@ struct Renderer::Impl {
                                                              .depth = true});
         splat_target->clear_color(glm::vec4(0.0f));
         splat_target->clear_depth();
-        const DrawCall call = {.count = 6 * upload->splat_count};
+        const DrawCall call = splat_call(frame);
 
         disk_depth.set("u_positions", upload->positions);
         set_splats(disk_depth, frame);
@@ -489,6 +536,11 @@ void Renderer::forget_layout()
     impl_->split.forget_layout();
 }
 
+void Renderer::set_coarse(std::span<const glm::uvec3> triangles)
+{
+    impl_->upload->coarse.emplace(impl_->context, triangles);
+}
+
 void Renderer::set_paint(const BasePaint& paint)
 {
     impl_->split.set_paint(paint);
@@ -528,10 +580,10 @@ void Renderer::draw_frame(const Framebuffer& target, const Camera& camera,
 }
 
 void Renderer::draw_values(const Framebuffer& target, const Camera& camera,
-                           const PixelValues& pixels, Shape shape)
+                           const ViewOptions& shown, const PixelValues& pixels)
 {
     constexpr auto kAsNumbers = static_cast<Colors>(-1);
-    const ViewOptions options{.surface = shape, .colors = kAsNumbers};
+    const ViewOptions options{.surface = shown.surface, .colors = kAsNumbers, .cull = shown.cull};
     target.clear_color(glm::vec4(0.0f));
     target.clear_depth();
     impl_->draw_model(impl_->frame_of(target, camera, options, pixels, glm::vec2(0.0f)));
@@ -546,7 +598,8 @@ void Renderer::draw_background(const Framebuffer& target, const Camera& camera,
                             options,
                             {},
                             view_matrix(camera),
-                            projection_matrix(camera, aspect, 0.1f, 1.0f)});
+                            projection_matrix(camera, aspect, 0.1f, 1.0f),
+                            {}});
 }
 
 }  // namespace surfelao

@@ -16,6 +16,7 @@
 #include "viewer/view_options.h"
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include <memory>
 #include <span>
@@ -51,6 +52,10 @@ public:
     /// And again the values at the vertices.
     void forget_layout();
 
+    /// Fewer triangles in the model's place for ViewOptions::coarse (coarse.h): wedges of its
+    /// surface. Until the next model. Splats are thinned out without being told.
+    void set_coarse(std::span<const glm::uvec3> triangles);
+
     /// What the model is painted with for Colors::textured: white until told.
     void set_paint(const BasePaint& paint);
 
@@ -68,9 +73,9 @@ public:
                     glm::vec2 shift = glm::vec2(0.0f), const PixelValues& pixels = {});
 
     /// The occlusion that draw_frame() would show at the pixels' middles, in red, and that of the
-    /// reference, in green; alpha 0 where there is none.
+    /// reference, in green; alpha 0 where there is none. Of options, shape and culling count.
     void draw_values(const Framebuffer& target, const Camera& camera,
-                     const PixelValues& pixels = {}, Shape shape = Shape::triangles);
+                     const ViewOptions& options = {}, const PixelValues& pixels = {});
 
     /// The background alone; no model is needed.
     void draw_background(const Framebuffer& target, const Camera& camera,

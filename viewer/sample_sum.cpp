@@ -22,9 +22,10 @@ struct SampleSum::Impl {
                            .width = width, .height = height, .colors = {TexelFormat::rgba32f}})
     {
     }
-    void add(const Texture2D& drawing)
+    void add(const Texture2D& drawing, int texel)
     {
         program.set("u_image", drawing);
+        program.set("u_texel", texel);
         program.set("u_factor", 1.0f);
         program.set("u_encode", 0);
         program.set("u_corner", glm::ivec2(0));
@@ -58,9 +59,9 @@ int SampleSum::count() const
     return impl_->count;
 }
 
-void SampleSum::add(const Framebuffer& drawing)
+void SampleSum::add(const Framebuffer& drawing, int texel)
 {
-    impl_->add(drawing.color());
+    impl_->add(drawing.color(), texel);
 }
 
 void SampleSum::add(const Image& picture)
@@ -70,7 +71,8 @@ void SampleSum::add(const Image& picture)
         for (int x = 0; x < upright.width; ++x)
             upright.at(x, y) = picture.at(x, upright.height - 1 - y);
     impl_->add(Texture2D(impl_->context, upright.width, upright.height, TexelFormat::rgba32f,
-                         std::span<const glm::vec4>(upright.pixels)));
+                         std::span<const glm::vec4>(upright.pixels)),
+               1);
 }
 
 Image SampleSum::mean() const
@@ -94,6 +96,7 @@ Image SampleSum::mean() const
 void SampleSum::show(const Framebuffer& target, glm::ivec2 corner, const Rect& part) const
 {
     impl_->program.set("u_image", impl_->sum.color());
+    impl_->program.set("u_texel", 1);
     impl_->program.set("u_factor", 1.0f / static_cast<float>(std::max(1, impl_->count)));
     impl_->program.set("u_encode", 1);
     impl_->program.set("u_corner", corner);

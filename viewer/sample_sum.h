@@ -20,7 +20,8 @@ public:
     SampleSum& operator=(SampleSum&&) noexcept;
 
     void clear();
-    void add(const Framebuffer& drawing);
+    /// texel: how many pixels wide the drawing's texels are; it covers the sum.
+    void add(const Framebuffer& drawing, int texel = 1);
     /// A picture of the same size, as one drawing.
     void add(const Image& picture);
     int count() const;

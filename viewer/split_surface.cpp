@@ -145,9 +145,10 @@ void SplitSurface::set_paint(const BasePaint& paint)
     base_places_ = {context_, TexelFormat::rg32f, std::span<const glm::vec2>(paint.places)};
 }
 
-void SplitSurface::draw(const Framebuffer& target, const VertexArray& nothing, bool with_paint)
+void SplitSurface::draw(const Framebuffer& target, const VertexArray& nothing, const Look& look)
 {
     const TextureBuffer& map = map_ ? *map_ : places_;
+    program_.set("u_wireframe", look.wireframe ? 1 : 0);
     program_.set("u_place_count", place_count_);
     program_.set("u_places", places_);
     program_.set("u_facts", facts_);
@@ -156,12 +157,12 @@ void SplitSurface::draw(const Framebuffer& target, const VertexArray& nothing, b
     program_.set("u_map_reference", reference_ ? *reference_ : map);
     program_.set("u_map_size", glm::ivec2(size_.width, size_.height));
     const Run whole{.count = runs_.back().first + runs_.back().count};
-    for (const Run& run : with_paint ? std::span<const Run>(runs_) : std::span(&whole, 1)) {
+    for (const Run& run : look.paint ? std::span<const Run>(runs_) : std::span(&whole, 1)) {
         program_.set("u_first_corner", static_cast<int>(3 * run.first));
         program_.set("u_base_factor", run.factor);
         program_.set("u_base", run.picture ? pictures_[*run.picture] : white_);
         surfelao::draw(target, program_, nothing, {.count = 3 * run.count},
-                       {.depth = DepthTest::less});
+                       {.depth = DepthTest::less, .cull = look.cull});
     }
 }
 

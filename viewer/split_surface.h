@@ -35,8 +35,13 @@ public:
 
     /// Its uniforms are set by the caller but for what the above have set.
     Program& program() { return program_; }
+    struct Look {
+        bool paint = false;      ///< else white
+        bool wireframe = false;  ///< lines along the edges
+        Cull cull = Cull::none;
+    };
     /// There is a triangle.
-    void draw(const Framebuffer& target, const VertexArray& nothing, bool with_paint);
+    void draw(const Framebuffer& target, const VertexArray& nothing, const Look& look);
 
 private:
     /// Triangles in sequence of one material.

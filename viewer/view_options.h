@@ -31,6 +31,7 @@ enum class Colors {
     textured = 9,      ///< the surface's own colour times visibility
     coverage = 10,     ///< of cube maps: visibility, red where none of them answers
     radius = 11,       ///< of vo with a dynamic radius: that radius, in the colour map
+    headlight = 12,    ///< a light at the eye: Lambert's cosine times visibility
 };
 
 struct ViewOptions {
@@ -40,9 +41,12 @@ struct ViewOptions {
     float difference_scale = 0.1f;  ///< > 0: the difference at the end of the map
     bool is_signed = false;         ///< the difference says which way, in the diverging map
     ColorMap color_map = ColorMap::heat;
-    float wipe = 1.0f;      ///< share of the width from which on the reference is shown
-    float exposure = 0.0f;  ///< environment: stops, added to the automatic exposure
-    bool ground = true;     ///< shadow on the ground under the model
+    float wipe = 1.0f;       ///< share of the width from which on the reference is shown
+    float exposure = 0.0f;   ///< environment: stops, added to the automatic exposure
+    bool ground = true;      ///< shadow on the ground under the model
+    bool wireframe = false;  ///< triangles: with their edges
+    bool cull = false;       ///< triangles: not those that show their back to the eye
+    bool coarse = false;     ///< fewer of what is drawn: Renderer::set_coarse()
     /// Behind the model, linear, with an alpha of 0 or 1; empty: a gradient, or the environment.
     std::optional<glm::vec4> background = {};
 };
@@ -85,7 +89,8 @@ struct ViewOptions {
 {
     return options.ground &&
            (options.colors == Colors::visibility || options.colors == Colors::rays ||
-            options.colors == Colors::environment || options.colors == Colors::textured);
+            options.colors == Colors::environment || options.colors == Colors::textured ||
+            options.colors == Colors::headlight);
 }
 
 }  // namespace surfelao

@@ -6,11 +6,13 @@
 #include "surfels/stopwatch.h"
 #include "viewer/atlas_picture.h"
 #include "viewer/cell_view.h"
+#include "viewer/coarse.h"
 #include "viewer/motion_panel.h"
 #include "viewer/mover.h"
 #include "viewer/native_window.h"
 #include "viewer/pane.h"
 #include "viewer/pane_labels.h"
+#include "viewer/pane_layout.h"
 #include "viewer/recent_files.h"
 #include "viewer/render.h"
 #include "viewer/renderer.h"
@@ -89,10 +91,13 @@ private:
             glfwPollEvents();
             echo_frames_ = std::max(0, echo_frames_ - 1);
         } else {
+            const bool will_rest = level_ != 0;  // and be drawn whole then
             const bool is_busy =
                 left_.is_busy() || (right_ && right_->is_busy()) || mover_.is_busy();
             const bool moves = left_.is_moved() || mover_.player().is_playing;
-            const double timeout = moves ? kMovingSeconds : is_busy ? kPollSeconds : kIdleSeconds;
+            const double timeout = moves                  ? kMovingSeconds
+                                   : is_busy || will_rest ? kPollSeconds
+                                                          : kIdleSeconds;
             const double start = glfwGetTime();
             glfwWaitEventsTimeout(timeout);
             if (glfwGetTime() - start < timeout)
@@ -140,6 +145,7 @@ private:
             if (changes.model && camera_.up != up_direction(state().model->up))
                 frame_all();
             if (changes.file) {
+                times_ = {};
                 note_.clear();
                 saver_.add_input(state().path);
                 list_open(state().path);
@@ -167,7 +173,7 @@ private:
         left_.show_moved(mover_.base(), mover_.shown(), true);
         if (right_ && right_->session().state().model)
             right_->show_moved(mover_.base(), mover_.shown(), false);
-        restart();
+        follow_motion();
     }
 
     /// The right cell is there where it is wanted, with the left one's model.
@@ -208,7 +214,33 @@ private:
 
     bool shows_atlas() const { return panel_state_.shows_atlas && state().layout; }
     /// What moves leaves its time to the engine.
-    int most_samples() const { return shows_atlas() || left_.is_moved() ? 1 : kMostSamples; }
+    int most_samples() const
+    {
+        return shows_atlas() || left_.is_moved() || is_moving() ? 1 : kMostSamples;
+    }
+
+    bool is_moving() const { return glfwGetTime() - moved_at_ < kRestSeconds; }
+
+    /// The camera or the model is elsewhere.
+    void follow_motion()
+    {
+        moved_at_ = glfwGetTime();
+        restart();
+    }
+
+    /// What is drawn of the pictures is as fine as there is time for.
+    void choose_detail()
+    {
+        if (!is_moving())
+            std::fill(times_.begin() + 1, times_.end(), std::nullopt);
+        const std::size_t level = is_moving() ? moving_detail(times_) : 0;
+        if (std::exchange(level_, level) == level)
+            return;
+        restart();
+        for (Pane& pane : panes_)
+            fit_target(pane, left_.renderer(), detail());
+    }
+    const Detail& detail() const { return kDetails[level_]; }
 
     void frame_all()
     {
@@ -241,23 +273,9 @@ private:
     /// The pictures in this part of the window; they begin anew where anything has changed.
     void lay_out(const Rect& part)
     {
-        // a reference that is not there yet is not shown instead of the result
-        const bool traced = left_.has_reference();
-        const bool right = right_.has_value();
-        const Beside beside = panel_state_.beside;
-        std::vector<PaneWish> wanted;
-        if (beside == Beside::side_by_side && part.width > 1) {
-            const int half = part.width / 2;
-            const Rect low = {part.x, part.y, half, part.height};
-            const Rect high = {part.x + part.width - half, part.y, half, part.height};
-            wanted = {{low, low}, {high, high, traced && !right ? 0.0f : 1.0f, right}};
-        } else if (beside == Beside::wipe && right) {
-            const auto line = static_cast<int>(panel_state_.wipe * static_cast<float>(part.width));
-            wanted = {{part, {part.x, part.y, line, part.height}},
-                      {part, {part.x + line, part.y, part.width - line, part.height}, 1.0f, true}};
-        } else {
-            wanted = {{part, part, traced && beside == Beside::wipe ? panel_state_.wipe : 1.0f}};
-        }
+        const std::vector<PaneWish> wanted =
+            wanted_panes(part, panel_state_.beside, panel_state_.wipe, left_.has_reference(),
+                         right_.has_value());
         const auto same = [](const Pane& pane, const PaneWish& wish) {
             const Rect &a = pane.as.place, &b = wish.place;
             return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height &&
@@ -265,6 +283,7 @@ private:
         };
         if (!std::equal(panes_.begin(), panes_.end(), wanted.begin(), wanted.end(), same)) {
             panes_.clear();
+            level_ = 0;
             for (const PaneWish& wish : wanted)
                 panes_.emplace_back(left_.renderer(), context_, wish);
         }
@@ -283,12 +302,12 @@ private:
                                     : 0,
                                 is_whole};
         try {
-            const PictureSize size = panes_.front().size();
-            bool has_changed =
-                left_.look(panel_state_.left, camera_, size, rays, panel_state_.view.colors);
+            const PictureSize size = drawn_size(panes_.front(), detail());
+            ViewOptions view = panel_state_.view;
+            view.coarse = level_ != 0;
+            bool has_changed = left_.look(panel_state_.left, camera_, size, rays, view);
             if (right_ && right_->session().state().model)
-                has_changed |= right_->look(right_cell(panel_state_), camera_, size, {},
-                                            panel_state_.view.colors);
+                has_changed |= right_->look(right_cell(panel_state_), camera_, size, {}, view);
             if (has_changed)
                 restart();
         } catch (const std::exception& error) {
@@ -309,10 +328,14 @@ private:
         if (is_first && has_view())
             frame_all();
         apply(input);
+        if (input.save_picture)
+            moved_at_ = -kRestSeconds;  // whole, at once
+        choose_detail();
 
         const Framebuffer shown = Framebuffer::window(context_, width, height);
         shown.clear_color(glm::vec4(0.16f, 0.17f, 0.18f, 1.0f));
         if (has_view()) {
+            drawing_.lap();
             look();
             draw_model(shown);
         }
@@ -341,6 +364,7 @@ private:
                                 (view.colors == Colors::rays && cell.has_reference());
         if (!has_values)
             view.colors = Colors::normals;
+        view.coarse = !detail().is_whole;
         return view;
     }
 
@@ -358,17 +382,18 @@ private:
         }
         view.positions = left_.positions();
         view.triangles = left_.model()->geometry().triangles;
+        view.is_culled = panel_state_.view.cull;
         return view;
     }
 
     void draw_model(const Framebuffer& shown)
     {
         if (samples() < most_samples()) {
-            Stopwatch watch;
             for (Pane& pane : panes_)
                 add_sample(pane);
             context_.finish("drawing the model");
-            frame_ms_ = 1000.0 * watch.lap();
+            frame_ms_ = 1000.0 * drawing_.lap();
+            times_[level_] = frame_ms_;
         }
         for (const Pane& pane : panes_)
             pane.sum.show(shown, {pane.as.place.x, pane.as.place.y}, pane.as.shown);
@@ -392,7 +417,7 @@ private:
             return;
         }
         cell.draw_frame(pane.target, camera_, view, sample_shift(pane.sum.count()));
-        pane.sum.add(pane.target);
+        pane.sum.add(pane.target, detail().pixel);
     }
 
     /// The rays' where the pane shows them alone.
@@ -441,20 +466,29 @@ private:
             frame_all();
         if (input.add_map)
             add_map();
-        if (input.orbit_deg != glm::vec2(0.0f)) {
-            orbit(camera_, input.orbit_deg.x, input.orbit_deg.y);
-            restart();
-        }
-        if (input.pan != glm::vec2(0.0f)) {
-            pan(camera_, input.pan);
-            restart();
-        }
-        if (input.zoom != 1.0f) {
-            zoom(camera_, input.zoom);
-            restart();
-        }
+        move_camera(input);
         if (input.view_changed)
             restart();
+    }
+
+    void move_camera(const PanelInput& input)
+    {
+        constexpr double kLongestStep = 0.1;  // seconds: a slow frame is no leap
+        const double now = glfwGetTime();
+        const double elapsed = std::min(kLongestStep, now - std::exchange(flown_at_, now));
+        const Camera before = camera_;
+        if (input.orbit_deg != glm::vec2(0.0f))
+            orbit(camera_, input.orbit_deg.x, input.orbit_deg.y);
+        if (input.look_deg != glm::vec2(0.0f))
+            look_around(camera_, input.look_deg.x, input.look_deg.y);
+        if (input.pan != glm::vec2(0.0f))
+            pan(camera_, input.pan);
+        if (input.zoom != 1.0f)
+            zoom(camera_, input.zoom);
+        if (input.flies)
+            fly(camera_, flight_step(inbox_.held, panel_state_.flight.speed, elapsed));
+        if (camera_ != before)
+            follow_motion();
     }
 
     /// For each cell that shows some.
@@ -559,7 +593,11 @@ private:
     std::vector<std::filesystem::path> open_files_;
     Saver saver_;
     std::string note_;
+    Stopwatch drawing_;
     double frame_ms_ = 0.0;
+    std::size_t level_ = 0;  ///< of kDetails, that is drawn
+    DetailTimes times_;
+    double moved_at_ = -kRestSeconds, flown_at_ = 0.0;  ///< glfwGetTime()
     int echo_frames_ = 0;
 };
 

@@ -1,6 +1,9 @@
 // drawing_tables: frames per second of triangles and splats, at 1920 x 1080.
 //
-//   drawing_tables [egl|osmesa]
+//   drawing_tables [egl|osmesa] [moving]
+//
+// moving: milliseconds of each detail that a moving picture of 1.1 million triangles is drawn in
+// (viewer/coarse.h), at 1280 x 800, and what making the coarse triangles takes. Else:
 //
 // Grids of 81 to 16,641 vertices as in Engleson's report (Point-based ambient occlusion, 2011,
 // tables 1 and 2) with splats of covering radius, then 10^6 vertices. All ways to draw take turns,
@@ -10,7 +13,9 @@
 #include "gpu/context.h"
 #include "scenes.h"
 #include "surfels/stopwatch.h"
+#include "viewer/coarse.h"
 #include "viewer/renderer.h"
+#include "viewer/sample_sum.h"
 
 #include <glm/trigonometric.hpp>
 
@@ -66,6 +71,56 @@ std::array<double, kSurfaces.size()> frame_rates(const GlContext& context, Rende
     return rates;
 }
 
+constexpr int kMovingCells = 742;  // each way, of two triangles
+
+/// The median of the frames, with what puts the picture into the window's.
+double moving_ms(const GlContext& context, Renderer& renderer, const Camera& camera,
+                 const Detail& detail)
+{
+    constexpr int kWide = 1280, kHigh = 800;
+    const Framebuffer target =
+        renderer.make_target((kWide - 1) / detail.pixel + 1, (kHigh - 1) / detail.pixel + 1);
+    SampleSum sum(context, kWide, kHigh);
+    std::vector<double> seconds;
+    for (int frame = -1; frame < kFrames; ++frame) {
+        Stopwatch watch;
+        renderer.draw_frame(target, camera, {.coarse = !detail.is_whole});
+        sum.clear();
+        sum.add(target, detail.pixel);
+        context.finish("drawing");
+        const double passed = watch.lap();
+        if (frame >= 0)
+            seconds.push_back(passed);
+    }
+    std::ranges::nth_element(seconds, seconds.begin() + kFrames / 2);
+    return 1000.0 * seconds[kFrames / 2];
+}
+
+void run_moving(GlBackend backend)
+{
+    const GlContext context = GlContext::create(backend);
+    std::printf("Device: %s (%s)\n\n", context.info().renderer.c_str(),
+                context.info().platform.c_str());
+    const Model model = make_model(
+        make_mesh(scenes::height_field(
+            kMovingCells,
+            [](double x, double y) { return 0.1 * std::sin(9.0 * x) * std::cos(7.0 * y); })),
+        UpAxis::z);
+    Renderer renderer(context);
+    renderer.set_model(model);
+    Stopwatch watch;
+    const std::vector<glm::uvec3> coarse =
+        coarse_triangles(model.geometry(), model.mesh->surface, kCoarseTriangles);
+    renderer.set_coarse(coarse);
+    std::printf(
+        "%zu triangles, coarse %zu in %.0f ms\n\n| pixels | triangles | ms |\n|---|---|---|\n",
+        model.geometry().triangles.size(), coarse.size(), 1000.0 * watch.lap());
+    const Camera camera = frame_points(model.seen, UpAxis::z, 1.6f, {.elevation_deg = 40});
+    for (const Detail& detail : kDetails)
+        std::printf("| 1/%d | %s | %.1f |\n", detail.pixel, detail.is_whole ? "all" : "coarse",
+                    moving_ms(context, renderer, camera, detail));
+}
+
 void run(GlBackend backend)
 {
     const GlContext context = GlContext::create(backend);
@@ -104,10 +159,12 @@ int main(int argument_count, char** arguments)
 {
     using namespace surfelao;
     const std::string_view name = argument_count > 1 ? arguments[1] : "";
+    const std::string_view last = arguments[argument_count - 1];
+    const GlBackend backend = name == "egl"      ? GlBackend::egl
+                              : name == "osmesa" ? GlBackend::osmesa
+                                                 : GlBackend::automatic;
     try {
-        run(name == "egl"      ? GlBackend::egl
-            : name == "osmesa" ? GlBackend::osmesa
-                               : GlBackend::automatic);
+        last == "moving" ? run_moving(backend) : run(backend);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "drawing_tables: %s\n", error.what());
         return 1;

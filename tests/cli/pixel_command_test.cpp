@@ -138,6 +138,7 @@ TEST_F(PixelCommand, RefusesWhatDoesNotGoTogetherInOneSentence)
     refused("--mode levels is for --at vertices.", {"--mode", "levels"});
     refused("--at pixels and cubemaps are for --surface triangles.", {"--surface", "splats"});
     refused("--atlas is for --at texels.", {"--atlas"});
+    refused("--wireframe and --cull are for --at vertices and texels.", {"--cull"});
     refused("are for --at texels.", {"--size", "64"});
     refused("--taps, --set and --guard are for --engine ssao-disc", {"--taps", "8"});
     refused("no setting 'colour'", {"--engine", "gtao", "--set", "colour=1"});

@@ -73,6 +73,8 @@ TEST_F(RenderCommand, EveryModeAndSurfaceIsAnotherPicture)
         {"--mode", "normals"},
         {"--mode", "levels"},
         {"--mode", "environment"},
+        {"--mode", "headlight"},
+        {"--wireframe"},
         {"--no-ground"},
         {"--camera", "azimuth=90"},
         {"--normals", "flat"},
@@ -134,7 +136,9 @@ TEST_F(RenderCommand, RefusesWhatCannotBeDoneInOneSentence)
     refused(2, "for --at texels", "x.png", {"--atlas"});
     refused(2, "for --surface triangles", "x.png", {"--at", "texels", "--surface", "splats"});
     refused(2, "for --surface triangles", "x.png", {"--mode", "textured", "--surface", "points"});
+    refused(2, "for --surface triangles", "x.png", {"--cull", "--surface", "points"});
     refused(2, "for --at vertices", "x.png", {"--at", "texels", "--mode", "levels"});
+    refused(2, "not --atlas", "x.png", {"--at", "texels", "--atlas", "--wireframe"});
     refused(1, "a.obj: has no texture coordinates of number 1", "x.png",
             {"--at", "texels", "--uv", "1"});
     refused(1, "the offset must be smaller than the scene", "x.png", {"--offset", "1000"});

@@ -80,9 +80,9 @@ TEST_F(TwoPieces, AreFoundAndPickedByTheRayOfAPixel)
     const Geometry& geometry = base->geometry();
     const auto under = [&](glm::dvec3 point) {
         const auto pixel = pixel_of(view, kPickWidth, kPickHeight, point);
-        const auto triangle = triangle_under(geometry.positions, geometry.triangles,
-                                             sight_ray(view, kPickWidth, kPickHeight, *pixel));
-        return triangle ? movables->of_vertex[geometry.triangles[*triangle].x] : Movables::kNone;
+        const auto found = point_under(geometry.positions, geometry.triangles,
+                                       sight_ray(view, kPickWidth, kPickHeight, *pixel));
+        return found ? movables->of_vertex[geometry.triangles[found->triangle].x] : Movables::kNone;
     };
     EXPECT_EQ(under(movables->list[1].middle()), 1u);
     EXPECT_EQ(under(0.9f * movables->list[0].high + 0.1f * movables->list[0].middle()), 0u);
@@ -91,8 +91,8 @@ TEST_F(TwoPieces, AreFoundAndPickedByTheRayOfAPixel)
     // the nearer one, from below and from above
     const auto along_y = [&](double from) {
         const SightRay ray{{0.03, from, 0.02}, {0.0, from < 0.0 ? 1.0 : -1.0, 0.0}};
-        const auto triangle = triangle_under(geometry.positions, geometry.triangles, ray);
-        return triangle ? movables->of_vertex[geometry.triangles[*triangle].x] : Movables::kNone;
+        const auto found = point_under(geometry.positions, geometry.triangles, ray);
+        return found ? movables->of_vertex[geometry.triangles[found->triangle].x] : Movables::kNone;
     };
     EXPECT_EQ(along_y(-2.0), 0u);
     EXPECT_EQ(along_y(2.0), 1u);
@@ -214,6 +214,26 @@ TEST_F(TwoPieces, FramesAreWholeAndTheLastPoseIsSolvedWell)
     EXPECT_EQ(last.at_points.size(), last.posed->points.size());
 }
 
+// A frame that was found before another question came, and was not taken over, is of the wrong
+// model.
+TEST_F(TwoPieces, NoFrameOfAnEarlierQuestionComesLater)
+{
+    MovingSession session;
+    const auto find_a_frame = [&] {
+        session.ask(box_moves());
+        session.pose({{shifted_by(0.1)}}, false);
+        return updates_until([] {}, [&] { return !session.solving(); });
+    };
+    ASSERT_TRUE(find_a_frame());
+    session.forget();
+    EXPECT_FALSE(session.update());
+    ASSERT_TRUE(find_a_frame());
+    const auto other = resting_model(scenes::box({0, 0, 0}, {1, 1, 1}, 1));
+    session.ask(
+        {other, std::make_shared<const Movables>(movables_of(*other->mesh)), {0}, nullptr, {}});
+    EXPECT_FALSE(session.update());
+}
+
 // Moved away and back: the bytes that were known before. A small box cannot change by more than the
 // tolerance what is 32 of its radii away: that keeps its bytes also where the pose rests.
 TEST(MovingSessionTest, WhatNothingTouchesKeepsItsBytes)
@@ -327,8 +347,8 @@ TEST_F(MovedSession, WhatRestsIsTheSessionsModelUntilItIsUndone)
     EXPECT_EQ(session.occlusion(), before);
 }
 
-// A triangle that an animation moves by 2 along x from second 1 to second 3.
-TEST_F(MovedSession, AnAnimationIsScrubbedAndLeft)
+/// A triangle that an animation moves by 2 along x from second 1 to second 3.
+void write_slide(const std::filesystem::path& path)
 {
     test::GltfMaker maker = test::square();
     maker.document["scenes"][0]["nodes"] = {0, 1};
@@ -340,7 +360,12 @@ TEST_F(MovedSession, AnAnimationIsScrubbedAndLeft)
         {{"name", "slide"},
          {"samplers", {{{"input", times}, {"output", places}}}},
          {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}}};
-    std::ofstream(folder / "slide.glb", std::ios::binary) << maker.glb();
+    std::ofstream(path, std::ios::binary) << maker.glb();
+}
+
+TEST_F(MovedSession, AnAnimationIsScrubbedAndLeft)
+{
+    write_slide(folder / "slide.glb");
     session.open(folder / "slide.glb", UpAxis::y);
     ASSERT_TRUE(rests());
     ASSERT_EQ(mover.animations(), std::vector<std::string>{"slide"});
@@ -358,6 +383,26 @@ TEST_F(MovedSession, AnAnimationIsScrubbedAndLeft)
     ASSERT_TRUE(rests());
     EXPECT_TRUE(session.state().pose.is_rest());
     EXPECT_EQ(place(1), from);
+}
+
+// The moment that a file was read at is forgotten with the animation that was chosen then.
+TEST_F(MovedSession, AnotherChoiceBeginsAtItsFirstKey)
+{
+    write_slide(folder / "slide.glb");
+    const Moment moment{2.5, "slide"};
+    mover.begin_at(moment);
+    session.open(folder / "slide.glb", UpAxis::y, {.moment = moment});
+    ASSERT_TRUE(updates_until(
+        [&] {
+            const Session::Changes changes = session.update();
+            static_cast<void>(mover.update(session, changes.file, now));
+        },
+        [&] { return mover.chosen().has_value(); }));
+    mover.choose(std::nullopt);
+    mover.choose(0);
+    ASSERT_TRUE(updates_until([&] { static_cast<void>(mover.update(session, false, now)); },
+                              [&] { return mover.is_ready(); }));
+    EXPECT_EQ(mover.player().seconds, 1.0);
 }
 
 }  // namespace

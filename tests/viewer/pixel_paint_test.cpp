@@ -30,7 +30,7 @@ TEST(PixelPaint, LightIsThatOfTheShaders)
         open.push_back({0.0f, normal});
     open.resize(model.answer_count());
     const PixelPictureSettings settings{.size = {60, 40}, .engine = EngineSettings{}};
-    for (const Colors colors : {Colors::environment, Colors::normals}) {
+    for (const Colors colors : {Colors::environment, Colors::normals, Colors::headlight}) {
         RenderOptions options;
         options.width = 60;
         options.height = 40;
@@ -40,10 +40,9 @@ TEST(PixelPaint, LightIsThatOfTheShaders)
         options.backend = GlBackend::osmesa;
         const Image at_vertices = render(model, open, {}, camera, options);
         context.make_current();
-        Image image =
-            pixel_picture(context, mesh, drawn, occluders, view_of(camera, 60, 40), settings,
-                          pixel_paint(options.view, UpAxis::z, nullptr, nullptr))
-                .image;
+        Image image = pixel_picture(context, mesh, drawn, occluders, view_of(camera, 60, 40),
+                                    settings, pixel_paint(options.view, camera, nullptr, nullptr))
+                          .image;
         if (shows_numbers(colors))
             show_numbers(image);
         put_on_background(context, image, camera, options.view, nullptr);
@@ -92,7 +91,7 @@ TEST(PixelPaint, GridsTakeTheLightOfTheirCones)
     ASSERT_GT(value.occlusion, 0.15f);
     const auto shown = [&](const Image& sky, const GridPixels* taking) {
         const PixelPaint paint = pixel_paint({.colors = Colors::environment, .exposure = -2.0f},
-                                             UpAxis::y, &sky, nullptr);
+                                             Camera{}, &sky, nullptr);
         return paint.color({receiver, value, value, false, taking}).r;
     };
     Image even(64, 32), half(64, 32);

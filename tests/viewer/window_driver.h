@@ -49,6 +49,15 @@ inline void press(int key)
     callback(window, key, scancode, GLFW_RELEASE, 0);
 }
 
+/// A key goes down or up.
+inline void hold(int key, int action)
+{
+    GLFWwindow* window = glfwGetCurrentContext();
+    const GLFWkeyfun callback = glfwSetKeyCallback(window, nullptr);
+    glfwSetKeyCallback(window, callback);
+    callback(window, key, glfwGetKeyScancode(key), action, 0);
+}
+
 /// The left button goes down there and is let go a call later.
 inline void click(double x, double y, int action)
 {
