@@ -67,7 +67,7 @@ must(${scratch}/prefix/bin/surfelao info ${scratch}/blob.ply)
 # the Python module, where it was built
 if(PYTHON)
     must(${CMAKE_COMMAND} -E env PYTHONPATH=${scratch}/prefix/lib/python3/dist-packages ${PYTHON} -B -c
-        "import surfelao; print(surfelao.bake([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).occlusion)")
+        "print(__import__('surfelao').bake([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).occlusion)")
     if(NOT output STREQUAL "[0. 0. 0.]\n")
         message(FATAL_ERROR "a lone triangle must be open, but Python printed\n${output}")
     endif()

@@ -1,4 +1,5 @@
 """Threads, signals and listeners."""
+import os
 import signal
 import subprocess
 import sys
@@ -35,22 +36,15 @@ def test_threads_do_not_change_bytes():
     assert numpy.array_equal(one.occlusion, surfelao.bake(vertices, faces).occlusion)
 
 
-def test_the_lock_is_released_while_the_engine_works():
-    vertices, faces = waves(100)
-    counted, stop = [0], threading.Event()
-
-    def count():
-        while not stop.is_set():
-            counted[0] += 1
-
-    thread = threading.Thread(target=count)
-    thread.start()
-    before = counted[0]
-    surfelao.bake(vertices, faces, engine="rays", rays=64, check=0)
-    after = counted[0]
-    stop.set()
-    thread.join()
-    assert after > before
+def test_ctrl_c_ends_a_call_and_leaves_all_well():
+    vertices, faces = waves(300)
+    # hours of work; were the interpreter's lock held meanwhile, the timer could not go off
+    timer = threading.Timer(0.2, os.kill, [os.getpid(), signal.SIGINT])
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        surfelao.bake(vertices, faces, engine="rays", rays=2**17, check=0)
+    timer.join()
+    assert surfelao.bake(*box()).occlusion.shape == (8,)
 
 
 def test_progress_is_told_in_the_calling_thread():
@@ -73,26 +67,16 @@ def test_progress_stops_the_call():
         surfelao.bake(vertices, faces, progress=1)
 
 
-# what stops must take minutes otherwise: no machine is too fast or too slow for the test
+# hours of work, unless it is stopped
 LONG = """
 import sys, threading, time
-import numpy, surfelao
+import surfelao
 sys.path.insert(0, {folder!r})
 from conftest import waves
 vertices, faces = waves(300)
 def work():
     surfelao.bake(vertices, faces, engine="rays", rays=2**17, check=0)
 {rest}
-"""
-
-INTERRUPTED = """
-print("ready", flush=True)
-try:
-    work()
-except KeyboardInterrupt:
-    print("interrupted", time.monotonic(), flush=True)
-    occlusion = surfelao.bake([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).occlusion
-    print("alive", occlusion.shape, flush=True)
 """
 
 DAEMON = """
@@ -105,17 +89,6 @@ print("leaving", flush=True)
 def long_script(rest):
     folder = __file__.rpartition("/")[0]
     return [sys.executable, "-c", LONG.format(folder=folder, rest=rest)]
-
-
-def test_ctrl_c_raises_keyboard_interrupt_and_leaves_all_well():
-    with subprocess.Popen(long_script(INTERRUPTED), stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout.readline() == "ready\n"
-        time.sleep(0.5)
-        process.send_signal(signal.SIGINT)
-        output, _ = process.communicate(timeout=60)
-    assert output.splitlines()[0].startswith("interrupted")
-    assert output.splitlines()[1] == "alive (3,)"
-    assert process.returncode == 0
 
 
 def test_an_unhandled_ctrl_c_ends_the_script():
