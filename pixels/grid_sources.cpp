@@ -15,7 +15,7 @@ namespace {
 /// The scene as grids are made of it: without a moment.
 Scene scene_at_rest(const std::filesystem::path& input, const ReadOptions& reading)
 {
-    return read_scene(input, {.columns = reading.columns});
+    return read_scene(input, {.columns = reading.columns, .progress = reading.progress});
 }
 
 /// The part alone that the grid was baked of (bake --receivers); empty where it is not one.
