@@ -372,6 +372,8 @@ fs::path output_in_folder(const fs::path& input, const fs::path& folder)
     fs::path name = input.filename();
     if (type_of(input) == FileType::stl)
         name.replace_extension(".ply");
+    if (type_of(input) == FileType::foreign)
+        name.replace_extension(".glb");
     return folder / name;
 }
 
@@ -461,7 +463,8 @@ bool is_finished(const BakeSettings& settings)
     sources.push_back(settings.input);
     for (std::size_t i = 0, count = sources.size(); i < count; ++i) {
         const FileType type = type_of(sources[i]);
-        if (type == FileType::gltf || type == FileType::obj)  // whose alpha counts too
+        if (type == FileType::gltf || type == FileType::obj ||
+            type == FileType::foreign)  // whose textures' alpha counts too
             std::ranges::copy(sidecars_of(sources[i]), std::back_inserter(sources));
     }
     return std::ranges::all_of(sources, [&](const fs::path& source) {

@@ -200,8 +200,8 @@ struct BatchEntry {
 [[nodiscard]] std::filesystem::path tile_path(const std::filesystem::path& picture,
                                               std::uint32_t tile);
 
-/// Where a batch puts the result for `input`: the folder and the input's name; formats that cannot
-/// hold occlusion (STL) become .ply.
+/// Where a batch puts the result for `input`: the folder and the input's name; STL, which cannot
+/// hold occlusion, becomes .ply, and what is read through assimp .glb.
 [[nodiscard]] std::filesystem::path output_in_folder(const std::filesystem::path& input,
                                                      const std::filesystem::path& folder);
 

@@ -78,7 +78,7 @@ struct High {
     {
         std::vector<Scene> scenes;
         for (const std::filesystem::path& path : settings.texels->high)
-            scenes.push_back(read_scene(path));
+            scenes.push_back(read_scene(path, {.progress = settings.reading.progress}));
         return make_mesh(join(scenes), settings.target.normals);
     }
 

@@ -428,7 +428,8 @@ void add_options(CLI::App* command, const std::shared_ptr<BakeOptions>& options)
             "coordinates (.png .tif .exr), with --at grid NAME.aogrid.exr or .png, or a folder "
             "(made where it is "
             "missing, for several files and behind a /): there every "
-            "result has its input's name, .ply for .stl, and only files that bake made are "
+            "result has its input's name, .ply for .stl, .glb for what assimp reads, and only "
+            "files that bake made are "
             "replaced")
         ->required()
         ->type_name("OUT|DIR");

@@ -1,5 +1,6 @@
 #include "cli/read_options.h"
 
+#include "cli/interrupt.h"
 #include "surfels/errors.h"
 
 #include <CLI/CLI.hpp>
@@ -8,6 +9,7 @@ namespace surfelao {
 
 void add_read_options(CLI::App& command, ReadOptions& options)
 {
+    options.progress = [](double) { return caught_signal() == 0; };
     command
         .add_option(
             "--columns", options.columns,

@@ -11,7 +11,8 @@ namespace surfelao {
 
 /// The formats, for the help of the commands.
 inline constexpr const char* kMeshOrCloud =
-    "Mesh: .obj .ply .off .stl .gltf .glb, or cloud: .ply .pcd .xyz .pts .txt .asc";
+    "Mesh: .obj .ply .off .stl .gltf .glb .fbx .dae .zae .3ds .3mf .x3d, or cloud: .ply .pcd .xyz "
+    ".pts .txt .asc";
 
 /// --columns, --time, --animation
 void add_read_options(CLI::App& command, ReadOptions& options);

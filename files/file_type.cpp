@@ -11,10 +11,12 @@ FileType type_of(const std::filesystem::path& path)
 {
     const std::string extension = lower_extension(path);
     constexpr std::pair<const char*, FileType> kTypes[] = {
-        {".obj", FileType::obj}, {".ply", FileType::ply},   {".off", FileType::off},
-        {".stl", FileType::stl}, {".gltf", FileType::gltf}, {".glb", FileType::glb},
-        {".pcd", FileType::pcd}, {".xyz", FileType::xyz},   {".pts", FileType::xyz},
-        {".txt", FileType::xyz}, {".asc", FileType::xyz}};
+        {".obj", FileType::obj},     {".ply", FileType::ply},     {".off", FileType::off},
+        {".stl", FileType::stl},     {".gltf", FileType::gltf},   {".glb", FileType::glb},
+        {".pcd", FileType::pcd},     {".xyz", FileType::xyz},     {".pts", FileType::xyz},
+        {".txt", FileType::xyz},     {".asc", FileType::xyz},     {".fbx", FileType::foreign},
+        {".dae", FileType::foreign}, {".zae", FileType::foreign}, {".3ds", FileType::foreign},
+        {".3mf", FileType::foreign}, {".x3d", FileType::foreign}};
     for (const auto& [name, type] : kTypes) {
         if (extension == name)
             return type;
@@ -25,6 +27,11 @@ FileType type_of(const std::filesystem::path& path)
 bool is_gltf(FileType type)
 {
     return type == FileType::gltf || type == FileType::glb;
+}
+
+bool becomes_gltf(FileType type)
+{
+    return is_gltf(type) || type == FileType::foreign;
 }
 
 }  // namespace surfelao

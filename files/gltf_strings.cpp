@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <fstream>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -58,16 +59,30 @@ private:
 
 /// The size of the JSON chunk of a GLB of which the stream has given the first four bytes; at most
 /// what the file holds.
-std::size_t json_chunk_size(std::ifstream& file, const fs::path& path)
+std::size_t json_chunk_size(std::istream& file, std::uintmax_t bytes)
 {
     unsigned char head[16] = {};  // version, length, and the chunk's size and type
     file.read(reinterpret_cast<char*>(head), sizeof head);
     std::uint64_t size = 0;
     for (int i = 0; i < 4; ++i)
         size |= std::uint64_t{head[8 + i]} << (8 * i);
-    std::error_code error;
-    const std::uintmax_t bytes = fs::file_size(path, error);
-    return error ? 0 : static_cast<std::size_t>(std::min<std::uintmax_t>(size, bytes));
+    return static_cast<std::size_t>(std::min<std::uintmax_t>(size, bytes));
+}
+
+void visit_strings(std::istream& file, std::uintmax_t bytes, const VisitString& visit)
+{
+    char magic[4] = {};
+    if (!file.read(magic, sizeof magic))
+        return;
+    Strings strings(visit);
+    if (std::string_view(magic, sizeof magic) == "glTF") {
+        std::string text(json_chunk_size(file, bytes), '\0');
+        file.read(text.data(), static_cast<std::streamsize>(text.size()));
+        static_cast<void>(json::sax_parse(text, &strings));
+    } else {
+        file.seekg(0);
+        static_cast<void>(json::sax_parse(file, &strings));
+    }
 }
 
 }  // namespace
@@ -75,21 +90,17 @@ std::size_t json_chunk_size(std::ifstream& file, const fs::path& path)
 void visit_gltf_strings(const fs::path& path, const VisitString& visit)
 {
     std::error_code error;
-    std::ifstream file;
-    if (fs::is_regular_file(path, error))
-        file.open(path, std::ios::binary);
-    char magic[4] = {};
-    if (!file.read(magic, sizeof magic))
+    if (!fs::is_regular_file(path, error))
         return;
-    Strings strings(visit);
-    if (std::string_view(magic, sizeof magic) == "glTF") {
-        std::string text(json_chunk_size(file, path), '\0');
-        file.read(text.data(), static_cast<std::streamsize>(text.size()));
-        static_cast<void>(json::sax_parse(text, &strings));
-    } else {
-        file.seekg(0);
-        static_cast<void>(json::sax_parse(file, &strings));
-    }
+    std::ifstream file(path, std::ios::binary);
+    const std::uintmax_t bytes = fs::file_size(path, error);
+    visit_strings(file, error ? 0 : bytes, visit);
+}
+
+void visit_gltf_strings_in(const std::string& contents, const VisitString& visit)
+{
+    std::istringstream file(contents);
+    visit_strings(file, contents.size(), visit);
 }
 
 }  // namespace surfelao

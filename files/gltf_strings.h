@@ -17,4 +17,7 @@ using VisitString = std::function<bool(std::span<const std::string> keys, const 
 /// of the file is read as is visited; it ends without a word at whatever is no JSON.
 void visit_gltf_strings(const std::filesystem::path& path, const VisitString& visit);
 
+/// The same for a file in memory.
+void visit_gltf_strings_in(const std::string& contents, const VisitString& visit);
+
 }  // namespace surfelao

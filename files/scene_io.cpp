@@ -2,6 +2,7 @@
 
 #include "files/file_contents.h"
 #include "files/file_type.h"
+#include "files/foreign_io.h"
 #include "files/gltf_io.h"
 #include "files/gltf_links.h"
 #include "files/gltf_uri.h"
@@ -14,6 +15,7 @@
 #include "files/xyz_io.h"
 #include "surfels/atomic_file.h"
 #include "surfels/errors.h"
+#include "surfels/extension.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,8 +39,8 @@ Scene read_any(const fs::path& path, const ReadOptions& options)
     const std::string name = path.string();
     require(options.columns.empty() || type_of(path) == FileType::xyz,
             name + ": columns are told of .xyz .pts .txt .asc only");
-    const bool is_gltf = type_of(path) == FileType::gltf || type_of(path) == FileType::glb;
-    require(!options.moment || is_gltf, name + ": only .gltf and .glb have animations");
+    require(!options.moment || is_gltf(type_of(path)),
+            name + ": only .gltf and .glb have animations");
     switch (type_of(path)) {
         case FileType::pcd:
             return read_pcd(name, read_contents(path, name));
@@ -55,10 +57,18 @@ Scene read_any(const fs::path& path, const ReadOptions& options)
         case FileType::gltf:
         case FileType::glb:
             return read_gltf(path, read_contents(path, name), options.moment, options.is_played);
-        default:
+        case FileType::foreign:
+            return read_foreign(path, options.progress);
+        default: {
+            // assimp 5.2 has no reader of USD
+            const bool is_usd = lower_extension(path).starts_with(".usd");
             throw InputError(
                 name + ": " +
-                unknown_type(path, ".obj .ply .off .stl .gltf .glb .pcd .xyz .pts .txt .asc"));
+                unknown_type(path,
+                             ".obj .ply .off .stl .gltf .glb .fbx .dae .zae .3ds .3mf .x3d "
+                             ".pcd .xyz .pts .txt .asc") +
+                (is_usd ? "; export USD as .glb" : ""));
+        }
     }
 }
 
@@ -140,11 +150,14 @@ void check_output(const fs::path& input, const fs::path& output)
     const FileType type = type_of(output);
     if (type == FileType::stl)
         refuse("STL has no place for occlusion, use .ply");
+    if (type == FileType::foreign)
+        refuse("such files are read, not written, use .ply, .obj or .glb");
     if (type == FileType::unknown)
         refuse(unknown_type(output, ".ply .obj .off .gltf .glb .pcd .xyz .pts .txt .asc"));
-    if (is_gltf(type) && !is_gltf(type_of(input)))
+    if (is_gltf(type) && !becomes_gltf(type_of(input)))
         refuse("only a scene that was read from glTF can be written as glTF, use .ply or .obj");
-    if (holds_points_only(type) && (is_gltf(type_of(input)) || type_of(input) == FileType::stl))
+    if (holds_points_only(type) &&
+        (becomes_gltf(type_of(input)) || type_of(input) == FileType::stl))
         refuse(kLosesFaces);
     check_writable(output);
 }
@@ -194,7 +207,7 @@ void check_output_with_map(const fs::path& input, const fs::path& output)
 {
     const FileType type = type_of(output);
     const bool is_known = is_gltf(type) || type == FileType::obj || type == FileType::ply;
-    if (!is_known || (is_gltf(type) && !is_gltf(type_of(input))))
+    if (!is_known || (is_gltf(type) && !becomes_gltf(type_of(input))))
         throw InputError(output.string() + ": " +
                          (is_known ? "only a scene that was read from glTF can be written as glTF"
                                    : "a map goes into .glb, .gltf, .obj and .ply only") +
@@ -255,7 +268,7 @@ std::vector<std::string> write_scene_with_map(const fs::path& path, const Scene&
 
 void check_output_with_blended_map(const fs::path& input, const fs::path& output)
 {
-    if (!is_gltf(type_of(output)) || !is_gltf(type_of(input)))
+    if (!is_gltf(type_of(output)) || !becomes_gltf(type_of(input)))
         throw InputError(output.string() +
                          ": blended charts go from glTF into .glb and .gltf only");
     check_output(input, output);

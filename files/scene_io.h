@@ -1,14 +1,16 @@
 /// scene_io.h: files of meshes and clouds in, the same with occlusion out.
 ///
-/// Read: .obj .ply .off .stl .gltf .glb, and the clouds .pcd .xyz .pts .txt .asc (by extension, any
+/// Read: .obj .ply .off .stl .gltf .glb, those of foreign_io.h (.fbx .dae .zae .3ds .3mf .x3d) and
+/// the clouds .pcd .xyz .pts .txt .asc (by extension, any
 /// case); .ply, .obj and .off without faces are clouds too. Written: .ply .obj .off, .gltf/.glb for
-/// a scene that came from glTF, and for clouds .pcd .xyz .pts .txt .asc. The file's own order and
-/// number of vertices are kept, also on non-manifold meshes and at seams (STL has no vertices of
-/// its own: equal corners are one). No faces are invented.
+/// a scene that came from glTF or through assimp, and for clouds .pcd .xyz .pts .txt .asc. The
+/// file's own order and number of vertices are kept, also on non-manifold meshes and at seams (STL
+/// has no vertices of its own: equal corners are one). No faces are invented.
 #pragma once
 
 #include "files/vertex_colors.h"
 #include "surfels/occlusion.h"
+#include "surfels/progress.h"
 #include "surfels/scene.h"
 
 #include <array>
@@ -36,6 +38,8 @@ struct ReadOptions {
     std::optional<Moment> moment = {};
     /// glTF: who reads it plays an animation (motion.h); no note says that none is.
     bool is_played = false;
+    /// Told 0 now and then while another program reads the file (foreign_io.h).
+    Progress progress = {};
 };
 
 /// Throws SettingsError for columns that do not name x, y and z once each; empty is right.
@@ -44,8 +48,9 @@ void check_columns(const std::string& columns);
 /// Reads a file. A file without faces is a cloud: a scene without triangles. Throws InputError with
 /// one sentence that names file, element and fault for anything that is not a complete, finite,
 /// consistent mesh or cloud; SettingsError for columns that make no point, for columns of a file
-/// that is no text cloud, and for a moment of a file that is no glTF. Time and memory stay in
-/// proportion to the file's size, whatever its counts claim.
+/// that is no text cloud, and for a moment of a file that is no glTF; Cancelled where
+/// options.progress says so. Time and memory stay in proportion to the file's size, whatever its
+/// counts claim.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 struct WriteOptions {

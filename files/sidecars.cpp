@@ -1,9 +1,11 @@
 #include "files/sidecars.h"
 
 #include "files/file_type.h"
+#include "files/foreign_io.h"
 #include "files/gltf_strings.h"
 #include "files/gltf_uri.h"
 #include "files/text_cursor.h"
+#include "surfels/errors.h"
 
 #include <algorithm>
 #include <fstream>
@@ -106,15 +108,25 @@ void add_of_ply(const fs::path& mesh, std::vector<fs::path>& files)
     });
 }
 
-void add_of_gltf(const fs::path& mesh, std::vector<fs::path>& files)
+/// Adds the files that the strings of the mesh's glTF name.
+VisitString add_uris(const fs::path& mesh, std::vector<fs::path>& files)
 {
-    visit_gltf_strings(mesh, [&](std::span<const std::string> keys, const std::string& text) {
+    return [&](std::span<const std::string> keys, const std::string& text) {
         if (!keys.empty() && keys.back() == "uri" && !is_data_uri(text)) {
             if (const std::optional<fs::path> file = locate_uri(mesh.parent_path(), text))
                 files.push_back(*file);
         }
         return true;
-    });
+    };
+}
+
+void add_of_foreign(const fs::path& mesh, std::vector<fs::path>& files)
+{
+    try {
+        visit_gltf_strings_in(import_file(mesh).glb, add_uris(mesh, files));
+    } catch (const InputError&) {
+        // names nothing that we know of
+    }
 }
 
 }  // namespace
@@ -189,7 +201,9 @@ std::vector<fs::path> sidecars_of(const fs::path& mesh)
     else if (type == FileType::ply)
         add_of_ply(mesh, files);
     else if (is_gltf(type))
-        add_of_gltf(mesh, files);
+        visit_gltf_strings(mesh, add_uris(mesh, files));
+    else if (type == FileType::foreign)
+        add_of_foreign(mesh, files);
     return files;
 }
 

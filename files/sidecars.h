@@ -9,10 +9,10 @@
 namespace surfelao {
 
 /// What the file refers to and what is there: buffers and images of .gltf and .glb, material files
-/// of .obj and their textures, textures that a .ply names in a comment (`TextureFile`). For telling
-/// whether a file belongs to a model: any words of a texture's line may be its name. Empty for
-/// other formats and for what cannot be read; never throws for a fault in the file. O(bytes of the
-/// file).
+/// of .obj and their textures, textures that a .ply names in a comment (`TextureFile`), textures of
+/// what assimp reads (by import_file() of foreign_io.h). For telling whether a file belongs to a
+/// model: any words of a texture's line may be its name. Empty for other formats and for what
+/// cannot be read; never throws for a fault in the file. O(bytes of the file).
 [[nodiscard]] std::vector<std::filesystem::path> sidecars_of(const std::filesystem::path& mesh);
 
 /// A comment of a PLY's header names textures behind this word.

@@ -21,7 +21,7 @@ set(allowed_python    surfels files image grid atlas tree reference gpu engines 
 
 # third-party headers and the only folders whose .cpp files may name them
 set(only_surfels   "OpenMesh/")
-set(only_files     "tiny_gltf")
+set(only_files     "tiny_gltf|assimp/")
 set(only_image     "OpenImageIO/")
 set(only_reference "embree3/")
 set(only_cli       "CLI/")
@@ -47,6 +47,9 @@ foreach(folder IN LISTS folders)
         endforeach()
         file(STRINGS ${root}/${file} lines REGEX "^#include <")
         foreach(line IN LISTS lines)
+            if(NOT file MATCHES "^files/import/" AND line MATCHES "<assimp/")
+                message(SEND_ERROR "${file}: only files/import/, a program of its own, may see assimp")
+            endif()
             foreach(owner IN ITEMS surfels files image reference bake cli gpu viewer python)
                 if(NOT folder STREQUAL owner AND line MATCHES "<(${only_${owner}})")
                     message(SEND_ERROR "${file}: only ${owner}/ may see ${CMAKE_MATCH_1}")

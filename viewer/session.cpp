@@ -157,12 +157,14 @@ void Session::start_making(Making making)
 {
     making_ = making;
     const std::uint64_t number = ++solve_number_;
-    solver_.start([this, number, making = std::move(making)](const Progress&) {
+    solver_.start([this, number, making = std::move(making)](const Progress& progress) {
         Stopwatch watch;
+        ReadOptions reading = making.reading;
+        reading.progress = progress;
         auto made = std::make_unique<Made>();
         made->number = number;
         try {
-            Scene scene = making.scene ? *making.scene : read_scene(making.path, making.reading);
+            Scene scene = making.scene ? *making.scene : read_scene(making.path, reading);
             if (scene.free_vertices)  // make_mesh splits them, for these normals alone
                 made->scene = making.scene ? making.scene : std::make_shared<const Scene>(scene);
             made->model = std::make_shared<const Model>(
@@ -171,6 +173,8 @@ void Session::start_making(Making making)
             const std::shared_ptr<const Mesh>& mesh = made->model->mesh;
             if (!made->scene)
                 made->scene = std::shared_ptr<const Scene>(mesh, &mesh->scene);
+        } catch (const Cancelled&) {
+            throw;
         } catch (const std::exception& error) {
             made->failure = error.what();
         }

@@ -459,7 +459,7 @@ TEST(UnreadableFile, WithoutPermissionIsRefused)
 TEST(UnreadableFile, OfUnknownExtensionIsRefused)
 {
     const TemporaryFolder folder;
-    for (const std::string name : {"mesh.fbx", "mesh", "mesh.obj.bak", ".obj"}) {
+    for (const std::string name : {"mesh.blend", "mesh", "mesh.obj.bak", ".obj"}) {
         const std::filesystem::path path = folder.file(name, obj("f 1 2 3\n"));
         EXPECT_NE(refusal(path).find("extension"), std::string::npos) << refusal(path);
     }

@@ -310,7 +310,9 @@ TEST(SceneIo, OutputsThatCannotBeAreRefusedBeforehand)
     };
     EXPECT_EQ(sentence("a.obj", "b.stl"), ": STL has no place for occlusion, use .ply");
     EXPECT_EQ(sentence("a.obj", "b.fbx"),
-              ": the extension .fbx is not known, only .ply .obj .off .gltf .glb .pcd .xyz .pts "
+              ": such files are read, not written, use .ply, .obj or .glb");
+    EXPECT_EQ(sentence("a.obj", "b.usd"),
+              ": the extension .usd is not known, only .ply .obj .off .gltf .glb .pcd .xyz .pts "
               ".txt .asc");
     EXPECT_EQ(sentence("a.obj", "b"),
               ": a file without extension is not known, only .ply .obj .off .gltf .glb .pcd .xyz "
