@@ -5,7 +5,6 @@
 #include "cli/output.h"
 #include "cli/progress_bar.h"
 #include "cli/render_options.h"
-#include "engines/threads.h"
 #include "image/color_map.h"
 #include "image/image_file.h"
 #include "pixels/pixel_picture.h"
@@ -140,10 +139,6 @@ void tell(const RenderCommandOptions& options, const PixelJob& job, const PixelP
 
 int render_pixels(const RenderCommandOptions& options)
 {
-    check_image_output(options.output);
-    std::optional<ThreadLimit> limit;
-    if (options.threads)
-        limit.emplace(*options.threads);
     ProgressBar bar;
     Stopwatch watch;
     PixelJob job = read_job(options);

@@ -2,6 +2,7 @@
 
 #include "cli/commands.h"
 #include "cli/engine_options.h"
+#include "cli/value_checks.h"
 #include "reference/rays.h"
 
 #include <CLI/CLI.hpp>
@@ -67,7 +68,7 @@ void add_show_options(CLI::App& command, ShowOptions& options)
             "chart, texels "
             "per unit of length; textured = the file's base colours times visibility; coverage = "
             "of cube maps (--at cubemaps): red where none answers")
-        ->check(CLI::IsMember(names_of(kModes)))
+        ->check(one_of(names_of(kModes)))
         ->type_name("MODE")
         ->default_str("visibility")
         ->group("Picture");
@@ -75,7 +76,7 @@ void add_show_options(CLI::App& command, ShowOptions& options)
         .add_option("--surface", options.surface,
                     "What is drawn: triangles; splats = surfels as disks, blended; affine = disks "
                     "by affine projection; points = plain point sprites")
-        ->check(CLI::IsMember(names_of(kSurfaces)))
+        ->check(one_of(names_of(kSurfaces)))
         ->type_name("triangles|splats|affine|points")
         ->capture_default_str()
         ->group("Picture");
@@ -89,28 +90,28 @@ void add_show_options(CLI::App& command, ShowOptions& options)
     command
         .add_option("--exposure", options.exposure,
                     "For --mode environment: brighter by that many stops (-20 to 20)")
-        ->check(CLI::Range(-20.0f, 20.0f))
+        ->check(number_from(-20.0, 20.0))
         ->type_name("EV")
         ->capture_default_str()
         ->group("Picture");
     command
         .add_option("--splat-radius", options.radius_scale,
                     "Factor on the radius of splats; 1 covers the surface (0.01 to 100)")
-        ->check(CLI::Range(0.01f, 100.0f))
+        ->check(number_from(0.01, 100.0))
         ->type_name("F")
         ->capture_default_str()
         ->group("Picture");
     command
         .add_option("--difference-scale", options.difference_scale,
                     "The difference that is shown hottest (0.0001 to 1)")
-        ->check(CLI::Range(0.0001f, 1.0f))
+        ->check(number_from(0.0001, 1.0))
         ->type_name("D")
         ->capture_default_str()
         ->group("Picture");
     command
         .add_option("--reference-rays", options.reference_rays,
-                    "Rays per vertex of the reference, an even number")
-        ->check(CLI::Range(2u, kMostRays))
+                    "Rays of the reference for each vertex, texel or pixel, an even number")
+        ->check(whole_from(2, kMostRays))
         ->type_name("N")
         ->capture_default_str()
         ->group("Picture");
