@@ -202,23 +202,6 @@ void check_before_work(const BakeSettings& settings, bool is_alone)
                          ": with a high mesh nothing but it occludes, no other files");
 }
 
-/// Of those that something baked or nothing at all uses.
-std::uint64_t vertices_without_normal(const Mesh& mesh)
-{
-    const std::vector<glm::vec3>& normals = mesh.surface.normals;
-    std::vector<bool> counts(normals.size(), true);
-    for (const bool is_baked : {false, true}) {
-        for (std::size_t t = 0; t < mesh.unbaked.size(); ++t) {
-            for (int corner = 0; corner < 3 && mesh.unbaked[t] != is_baked; ++corner)
-                counts[mesh.scene.triangles[t][corner]] = is_baked;
-        }
-    }
-    std::uint64_t count = 0;
-    for (std::size_t v = 0; v < mesh.surface.vertex_count(); ++v)
-        count += counts[v] && normals[v] == glm::vec3(0.0f);
-    return count;
-}
-
 /// As the settings ask, below all of these.
 void set_ground(std::initializer_list<std::reference_wrapper<const Geometry>> geometries,
                 BakeReport& report)

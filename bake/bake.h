@@ -184,13 +184,13 @@ struct BatchEntry {
 };
 
 /// Keys input, output, vertices, triangles, dropped_triangles, vertices_without_normal,
-/// baked_triangles, occluding_triangles, surfels,
-/// engine, settings, seconds{read, subdivide, surfels, tree, solve, fit, write, total}, receivers,
-/// corners_from_file, replaced_corners, peak_rss_bytes, residual, mean_occlusion, misfit{rms,
-/// share}, error, asked, texels, points, subdivision{tolerance, old_vertices, old_triangles,
-/// rounds, asked}, motion{pose, place, tree, solve, fit, write, solved, bound} (seconds but for the
-/// last two), notes. What an engine or a target does not have is null. Failed: input, output,
-/// error. Skipped: input, output, skipped. A list of such objects for several files.
+/// baked_triangles, occluding_triangles, surfels, engine, settings, seconds{a key for each of
+/// BakeSeconds}, receivers, corners_from_file, replaced_corners, peak_rss_bytes, residual,
+/// mean_occlusion, misfit{rms, share}, error, texels, grid, points, subdivision{tolerance,
+/// old_vertices, old_triangles, rounds, asked}, motion{pose, place, tree, solve, fit, write,
+/// solved, bound} (seconds but for the last two), part{share, shares, solved, file}, asked, notes.
+/// What an engine, a target or a sequence does not have is null. Failed: input, output, error.
+/// Skipped: input, output, skipped. A list of such objects for several files.
 [[nodiscard]] std::string json_of(std::span<const BatchEntry> batch);
 
 /// Where bent normals stand beside a map: "ao.bent.png" for "ao.png".

@@ -208,7 +208,7 @@ Json json_of(const BatchEntry& entry)
     json["vertices_without_normal"] = report.vertices_without_normal;
     json["baked_triangles"] = report.baked_triangles;
     json["occluding_triangles"] = report.occluding_triangles;
-    json["surfels"] = report.surfels;
+    json["surfels"] = report.motion ? Json() : Json(report.surfels);  // each body has its own
     json["engine"] = name_of(report.settings.engine.engine);
     json["settings"] = json_of(report.settings.engine);
     json["settings"]["threads"] = report.threads;
@@ -237,11 +237,13 @@ Json json_of(const BatchEntry& entry)
     json["grid"] = report.grid ? json_of(report, *report.grid) : Json();
     json["points"] = report.points ? json_of(*report.points) : Json();
     json["subdivision"] = report.subdivision ? json_of(report, *report.subdivision) : Json();
+    json["motion"] = Json();
     if (const auto& motion = report.motion)
         json["motion"] = {{"pose", motion->pose},     {"place", motion->place},
                           {"tree", seconds.tree},     {"solve", seconds.solve},
                           {"fit", seconds.fit},       {"write", seconds.write},
                           {"solved", motion->solved}, {"bound", motion->bound}};
+    json["part"] = Json();
     if (const auto& part = report.settings.share)
         json["part"] = {{"share", part->share.index + 1},
                         {"shares", part->share.count},

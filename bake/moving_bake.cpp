@@ -1,8 +1,10 @@
 #include "bake/moving_bake.h"
 
+#include "bake/moving_solver.h"
 #include "bake/moving_world.h"
 #include "bake/notes.h"
 #include "bake/peak_memory.h"
+#include "bake/point_job.h"
 #include "engines/threads.h"
 #include "files/file_type.h"
 #include "files/scene_io.h"
@@ -21,9 +23,9 @@ public:
         : settings_(frames.front()),
           progress_(progress),
           world_(settings_.input, seconds_of(frames), settings_.target, settings_.parts,
-                 settings_.reading),
-          values_(world_)
+                 settings_.reading)
     {
+        check_points(settings_, world_.scene());
         settings_.frame = world_.frame();
         settings_.engine.definition =
             world_.definition_for(settings_.max_distance, settings_.kernel, settings_.ground,
@@ -46,33 +48,33 @@ public:
         report.threads = thread_count();
         Stopwatch whole, stage;
         enter("place");
-        if (!scene_) {
-            scene_.emplace(world_.scene_for(settings_.engine));
-            MovingSettings settings;
-            static_cast<SolveSettings&>(settings) = settings_.engine;
-            receivers_.emplace(world_.receivers_for(*scene_, settings));
+        const bool is_first = !solver_;
+        if (is_first) {
+            solver_.emplace(world_, settings_.engine);
             report.seconds.tree = stage.lap();
         }
         MotionReport& motion = report.motion.emplace();
         world_.pose(frame.reading.moment->seconds);
         motion.pose = stage.lap();
-        world_.place(*scene_, *receivers_);
+        solver_->place();
         motion.place = stage.lap();
         enter("solve");
         const FrameReport solved =
-            receivers_->solve([&](double done) { return !progress_ || progress_("solve", done); });
+            solver_->solve([&](double done) { return !progress_ || progress_("solve", done); });
         motion.place += solved.place;
         motion.solved = solved.solved;
         motion.bound = solved.bound;
         report.seconds.tree += solved.tree;
         report.seconds.solve = solved.solve;
+        report.residual = solved.residual;
         stage.lap();
-        const std::vector<Occlusion>& values = values_.of(receivers_->occlusion());
+        const std::vector<Occlusion>& values = solver_->values_of(solver_->answers());
         report.seconds.fit = stage.lap();
         if (settings_.check > 0)
             check(values, report);
         report.seconds.check = stage.lap();
         enter("write");
+        report.notes = is_first ? first_notes(values) : world_.scene().notes;
         write(values, report);
         report.seconds.write = stage.lap();
         fill(values, report);
@@ -121,7 +123,6 @@ private:
                                    .encoding = settings.encoding,
                                    .mark = mark_of(settings),
                                    .unbaked = world_.unbaked()};
-        report.notes = world_.scene().notes;
         const FileType type = type_of(settings.output);
         const bool is_own = type == FileType::gltf || type == FileType::glb;
         const std::vector<std::string> written =
@@ -131,6 +132,15 @@ private:
         report.notes.insert(report.notes.end(), written.begin(), written.end());
     }
 
+    /// What the user should know of the whole sequence, told with one frame of it.
+    std::vector<std::string> first_notes(const std::vector<Occlusion>& values) const
+    {
+        const Mesh mesh = mesh_of(Scene(world_.scene()), settings_.target.normals, settings_.parts,
+                                  settings_.reading, world_.frame());
+        return notes_of({mesh, analyse_topology(mesh.geometry), settings_.engine.definition, values,
+                         std::nullopt});
+    }
+
     void fill(const std::vector<Occlusion>& values, BakeReport& report) const
     {
         report.vertices = world_.scene().positions.size();
@@ -138,6 +148,11 @@ private:
         report.baked_triangles = world_.triangle_count();
         report.occluding_triangles = world_.occluders().triangles.size();
         report.receivers = world_.receiver_count();
+        const SurfaceCounts counts = world_.counts();
+        report.dropped_triangles = counts.dropped_triangles;
+        report.vertices_without_normal = counts.vertices_without_normal;
+        report.corners_from_file = counts.corners_from_file;
+        report.replaced_corners = counts.replaced_corners;
         report.mean_occlusion = world_.mean_occlusion_of(values);
         if (report.settings.engine.definition.ground)
             report.ground = text_of(*report.settings.engine.definition.ground, world_.frame());
@@ -147,9 +162,7 @@ private:
     BakeSettings settings_;
     const StageProgress& progress_;
     MovingWorld world_;
-    MovingValues values_;
-    std::optional<MovingScene> scene_;
-    std::optional<MovingReceivers> receivers_;
+    std::optional<MovingSolver> solver_;
 };
 
 }  // namespace

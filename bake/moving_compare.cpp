@@ -1,5 +1,6 @@
 #include "bake/moving_compare.h"
 
+#include "bake/moving_solver.h"
 #include "bake/moving_world.h"
 #include "bake/statistics.h"
 #include "bake/table.h"
@@ -20,24 +21,13 @@ namespace {
 /// One engine on its way through the frames.
 struct Runner {
     Runner(const MovingWorld& world, const EngineSettings& engine, bool is_smoothed)
-        : scene(world.scene_for(engine)),
-          receivers(world.receivers_for(scene, settings_of(engine))),
-          values(world)
+        : solver(world, engine)
     {
         row.engine = engine;
         row.is_smoothed = is_smoothed;
     }
 
-    static MovingSettings settings_of(const EngineSettings& engine)
-    {
-        MovingSettings settings;
-        static_cast<SolveSettings&>(settings) = engine;
-        return settings;
-    }
-
-    MovingScene scene;
-    MovingReceivers receivers;
-    MovingValues values;
+    MovingSolver solver;
     MovingRow row;
     std::vector<double> place, tree, solve, fit;  ///< milliseconds, of each frame
     std::vector<float> last;                      ///< occlusion at the points
@@ -58,8 +48,7 @@ public:
         : progress_(progress),
           world_(settings.input, settings.seconds, settings.target, settings.parts,
                  settings.reading),
-          truth_(world_.scene_for({.engine = Engine::rays})),
-          truth_receivers_(world_.receivers_for(truth_, Runner::settings_of(truth_settings())))
+          truth_(world_.scene_for({.engine = Engine::rays}))
     {
         result_.settings = settings;
         const Definition definition =
@@ -133,7 +122,7 @@ private:
 
     std::vector<float> truth_now()
     {
-        world_.place(truth_, truth_receivers_);
+        world_.place(truth_);
         const std::vector<Receiver> all = world_.receivers_now();
         std::vector<Receiver> asked;
         for (const std::size_t point : points_)
@@ -167,15 +156,15 @@ private:
     void run(Runner& runner, const std::vector<float>& truth)
     {
         Stopwatch watch;
-        world_.place(runner.scene, runner.receivers);
+        runner.solver.place();
         const double place = watch.lap();
-        const FrameReport report = runner.receivers.solve();
+        const FrameReport report = runner.solver.solve();
         watch.lap();
-        std::vector<Occlusion> answers = runner.receivers.occlusion();
+        std::vector<Occlusion> answers = runner.solver.answers();
         if (runner.row.is_smoothed)
             answers = smoothed(answers);
         const double smoothing = watch.lap();
-        static_cast<void>(runner.values.of(answers));
+        static_cast<void>(runner.solver.values_of(answers));
         runner.fit.push_back(1e3 * watch.lap());
         runner.place.push_back(1e3 * (place + report.place));
         runner.tree.push_back(1e3 * report.tree);
@@ -236,7 +225,6 @@ private:
     const StageProgress& progress_;
     MovingWorld world_;
     MovingScene truth_;
-    MovingReceivers truth_receivers_;
     EngineSettings reference_;
     std::vector<std::vector<std::uint32_t>> neighbours_;
     std::vector<std::unique_ptr<Runner>> runners_;

@@ -37,6 +37,16 @@ Scene read_rest(const std::filesystem::path& input, const ReadOptions& reading)
     return read_scene(input, at_rest);
 }
 
+std::vector<Scene> read_occluders(const PartChoice& choice, const ReadOptions& reading)
+{
+    std::vector<Scene> scenes;
+    for (const std::filesystem::path& file : choice.occluders) {
+        scenes.push_back(read_rest(file, reading));
+        check_occluder(scenes.back());
+    }
+    return scenes;
+}
+
 bool is_same_pose(const PartPose& a, const PartPose& b)
 {
     return a.is_gone == b.is_gone && a.from_rest == b.from_rest && a.positions == b.positions;
@@ -92,8 +102,10 @@ Box box_of_moments(const std::filesystem::path& input, std::span<const Moment> m
 {
     const Scene rest = read_rest(input, reading);
     const Motion motion(rest, reading.moment.value_or(Moment{}).animation);
-    const std::vector<bool> left_out =
-        left_out_of(roles_of({&rest, 1}, {}, choice).front(), rest.triangles.size());
+    Roles roles = roles_of({&rest, 1}, read_occluders(choice, reading), choice).front();
+    std::vector<std::string> notes;
+    open_materials(rest, choice.clear, roles, notes);
+    const std::vector<bool> left_out = left_out_of(roles, rest.triangles.size());
     Scene scene = rest;
     Box box;
     for (const Moment& moment : moments) {

@@ -1,6 +1,7 @@
 /// moving_poses.h: scenes brought to the poses of a motion.
 #pragma once
 
+#include "bake/world.h"
 #include "files/motion.h"
 #include "files/scene_io.h"
 #include "surfels/geometry.h"
@@ -13,6 +14,10 @@ namespace surfelao {
 
 /// The file at rest, without a note of its animation, which is played.
 [[nodiscard]] Scene read_rest(const std::filesystem::path& input, const ReadOptions& reading);
+
+/// PartChoice::occluders. Throws InputError for one without faces.
+[[nodiscard]] std::vector<Scene> read_occluders(const PartChoice& choice,
+                                                const ReadOptions& reading);
 
 [[nodiscard]] bool is_same_pose(const PartPose& a, const PartPose& b);
 

@@ -1,6 +1,8 @@
 #include "bake/moving_world.h"
 
 #include "bake/moving_poses.h"
+#include "bake/notes.h"
+#include "bake/point_target.h"
 #include "bake/roles.h"
 #include "surfels/errors.h"
 
@@ -101,14 +103,14 @@ MovingWorld::MovingWorld(const std::filesystem::path& input, std::span<const dou
     rest_ = read_rest(input, reading);
     normals_ = target.normals;
     motion_ = std::make_unique<Motion>(rest_, reading.moment.value_or(Moment{}).animation);
-    std::vector<Scene> others;
-    for (const std::filesystem::path& other : parts.occluders)
-        others.push_back(read_rest(other, reading));
-
+    const std::vector<Scene> others = read_occluders(parts, reading);
+    require(!rest_.triangles.empty(), rest_.name + ": has points only, no faces: it has no frames");
+    check_target(rest_, target, parts);
     std::vector<Roles> roles = roles_of({&rest_, 1}, others, parts);
     std::vector<std::string> notes;
     open_materials(rest_, parts.clear, roles.front(), notes);
     rest_.notes.insert(rest_.notes.end(), notes.begin(), notes.end());
+    check_baked(rest_, roles.front(), 1);
     const std::vector<bool> left_out = left_out_of(roles.front(), rest_.triangles.size());
     unbaked_ = roles.front().baked;
     unbaked_.flip();
@@ -121,7 +123,10 @@ MovingWorld::MovingWorld(const std::filesystem::path& input, std::span<const dou
         make_body(body, target, roles.front(), left_out);
     for (std::size_t i = 0; i < others.size(); ++i) {
         Roles& own = roles[i + 1];
+        notes.clear();
         open_materials(others[i], parts.clear, own, notes);
+        for (const std::string& note : notes)
+            rest_.notes.push_back(others[i].name + ": " + note);
         Scene occluding;
         occluding.positions = others[i].positions;
         for (std::size_t t = 0; t < others[i].triangles.size(); ++t)
@@ -364,6 +369,21 @@ std::uint64_t MovingWorld::triangle_count() const
     return count;
 }
 
+SurfaceCounts MovingWorld::counts() const
+{
+    SurfaceCounts counts;
+    for (const Body& body : bodies_) {
+        if (!body.mesh)
+            continue;
+        const Surface& surface = body.mesh->surface;
+        counts.dropped_triangles += body.mesh->geometry.dropped_triangles;
+        counts.corners_from_file += surface.corners_from_file;
+        counts.replaced_corners += surface.replaced_corners;
+        counts.vertices_without_normal += vertices_without_normal(*body.mesh);
+    }
+    return counts;
+}
+
 MovingScene MovingWorld::scene_for(const EngineChoice& choice) const
 {
     return MovingScene(occluders_, body_of_triangle_, choice);
@@ -433,7 +453,7 @@ void MovingWorld::deform(Body& body)
     body.target->follow_mesh();
 }
 
-void MovingWorld::place(MovingScene& scene, MovingReceivers& receivers) const
+void MovingWorld::place(MovingScene& scene, MovingReceivers* receivers) const
 {
     for (std::uint32_t number = 1; number < std::min(body_count(), scene.body_count()); ++number) {
         const Body& body = bodies_[number];
@@ -443,8 +463,8 @@ void MovingWorld::place(MovingScene& scene, MovingReceivers& receivers) const
             scene.hide(number);
         } else if (body.is_soft) {
             scene.deform(number, occluding_positions_);
-            if (body.target)
-                receivers.deform(number, body.target->receivers());
+            if (body.target && receivers != nullptr)
+                receivers->deform(number, body.target->receivers());
         } else {
             scene.place(number, body.placement);
         }

@@ -1,14 +1,12 @@
 /// moving_world.h: the world of an animated glTF, read once: its bodies, and where they are.
 ///
 ///     MovingWorld world(input, seconds, target, parts, reading);
-///     MovingScene scene = world.scene_for(choice);
-///     MovingReceivers receivers = world.receivers_for(scene, settings);
-///     MovingValues values(world);
+///     MovingSolver solver(world, engine);  // moving_solver.h
 ///     for (...) {
 ///         world.pose(second);
-///         world.place(scene, receivers);
-///         receivers.solve();
-///         write_scene(path, world.scene(), values.of(receivers.occlusion()), ...);
+///         solver.place();
+///         solver.solve();
+///         write_scene(path, world.scene(), solver.values_of(solver.answers()), ...);
 ///     }
 ///
 /// A body is what Motion says moves as one. Each has a clean geometry, normals and samples of its
@@ -41,6 +39,12 @@ namespace surfelao {
 
 struct Roles;
 
+/// What BakeReport says of the surface.
+struct SurfaceCounts {
+    std::uint64_t dropped_triangles = 0, vertices_without_normal = 0, corners_from_file = 0,
+                  replaced_corners = 0;
+};
+
 class MovingWorld {
 public:
     /// seconds: all moments at which it is asked; at least one. reading: its moment tells the
@@ -50,12 +54,14 @@ public:
                 const TargetSettings& target, const PartChoice& parts, const ReadOptions& reading);
 
     /// Of all moments together, without what is left out.
+    [[nodiscard]] const Box& box() const { return box_; }
     [[nodiscard]] const Frame& frame() const { return occluders_.frame; }
     [[nodiscard]] std::uint32_t body_count() const
     {
         return static_cast<std::uint32_t>(bodies_.size());
     }
     [[nodiscard]] std::uint64_t triangle_count() const;  ///< that are baked
+    [[nodiscard]] SurfaceCounts counts() const;          ///< of the bodies, as they were made
     /// What occludes, each body as it was made.
     [[nodiscard]] const Geometry& occluders() const { return occluders_; }
     [[nodiscard]] const std::vector<bool>& unbaked() const { return unbaked_; }
@@ -84,8 +90,9 @@ public:
     /// The receivers where they stand then.
     [[nodiscard]] std::vector<Receiver> receivers_now() const;
     [[nodiscard]] const std::string& animation() const { return motion_->name(); }
-    /// What pose() has moved. Each scene is placed after each pose.
-    void place(MovingScene& scene, MovingReceivers& receivers) const;
+    /// What pose() has moved. Each scene is placed after each pose, with its receivers where it has
+    /// any.
+    void place(MovingScene& scene, MovingReceivers* receivers = nullptr) const;
 
     /// The surface that is asked, as it stands: positions and triangles, body by body; those of
     /// bodies that are gone are there.

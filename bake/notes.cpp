@@ -62,6 +62,22 @@ double mean_occlusion_of(const Surface& surface, std::span<const Occlusion> valu
     return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
+std::uint64_t vertices_without_normal(const Mesh& mesh)
+{
+    const std::vector<glm::vec3>& normals = mesh.surface.normals;
+    std::vector<bool> counts(normals.size(), true);
+    for (const bool is_baked : {false, true}) {
+        for (std::size_t t = 0; t < mesh.unbaked.size(); ++t) {
+            for (int corner = 0; corner < 3 && mesh.unbaked[t] != is_baked; ++corner)
+                counts[mesh.scene.triangles[t][corner]] = is_baked;
+        }
+    }
+    std::uint64_t count = 0;
+    for (std::size_t v = 0; v < mesh.surface.vertex_count(); ++v)
+        count += counts[v] && normals[v] == glm::vec3(0.0f);
+    return count;
+}
+
 std::vector<std::string> notes_of(const Baked& baked)
 {
     std::vector<std::string> notes = baked.mesh.scene.notes;
@@ -94,9 +110,9 @@ std::vector<std::string> notes_of(const Baked& baked)
             add("part " + around +
                 " encloses all others, so hardly any light comes in: --exclude " +
                 shell_word(around) + " leaves it out" +
-                (is_far ? ", --max-distance 10% is for interiors" : ""));
+                (is_far ? ", --preset interior is for interiors" : ""));
         else if (is_far)
-            add("an interior: try --max-distance 10%");
+            add("an interior: try --preset interior");
     } else if (!baked.definition.ground) {  // it closes undersides too, rightly
         add(closed_note(baked.values, baked.topology));
     }

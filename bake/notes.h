@@ -44,6 +44,9 @@ inline constexpr double kInteriorMean = 0.9;
 /// What is recommended for interiors: longer limits still get the hint. In diagonals.
 inline constexpr float kInteriorDistance = 0.1f;
 
+/// Of the scene's vertices that something baked or nothing at all uses. O(n).
+[[nodiscard]] std::uint64_t vertices_without_normal(const Mesh& mesh);
+
 /// Over the vertices with a normal; 0 where there are none.
 [[nodiscard]] double mean_occlusion_of(const Surface& surface, std::span<const Occlusion> values);
 

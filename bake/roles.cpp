@@ -136,6 +136,20 @@ void open_materials(const Scene& scene, ClearSurfaces clear, Roles& roles,
     notes.insert(notes.end(), roles.cut.notes.begin(), roles.cut.notes.end());
 }
 
+void check_baked(const Scene& scene, const Roles& own, std::size_t inputs)
+{
+    if (own.baked.empty() || std::ranges::find(own.baked, true) != own.baked.end())
+        return;
+    throw InputError(scene.name + ": nothing of it is left to be baked" +
+                     (inputs > 1 ? ", --occluders is for what only occludes" : ""));
+}
+
+void check_occluder(const Scene& scene)
+{
+    if (scene.triangles.empty())
+        throw InputError(scene.name + ": has points only, no faces: it occludes nothing");
+}
+
 std::vector<bool> left_out_of(const Roles& own, std::size_t count)
 {
     if (own.occlude.empty() && own.baked.empty())

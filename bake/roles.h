@@ -36,6 +36,12 @@ struct Roles {
 void open_materials(const Scene& scene, ClearSurfaces clear, Roles& roles,
                     std::vector<std::string>& notes);
 
+/// Throws InputError where nothing of an input is left to be baked. inputs: how many there are.
+void check_baked(const Scene& scene, const Roles& own, std::size_t inputs);
+
+/// Throws InputError where a file that is to occlude has points only.
+void check_occluder(const Scene& scene);
+
 /// Scene triangles that neither occlude nor are baked; empty: there are none.
 [[nodiscard]] std::vector<bool> left_out_of(const Roles& own, std::size_t count);
 

@@ -129,14 +129,9 @@ BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
             continue;
         const std::size_t count = inputs[i].triangles.size();
         left_out[i] = left_out_of(own, count);
-        bool is_any_baked = false;
-        for (std::size_t t = 0; t < count; ++t) {
-            is_any_baked = is_any_baked || own.is_baked(t);
+        for (std::size_t t = 0; t < count; ++t)
             is_joined = is_joined || (own.is_baked(t) && !own.occludes(t));
-        }
-        if (!is_any_baked)
-            throw InputError(inputs[i].name + ": nothing of it is left to be baked" +
-                             (inputs.size() > 1 ? ", --occluders is for what only occludes" : ""));
+        check_baked(inputs[i], own, inputs.size());
     }
     const Frame frame = wanted ? *wanted : common_frame(inputs, left_out);
 
@@ -159,8 +154,7 @@ BakeWorld make_world(std::vector<Scene> inputs, std::span<const Scene> others,
         keep_triangles(mesh, [&](std::size_t triangle) { return own.is_baked(triangle); });
     }
     for (std::size_t i = 0; i < others.size(); ++i) {
-        if (others[i].triangles.empty())
-            throw InputError(others[i].name + ": has points only, no faces: it occludes nothing");
+        check_occluder(others[i]);
         occluders.add(others[i], roles[world.meshes.size() + i]);
     }
     const std::shared_ptr<const Geometry> joined = is_joined ? occluders.geometry(frame) : nullptr;

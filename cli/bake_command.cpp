@@ -9,9 +9,11 @@
 #include "cli/grid_bake_options.h"
 #include "cli/output.h"
 #include "cli/part_options.h"
+#include "cli/preset.h"
 #include "cli/progress_bar.h"
 #include "cli/read_options.h"
 #include "cli/texel_options.h"
+#include "cli/value_checks.h"
 #include "engines/threads.h"
 #include "files/file_type.h"
 #include "files/maker_mark.h"
@@ -211,7 +213,7 @@ bool run_jobs(const std::vector<BakeSettings>& settings, bool ask_before_replaci
         throw;
     } catch (const SettingsError& error) {
         if (label.empty())
-            throw UsageError(error.what());
+            throw;
         std::cerr << "surfelao: " << error.what() << '\n';
         for (BatchEntry& entry : entries)
             entry.error = error.what();
@@ -271,8 +273,8 @@ bool run_sequence(const std::vector<Job>& jobs, std::span<const BakeSettings> se
         return true;
     } catch (const Cancelled&) {
         throw;
-    } catch (const SettingsError& error) {
-        throw UsageError(error.what());
+    } catch (const SettingsError&) {
+        throw;
     } catch (const std::exception& error) {
         std::cerr << "surfelao: " << error.what() << '\n';
         for (BatchEntry& entry : entries.subspan(next))
@@ -291,7 +293,8 @@ int finish(const BakeOptions& options, std::span<const BatchEntry> entries,
     if (options.json && !quiet)
         written.emplace_back(*options.json);
     print_written(written, quiet);
-    if (failed > 0 && entries.size() > 1)
+    const bool is_whole_sequence = options.frames.frames && failed == entries.size();
+    if (failed > 0 && entries.size() > 1 && !is_whole_sequence)
         std::cerr << "surfelao: " << failed << " of " << entries.size()
                   << (options.frames.frames ? " frames failed\n" : " files failed\n");
     return failed > 0 ? kFailed : kDone;
@@ -299,10 +302,12 @@ int finish(const BakeOptions& options, std::span<const BatchEntry> entries,
 
 int run(const BakeOptions& options, const std::vector<Job>& jobs)
 {
-    check_report(options.json);
-    std::optional<OutputFolder> folder;
+    OutputFolders folders;
+    folders.make_for_report(options.json);
     if (is_folder(options))
-        folder.emplace(options.output);
+        folders.make(options.output);
+    for (const Job& job : jobs)
+        folders.make_for(job.output);
     std::optional<ThreadLimit> limit;
     if (options.threads)
         limit.emplace(*options.threads);
@@ -383,12 +388,17 @@ void check_grid_options(const BakeOptions& options)
         throw UsageError("--at grid is of one object alone: leave out --together and --occluders.");
     if (options.error || options.part || options.subdivide || options.frames.frames)
         throw UsageError("--at grid goes with none of --error, --part, --subdivide and --frames.");
-    if (options.measure.ground || kernel_of(options.measure) != Kernel::cosine)
-        throw UsageError("--at grid knows --kernel cosine only, and no --ground.");
-    if (options.surface.values || options.surface.offset || options.surface.viewpoint ||
-        options.surface.occluder_spacing)
-        throw UsageError(
-            "--values, --offset, --viewpoint and --occluder-spacing are not for --at grid.");
+    check_about_an_object(options.measure, options.surface);
+}
+
+/// What a preset leaves alone.
+std::vector<std::string> moot_of(const BakeOptions& options)
+{
+    if (is_at_grid(options.texels))
+        return {"--normals", "--crease", "--subdivide"};
+    if (options.frames.frames || texel_settings_of(options.texels, options.output))
+        return {"--subdivide"};
+    return {};
 }
 
 /// Throws UsageError for what contradicts itself.
@@ -452,7 +462,7 @@ void add_options(CLI::App* command, const std::shared_ptr<BakeOptions>& options)
     command
         ->add_option("--check", options->check,
                      "Points of the surface at which the result is measured against rays; 0: none")
-        ->check(CLI::Range(0u, kMostCheckPoints))
+        ->check(whole_from(0, kMostCheckPoints))
         ->type_name("N")
         ->default_str(std::to_string(kCheckPoints))
         ->group("Error");
@@ -462,7 +472,7 @@ void add_options(CLI::App* command, const std::shared_ptr<BakeOptions>& options)
                 "--error", options->error,
                 "Take the cheapest setting of masks or rays whose error, as seen, is below "
                 "this with its whole interval (0.01); instead of --engine and --quality")
-            ->check(CLI::Range(1e-6, 1.0))
+            ->check(number_from(1e-6, 1.0))
             ->type_name("E")
             ->group("Error");
     for (const char* other : {"--engine", "--quality", "--rays", "--passes", "--strength"})
@@ -471,6 +481,7 @@ void add_options(CLI::App* command, const std::shared_ptr<BakeOptions>& options)
                       "Skip files whose result is not older than they are and says that it was "
                       "made with these settings (a comment in the file, asset.extras in glTF)");
     add_overwrite_option(*command, options->overwrite);
+    add_preset_option(*command);
     command
         ->add_option("--json", options->json,
                      "Write what was done and how long it took; - = "
@@ -492,7 +503,8 @@ std::vector<std::string> arguments_of(const CLI::App& command)
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
         if (option->count() == 0 || option->get_positional() || name == "--output" ||
-            name == "--part" || name == "--threads" || name == "--json" || name == "--overwrite")
+            name == "--part" || name == "--preset" || name == "--threads" || name == "--json" ||
+            name == "--overwrite")
             continue;
         arguments.push_back(name);
         if (option->get_items_expected_max() > 0)
@@ -531,6 +543,7 @@ void add_bake_command(CLI::App& app, Work& work)
                                            "cloud of points in, the same or a picture out");
     add_options(command, options);
     command->callback([options, command, &work] {
+        apply_preset(*command, moot_of(*options));
         options->arguments = arguments_of(*command);
         check_options(*options);
         work = [options, jobs = jobs_of(*options)] { return run(*options, jobs); };

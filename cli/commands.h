@@ -22,6 +22,7 @@ void add_commands(CLI::App& app, Work& work);
 /// UsageError and sets `work`. Nothing is worked on while parsing.
 void add_bake_command(CLI::App& app, Work& work);
 void add_compare_command(CLI::App& app, Work& work);
+void add_help_command(CLI::App& app, Work& work);
 void add_info_command(CLI::App& app, Work& work);
 void add_merge_command(CLI::App& app, Work& work);
 void add_render_command(CLI::App& app, Work& work);

@@ -5,7 +5,9 @@
 #include "cli/commands.h"
 #include "cli/compare_options.h"
 #include "cli/output.h"
+#include "cli/preset.h"
 #include "cli/progress_bar.h"
+#include "cli/value_checks.h"
 #include "engines/threads.h"
 #include "reference/rays.h"
 #include "surfels/atomic_file.h"
@@ -44,7 +46,7 @@ CompareSettings common_settings(const CompareOptions& options)
     settings.subdivide = options.subdivide;
     settings.reference_rays = options.reference_rays.value_or(kSurfaceRays);
     settings.sample = options.sample.value_or(kSurfacePoints);
-    settings.rounds = options.rounds;
+    settings.rounds = options.rounds.value_or(kRounds);
     settings.use_cache = !options.no_cache;
     settings.reading = options.reading;
     settings.instructions = options.avx2 ? Instructions::avx2 : Instructions::all;
@@ -229,11 +231,11 @@ std::vector<fs::path> own_names(const CompareOptions& options)
 
 int run(const CompareOptions& options)
 {
-    check_report(options.json);
-    check_report(options.csv);
-    std::optional<OutputFolder> folder;
+    OutputFolders folders;
+    folders.make_for_report(options.json);
+    folders.make_for_report(options.csv);
     if (options.output)
-        folder.emplace(*options.output);
+        folders.make(*options.output);
     for (const fs::path& file : own_names(options)) {
         if (!options.overwrite)
             refuse_foreign(file, "compare");
@@ -264,6 +266,20 @@ void check_frames(const CompareOptions& options)
         throw UsageError(
             "--frames compares values at vertices on the CPU, in a table: it goes with neither "
             "--at nor --frontier, -o, --subdivide or --devices.");
+    if (options.rounds || options.no_cache)
+        throw UsageError(
+            "--rounds and --no-cache are not for --frames: each engine goes through them once, and "
+            "nothing is kept.");
+}
+
+/// What a preset leaves alone.
+std::vector<std::string> moot_of(const CompareOptions& options)
+{
+    if (is_at_grid(options.texels))
+        return {"--normals", "--crease", "--subdivide"};
+    if (options.frames.frames || options.texels.at.value_or("vertices") != "vertices")
+        return {"--subdivide"};
+    return {};
 }
 
 /// Contradictions, before any work.
@@ -277,7 +293,7 @@ void check(const CompareOptions& options)
         throw UsageError("--frontier runs all qualities: it does not go with --qualities.");
     if (options.frontier && options.devices != std::vector<std::string>{"cpu"})
         throw UsageError("--frontier runs on the CPU: it does not go with --devices.");
-    if (options.frontier && options.rounds < 3)
+    if (options.frontier && options.rounds.value_or(kRounds) < 3)
         throw UsageError("--frontier needs at least 3 rounds.");
     if (options.reference_rays.value_or(kSurfaceRays) % 2 != 0)
         throw UsageError("--reference-rays must be even: two halves tell the noise.");
@@ -309,21 +325,27 @@ void check(const CompareOptions& options)
 void add_run_options(CLI::App& command, CompareOptions& options)
 {
     command
-        .add_option("--reference-rays", options.reference_rays,
-                    "Rays per surface point or pixel of the reference, an even number")
-        ->check(CLI::Range(2u, kMostRays))
+        .add_option(
+            "--reference-rays", options.reference_rays,
+            "Rays per place of the reference (a point of the surface, a pixel, a point about an "
+            "object), an even number")
+        ->check(whole_from(2, kMostRays))
         ->type_name("N")
-        ->default_str("4096; at pixels 256");
+        ->default_str(std::to_string(kSurfaceRays) + "; at pixels 256, with --frames " +
+                      std::to_string(kMovingRays));
     command
         .add_option("--sample", options.sample,
-                    "Take errors at N points of the surface (times are of all receivers)")
-        ->check(CLI::Range(std::uint64_t{1}, kMostSample))
+                    "Take errors at N points of the surface, or about an object (times are of all "
+                    "receivers)")
+        ->check(whole_from(1, kMostSample))
         ->type_name("N")
-        ->default_str(std::to_string(kSurfacePoints));
+        ->default_str(std::to_string(kSurfacePoints) + "; with --frames " +
+                      std::to_string(kMovingSample) + ", at grid " +
+                      std::to_string(GridCompareSettings().places));
     command.add_option("--rounds", options.rounds, "Runs of every engine, in turns; medians count")
-        ->check(CLI::Range(1, 99))
+        ->check(whole_from(1, 99))
         ->type_name("N")
-        ->capture_default_str();
+        ->default_str(std::to_string(kRounds));
     command.add_flag("--no-cache", options.no_cache,
                      "Trace the reference even if the same one was kept from before");
     command.add_flag("--avx2", options.avx2,
@@ -368,7 +390,7 @@ void add_compare_command(CLI::App& app, Work& work)
                      "knows the picture alone: ssao-disc, ssao-sphere, vo, hbao, gtao, bitmask")
         ->delimiter(',')
         ->allow_extra_args(false)  // the word behind the list may be IN
-        ->check(CLI::IsMember(pixel_engine_names()))
+        ->check(one_of(pixel_engine_names()))
         ->type_name("E,...")
         ->default_str("masks,disks; at pixels all but disks and rays");
     command
@@ -376,7 +398,7 @@ void add_compare_command(CLI::App& app, Work& work)
                      "Where the engines run: cpu, gpu or both, side by side")
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(CLI::IsMember({"cpu", "gpu"}))
+        ->check(one_of({"cpu", "gpu"}))
         ->type_name("D,...")
         ->capture_default_str();
     command
@@ -400,7 +422,9 @@ void add_compare_command(CLI::App& app, Work& work)
     command->add_option("--csv", options->csv, "Write the rows as CSV; - = standard output")
         ->type_name("FILE");
     add_thread_option(*command, options->threads);
-    command->callback([options, &work] {
+    add_preset_option(*command);
+    command->callback([options, command, &work] {
+        apply_preset(*command, moot_of(*options));
         check(*options);
         work = [options] { return run(*options); };
     });

@@ -20,7 +20,7 @@ GridCompareSettings grid_compare_settings(const CompareOptions& options)
     settings.grid = *grid_settings_of(options.grid, options.texels);
     settings.reference_rays = options.reference_rays.value_or(settings.reference_rays);
     settings.places = options.sample.value_or(settings.places);
-    settings.rounds = options.rounds;
+    settings.rounds = options.rounds.value_or(kRounds);
     settings.reading = options.reading;
     for (const std::string& engine : engines_of_grids(options)) {
         for (const std::string& device : options.devices) {
@@ -45,8 +45,8 @@ void check_grid_table(const CompareOptions& options)
         throw UsageError(
             "--at grid is for one file; --frontier, -o, --subdivide and --occluders do not go "
             "with it.");
-    if (options.measure.ground || kernel_of(options.measure) != Kernel::cosine)
-        throw UsageError("--at grid knows --kernel cosine only, and no --ground.");
+    check_about_an_object(options.measure, options.surface);
+    static_cast<void>(texel_settings_of(options.texels, ""));  // maps have no say there
     static_cast<void>(grid_compare_settings(options));
 }
 

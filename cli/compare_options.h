@@ -33,6 +33,9 @@ struct PixelTableOptions {
     std::optional<std::string> tune;
 };
 
+/// Runs of every engine, where --rounds says nothing.
+inline constexpr int kRounds = 3;
+
 struct CompareOptions {
     std::vector<std::string> inputs;
     std::optional<std::string> output;
@@ -53,7 +56,7 @@ struct CompareOptions {
     PixelTableOptions pixels;
     std::optional<std::uint32_t> reference_rays;
     std::optional<std::uint64_t> sample;
-    int rounds = 3;
+    std::optional<int> rounds;
     bool no_cache = false;
     bool avx2 = false;
     std::optional<std::string> json, csv;
@@ -66,12 +69,12 @@ void add_pixel_table_options(CLI::App& command, PixelTableOptions& options);
 /// Throws UsageError for what does not go with --at pixels, and for options of pixels without it.
 void check_pixel_table(const CompareOptions& options);
 
-/// Of --at pixels. Throws UsageError.
 /// Throws UsageError for what does not go with --at grid, and for options of grids without it.
 void check_grid_table(const CompareOptions& options);
 
 [[nodiscard]] GridCompareSettings grid_compare_settings(const CompareOptions& options);
 
+/// Of --at pixels. Throws UsageError.
 [[nodiscard]] PixelCompareSettings pixel_compare_settings(const CompareOptions& options);
 
 /// As --qualities says, or all three.

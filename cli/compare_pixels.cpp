@@ -1,5 +1,6 @@
 #include "cli/commands.h"
 #include "cli/compare_options.h"
+#include "cli/value_checks.h"
 #include "reference/rays.h"
 #include "surfels/errors.h"
 
@@ -127,17 +128,17 @@ void add_pixel_table_options(CLI::App& command, PixelTableOptions& options)
     command
         .add_option("--views", options.views,
                     "Without --camera: look from so many directions, evenly spread all round")
-        ->check(CLI::Range(1, kMostViews))
+        ->check(whole_from(1, kMostViews))
         ->type_name("N")
         ->default_str("4")
         ->group(kGroup);
     command.add_option("--width", options.width, "Pixels of each picture")
-        ->check(CLI::Range(1, kMostSide))
+        ->check(whole_from(1, kMostSide))
         ->type_name("N")
         ->default_str("1280")
         ->group(kGroup);
     command.add_option("--height", options.height, "Pixels of each picture")
-        ->check(CLI::Range(1, kMostSide))
+        ->check(whole_from(1, kMostSide))
         ->type_name("N")
         ->default_str("720")
         ->group(kGroup);
@@ -146,7 +147,7 @@ void add_pixel_table_options(CLI::App& command, PixelTableOptions& options)
                     "Rays a pixel of the engine rays, a row for each number")
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(CLI::Range(1u, kMostRays))
+        ->check(whole_from(1, kMostRays))
         ->type_name("N,...")
         ->default_str("16,64,256")
         ->group(kGroup);
@@ -232,7 +233,7 @@ PixelCompareSettings pixel_compare_settings(const CompareOptions& options)
     settings.parts = part_choice_of(options.parts);
     settings.reading = options.reading;
     settings.reference_rays = options.reference_rays.value_or(kPixelRays);
-    settings.rounds = options.rounds;
+    settings.rounds = options.rounds.value_or(kRounds);
     settings.use_cache = !options.no_cache;
     settings.pictures = options.output.has_value();
     return settings;

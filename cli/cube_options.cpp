@@ -1,6 +1,7 @@
 #include "cli/cube_options.h"
 
 #include "cli/commands.h"
+#include "cli/value_checks.h"
 #include "pixels/cube_placement.h"
 
 #include <CLI/CLI.hpp>
@@ -74,7 +75,7 @@ void add_cube_options(CLI::App& command, CubeOptions& options)
         ->default_str("auto")
         ->group(kGroup);
     command.add_option("--cubemap-size", options.size, "Texels along the edge of a face")
-        ->check(CLI::Range(kLeastCubeSize, kMostCubeSize))
+        ->check(whole_from(kLeastCubeSize, kMostCubeSize))
         ->type_name("N")
         ->default_str(std::to_string(kCubeSize))
         ->group(kGroup);
@@ -82,7 +83,7 @@ void add_cube_options(CLI::App& command, CubeOptions& options)
         .add_option(
             "--holes", options.holes,
             "Pixels that no map sees: solve = ask the engine there; white = leave them open")
-        ->check(CLI::IsMember({"solve", "white"}))
+        ->check(one_of({"solve", "white"}))
         ->type_name("solve|white")
         ->default_str("solve")
         ->group(kGroup);

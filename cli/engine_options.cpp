@@ -2,6 +2,7 @@
 
 #include "bake/subdivide.h"
 #include "cli/commands.h"
+#include "cli/value_checks.h"
 #include "reference/rays.h"
 #include "surfels/number_text.h"
 
@@ -81,14 +82,14 @@ void add_engine_options(CLI::App& command, EngineOptions& options,
                         const std::vector<std::string>& names)
 {
     command.add_option("--engine", options.engine, "Who computes")
-        ->check(CLI::IsMember(names))
+        ->check(one_of(names))
         ->type_name(CLI::detail::join(names, "|"))
         ->default_str("masks")
         ->group("Engine");
     command
         .add_option("--device", options.device,
                     "Where masks and disks run; gpu: OpenGL, no window needed")
-        ->check(CLI::IsMember({"cpu", "gpu"}))
+        ->check(one_of({"cpu", "gpu"}))
         ->type_name("cpu|gpu")
         ->default_str("cpu")
         ->group("Engine");
@@ -100,21 +101,21 @@ void add_engine_options(CLI::App& command, EngineOptions& options,
         ->default_str("good")
         ->group("Engine");
     command.add_option("--rays", options.rays, "Rays per vertex, for --engine rays")
-        ->check(CLI::Range(1u, kMostRays))
+        ->check(whole_from(1, kMostRays))
         ->type_name("N")
         ->default_str("256")
         ->group("Engine");
     command
         .add_option("--passes", options.passes,
                     "For --engine disks: 1 = plain sum, more correct it where layers overlap")
-        ->check(CLI::Range(1, kMostPasses))
+        ->check(whole_from(1, kMostPasses))
         ->type_name("N")
         ->default_str("2")
         ->group("Engine");
     command
         .add_option("--strength", options.strength,
                     "For --engine disks: occlusion is multiplied by it (0 to 10)")
-        ->check(CLI::Range(0.0f, 10.0f))
+        ->check(number_from(0.0, 10.0))
         ->type_name("S")
         ->default_str("1")
         ->group("Engine");
@@ -131,7 +132,7 @@ void add_measure_options(CLI::App& command, MeasureOptions& options)
     command
         .add_option("--falloff", options.falloff,
                     "smooth: near surfaces count more, up to --max-distance")
-        ->check(CLI::IsMember({"none", "smooth"}))
+        ->check(one_of({"none", "smooth"}))
         ->type_name("none|smooth")
         ->default_str("none")
         ->group("What is measured");
@@ -139,7 +140,7 @@ void add_measure_options(CLI::App& command, MeasureOptions& options)
         .add_option("--kernel", options.kernel,
                     "Weight of directions; bunnell is that of the classic disk method, for "
                     "--engine disks and rays: full enclosure gives 7/8")
-        ->check(CLI::IsMember({"cosine", "bunnell"}))
+        ->check(one_of({"cosine", "bunnell"}))
         ->type_name("cosine|bunnell")
         ->default_str("cosine")
         ->group("What is measured");
@@ -156,7 +157,7 @@ void add_measure_options(CLI::App& command, MeasureOptions& options)
 void add_up_option(CLI::App& command, std::optional<std::string>& up, const char* group)
 {
     command.add_option("--up", up, "The file's axis that points to the sky")
-        ->check(CLI::IsMember({"y", "z"}))
+        ->check(one_of({"y", "z"}))
         ->type_name("y|z")
         ->default_str("y; z for --normals up")
         ->group(group);
@@ -170,14 +171,14 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options)
                     "any (file), smooth within --crease, or flat. Of points: the file's or else "
                     "fitted to the neighbours (auto), the file's (file), fitted (smooth), or up "
                     "(z, or --up): 1 - occlusion is then the sky view factor")
-        ->check(CLI::IsMember({"auto", "file", "smooth", "flat", "up"}))
+        ->check(one_of({"auto", "file", "smooth", "flat", "up"}))
         ->type_name("auto|file|smooth|flat|up")
         ->default_str("auto")
         ->group("What is measured");
     command
         .add_option("--crease", options.crease,
                     "Degrees: faces that meet at more are not smoothed together")
-        ->check(CLI::Range(0.0f, 180.0f))
+        ->check(number_from(0.0, 180.0))
         ->type_name("DEG")
         ->default_str("40")
         ->group("What is measured");
@@ -185,7 +186,7 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options)
         .add_option("--values", options.values,
                     "fit: the values whose interpolation is nearest to the truth all over the "
                     "surface; point: the truth at the vertices themselves")
-        ->check(CLI::IsMember({"fit", "point"}))
+        ->check(one_of({"fit", "point"}))
         ->type_name("fit|point")
         ->default_str("fit")
         ->group("What is measured");
@@ -210,6 +211,12 @@ void add_surface_options(CLI::App& command, SurfaceOptions& options)
         ->group("What is measured");
 }
 
+bool has_any(const SurfaceOptions& options)
+{
+    return options.normals || options.crease || options.values || options.offset ||
+           options.viewpoint || options.occluder_spacing;
+}
+
 void add_subdivide_option(CLI::App& command, std::optional<double>& tolerance)
 {
     command
@@ -219,7 +226,7 @@ void add_subdivide_option(CLI::App& command, std::optional<double>& tolerance)
                     "vertices that shades need. The file's own vertices come first")
         ->expected(0, 1)
         ->default_str(exact(kSubdivideTolerance))
-        ->check(CLI::Range(1e-4, 1.0))
+        ->check(number_from(1e-4, 1.0))
         ->type_name("[TOL]")
         ->group("What is measured");
 }
@@ -232,7 +239,7 @@ void add_color_options(CLI::App& command, ColorOptions& options)
                     "colours times visibility; keep = the file's own; bent = bent normals; auto = "
                     "grey where the file has no colours and no textures, else kept (.obj, .off: "
                     "shaded)")
-        ->check(CLI::IsMember({"auto", "grey", "shaded", "keep", "bent"}))
+        ->check(one_of({"auto", "grey", "shaded", "keep", "bent"}))
         ->type_name("auto|grey|shaded|keep|bent")
         ->default_str("auto")
         ->group("What is written");
@@ -240,7 +247,7 @@ void add_color_options(CLI::App& command, ColorOptions& options)
         .add_option("--encoding", options.encoding,
                     "Numbers of colours: auto = as readers of the format take them (glTF linear, "
                     ".ply .obj .off sRGB)")
-        ->check(CLI::IsMember({"auto", "linear", "srgb"}))
+        ->check(one_of({"auto", "linear", "srgb"}))
         ->type_name("auto|linear|srgb")
         ->default_str("auto")
         ->group("What is written");
@@ -249,7 +256,7 @@ void add_color_options(CLI::App& command, ColorOptions& options)
 void add_thread_option(CLI::App& command, std::optional<int>& threads)
 {
     command.add_option("--threads", threads, "Use at most this many cores (default: all)")
-        ->check(CLI::Range(1, kMostThreads))
+        ->check(whole_from(1, kMostThreads))
         ->type_name("N");
 }
 
@@ -302,8 +309,6 @@ EngineSettings settings_of(const EngineOptions& options)
     refuse_unless(!options.passes || disks, "--passes", "disks");
     refuse_unless(!options.strength || disks, "--strength", "disks");
 
-    if (options.strength && std::isnan(*options.strength))
-        throw UsageError("--strength: nan is not a number from 0 to 10.");
     if (options.device)
         settings.device = device_of(*options.device);
     check_device(settings.engine, settings.device);

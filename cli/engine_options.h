@@ -47,6 +47,9 @@ struct SurfaceOptions {
     std::optional<std::string> occluder_spacing;
 };
 
+/// Whether any of them was given.
+[[nodiscard]] bool has_any(const SurfaceOptions& options);
+
 /// What a result's colours show.
 struct ColorOptions {
     std::string colors = "auto";

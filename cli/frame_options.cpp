@@ -1,6 +1,7 @@
 #include "cli/frame_options.h"
 
 #include "cli/commands.h"
+#include "cli/value_checks.h"
 #include "files/file_type.h"
 
 #include <CLI/CLI.hpp>
@@ -72,7 +73,7 @@ void add_frame_options(CLI::App& command, FrameOptions& options, const std::stri
                                     ->type_name("A:B")
                                     ->excludes(command.get_option("--time"));
     command.add_option("--fps", options.fps, "Frames a second")
-        ->check(CLI::Range(1e-3, 1e4))
+        ->check(number_from(1e-3, 1e4))
         ->needs(frames)
         ->type_name("F")
         ->capture_default_str();

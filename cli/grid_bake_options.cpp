@@ -1,6 +1,7 @@
 #include "cli/grid_bake_options.h"
 
 #include "cli/commands.h"
+#include "cli/value_checks.h"
 
 #include <CLI/CLI.hpp>
 
@@ -14,14 +15,14 @@ constexpr const char* kGridBakeGroup = "AO grids (--at grid)";
 void add_grid_bake_options(CLI::App& command, GridBakeOptions& options, bool with_store)
 {
     command.add_option("--resolution", options.resolution, "Cells along each axis of the grid")
-        ->check(CLI::Range(kLeastGrid, kMostGrid))
+        ->check(whole_from(kLeastGrid, kMostGrid))
         ->type_name("N")
         ->default_str("32")
         ->group(kGridBakeGroup);
     command
         .add_option("--extent", options.extent,
                     "The grid's box reaches to where the object hides this share of all directions")
-        ->check(CLI::Range(1e-4, kMostExtent))
+        ->check(number_from(1e-4, kMostExtent))
         ->type_name("EPS")
         ->default_str("0.03")
         ->group(kGridBakeGroup);
@@ -30,7 +31,7 @@ void add_grid_bake_options(CLI::App& command, GridBakeOptions& options, bool wit
             .add_option("--store", options.store,
                         "What a cell holds. cone: how much is hidden and where, four numbers; sh: "
                         "nine spherical harmonics, more exact")
-            ->check(CLI::IsMember({"cone", "sh"}))
+            ->check(one_of({"cone", "sh"}))
             ->type_name("cone|sh")
             ->default_str("cone")
             ->group(kGridBakeGroup);
@@ -38,7 +39,7 @@ void add_grid_bake_options(CLI::App& command, GridBakeOptions& options, bool wit
         .add_option("--border", options.border,
                     "Where the box ends. fade: what is read falls to nothing over the last of it; "
                     "rescale: everywhere less, by the border's largest value")
-        ->check(CLI::IsMember({"fade", "rescale"}))
+        ->check(one_of({"fade", "rescale"}))
         ->type_name("fade|rescale")
         ->default_str("fade")
         ->group(kGridBakeGroup);
@@ -46,6 +47,16 @@ void add_grid_bake_options(CLI::App& command, GridBakeOptions& options, bool wit
         .add_flag("--uniform", options.uniform,
                   "Cells everywhere as close, in place of closer about the object")
         ->group(kGridBakeGroup);
+}
+
+void check_about_an_object(const MeasureOptions& measure, const SurfaceOptions& surface)
+{
+    if (measure.ground || kernel_of(measure) != Kernel::cosine)
+        throw UsageError("--at grid knows --kernel cosine only, and no --ground.");
+    if (has_any(surface))
+        throw UsageError(
+            "--normals, --crease, --values, --offset, --viewpoint and --occluder-spacing are not "
+            "for --at grid: it asks about the object, not on it.");
 }
 
 bool is_at_grid(const TexelOptions& options)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bake/grid_target.h"
+#include "cli/engine_options.h"
 #include "cli/texel_options.h"
 
 #include <optional>
@@ -24,6 +25,9 @@ struct GridBakeOptions {
 
 /// --resolution, --extent, --border, --uniform; --store where a single grid is made.
 void add_grid_bake_options(CLI::App& command, GridBakeOptions& options, bool with_store);
+
+/// Throws UsageError for what is of no use where no surface is asked.
+void check_about_an_object(const MeasureOptions& measure, const SurfaceOptions& surface);
 
 [[nodiscard]] bool is_at_grid(const TexelOptions& options);
 

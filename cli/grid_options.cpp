@@ -2,6 +2,7 @@
 
 #include "cli/commands.h"
 #include "cli/pixel_options.h"
+#include "cli/value_checks.h"
 
 #include <CLI/CLI.hpp>
 
@@ -46,7 +47,7 @@ void add_grid_options(CLI::App& command, GridOptions& options)
         .add_option("--merge", options.merge,
                     "Several objects: product = of what each leaves of the light; union = their "
                     "cones are joined, where they hide the same")
-        ->check(CLI::IsMember({"product", "union"}))
+        ->check(one_of({"product", "union"}))
         ->type_name("product|union")
         ->default_str("product")
         ->group(kGroup);

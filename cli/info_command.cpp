@@ -20,7 +20,8 @@ struct InfoOptions {
 
 int run(const InfoOptions& options)
 {
-    check_report(options.json);
+    OutputFolders folders;
+    folders.make_for_report(options.json);
     const Info info = [&options] {
         ProgressBar bar;
         return inspect(

@@ -1,5 +1,7 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/usage_sentence.h"
+#include "surfels/errors.h"
 #include "surfels/progress.h"
 
 #include <CLI/CLI.hpp>
@@ -15,11 +17,16 @@ int run(int argument_count, char** arguments)
     CLI::App app;
     Work work;
     add_commands(app, work);
-
+    if (argument_count == 1) {
+        std::cerr << app.help();
+        return kWrongUsage;
+    }
     try {
         app.parse(argument_count, arguments);
+    } catch (const CLI::Success& asked) {  // --help, --version
+        return app.exit(asked);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? kDone : kWrongUsage;  // 0: --help, --version
+        throw UsageError(usage_sentence(app, error));
     }
     interrupt_politely();
     const int code = work();
@@ -40,6 +47,9 @@ int main(int argument_count, char** arguments)
     try {
         return run(argument_count, arguments);
     } catch (const UsageError& error) {
+        say(error.what());
+        return kWrongUsage;
+    } catch (const SettingsError& error) {  // settings that are not for this file
         say(error.what());
         return kWrongUsage;
     } catch (const Cancelled&) {

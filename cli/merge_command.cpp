@@ -29,7 +29,8 @@ struct MergeOptions {
 
 int run(const MergeOptions& options)
 {
-    check_report(options.json);
+    OutputFolders folders;
+    folders.make_for_report(options.json);
     std::optional<ThreadLimit> limit;
     if (options.threads)
         limit.emplace(*options.threads);
@@ -47,6 +48,7 @@ int run(const MergeOptions& options)
         files.reads(path);
     files.writes(output, "the result");
     files.writes_report(options.json, "--json");
+    folders.make_for(output);
     BakeSettings settings = bake_settings_of(first.input, output, first.arguments);
     if (mark_of(settings) != first.mark)
         throw InputError(paths[0].string() +

@@ -68,7 +68,7 @@ void FilePlan::writes_report(const std::optional<std::string>& file, const std::
         writes(*file, what);
 }
 
-OutputFolder::OutputFolder(const fs::path& folder)
+void OutputFolders::make(const fs::path& folder)
 {
     std::error_code error;
     std::vector<fs::path> missing;
@@ -83,7 +83,20 @@ OutputFolder::OutputFolder(const fs::path& folder)
     }
 }
 
-OutputFolder::~OutputFolder()
+void OutputFolders::make_for(const fs::path& file)
+{
+    make(file.parent_path());
+}
+
+void OutputFolders::make_for_report(const std::optional<std::string>& file)
+{
+    if (!file || file == "-")
+        return;
+    make_for(*file);
+    check_writable(*file);
+}
+
+OutputFolders::~OutputFolders()
 {
     std::error_code error;
     for (auto at = made_.rbegin(); at != made_.rend(); ++at)
@@ -104,12 +117,6 @@ void refuse_foreign(const fs::path& file, std::string_view command)
         throw InputError(file.string() + ": exists and is no result of surfelao " +
                          std::string(command) + "; --overwrite replaces it");
     }
-}
-
-void check_report(const std::optional<std::string>& file)
-{
-    if (file && *file != "-")
-        check_writable(*file);
 }
 
 void write_report(const std::string& file, const std::string& text)

@@ -44,15 +44,21 @@ private:
     std::map<std::filesystem::path, std::string> written_;  ///< what, by canonical path
 };
 
-/// The folder that -o names. Made where it is missing, the folders above it too, and taken back at
-/// the end of the run where nothing was written into it.
-class OutputFolder {
+/// The folders that results go to. Made where they are missing, the folders above them too, and
+/// taken back at the end of the run where nothing was written into them.
+class OutputFolders {
 public:
+    OutputFolders() = default;
+    ~OutputFolders();
+    OutputFolders(const OutputFolders&) = delete;
+    OutputFolders& operator=(const OutputFolders&) = delete;
+
     /// Throws InputError when it cannot be made.
-    explicit OutputFolder(const std::filesystem::path& folder);
-    ~OutputFolder();
-    OutputFolder(const OutputFolder&) = delete;
-    OutputFolder& operator=(const OutputFolder&) = delete;
+    void make(const std::filesystem::path& folder);
+    /// The folder that the file is to stand in.
+    void make_for(const std::filesystem::path& file);
+    /// Also refuses a report that could not be written, before any work. Nothing for none and "-".
+    void make_for_report(const std::optional<std::string>& file);
 
 private:
     std::vector<std::filesystem::path> made_;  ///< from the outermost
@@ -64,9 +70,6 @@ void add_overwrite_option(CLI::App& command, bool& overwrite);
 /// For names that the user did not give: throws InputError when a file stands there that no earlier
 /// run of `command` made (files/maker_mark.h).
 void refuse_foreign(const std::filesystem::path& file, std::string_view command);
-
-/// Refuses a report file that could not be written, before any work. Nothing for none and for "-".
-void check_report(const std::optional<std::string>& file);
 
 /// Writes the file atomically; "-" = standard output.
 void write_report(const std::string& file, const std::string& text);

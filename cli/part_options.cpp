@@ -1,5 +1,7 @@
 #include "cli/part_options.h"
 
+#include "cli/value_checks.h"
+
 #include <CLI/CLI.hpp>
 
 namespace surfelao {
@@ -31,7 +33,7 @@ void add_part_options(CLI::App& command, PartOptions& options)
                     "What light goes through (alphaMode BLEND, transmission, d below 1 in .mtl) "
                     "occludes as solid, not at all, or where its alpha is at least half (leaves on "
                     "BLEND cards); holes by alpha (MASK, map_d) never occlude")
-        ->check(CLI::IsMember({"solid", "open", "cut"}))
+        ->check(one_of({"solid", "open", "cut"}))
         ->type_name("solid|open|cut")
         ->capture_default_str()
         ->group(kGroup);

@@ -1,6 +1,7 @@
 #include "cli/pixel_options.h"
 
 #include "cli/commands.h"
+#include "cli/value_checks.h"
 #include "surfels/errors.h"
 #include "surfels/number_text.h"
 
@@ -71,7 +72,7 @@ void add_pixel_options(CLI::App& command, PixelOptions& options, bool many_taps)
                         many_taps ? "Reads of the picture a pixel, of methods that know it alone; "
                                     "a row for each number"
                                   : "Reads of the picture a pixel, of methods that know it alone")
-            ->check(CLI::Range(1, kMostTaps))
+            ->check(whole_from(1, kMostTaps))
             ->type_name(many_taps ? "N,..." : "N")
             ->default_str(many_taps ? "8,16,24" : "24")
             ->group(kGroup);

@@ -1,6 +1,7 @@
 #include "cli/read_options.h"
 
 #include "cli/interrupt.h"
+#include "cli/value_checks.h"
 #include "surfels/errors.h"
 
 #include <CLI/CLI.hpp>
@@ -32,7 +33,7 @@ void add_read_options(CLI::App& command, ReadOptions& options)
             },
             "glTF: the pose at this second of an animation, skins and morph targets too; "
             "without it the default pose")
-        ->check(CLI::Range(0.0, 1e9))
+        ->check(number_from(0.0, 1e9))
         ->type_name("S");
     command
         .add_option_function<std::string>(

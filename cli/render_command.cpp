@@ -1,10 +1,12 @@
 #include "bake/bake.h"
-#include "bake/moving_world.h"
+#include "bake/moving_solver.h"
 #include "bake/texel_layout.h"
 #include "cli/commands.h"
 #include "cli/output.h"
+#include "cli/preset.h"
 #include "cli/progress_bar.h"
 #include "cli/render_options.h"
+#include "cli/value_checks.h"
 #include "engines/threads.h"
 #include "image/image_file.h"
 #include "surfels/extension.h"
@@ -34,6 +36,17 @@ std::vector<FrameFile> frames_of(const RenderCommandOptions& options)
     return frames_of(options.frames, {&options.input, 1}, options.output, options.reading);
 }
 
+/// The pictures: one for each frame, or a single one.
+std::vector<std::filesystem::path> outputs_of(const RenderCommandOptions& options)
+{
+    std::vector<std::filesystem::path> outputs;
+    for (const FrameFile& frame : frames_of(options))
+        outputs.push_back(frame.output);
+    if (!options.frames.frames)
+        outputs.emplace_back(options.output);
+    return outputs;
+}
+
 /// Throws UsageError where a picture would replace what is read.
 void check_files(const RenderCommandOptions& options)
 {
@@ -45,10 +58,8 @@ void check_files(const RenderCommandOptions& options)
         plan.reads(grid.path.string());
     if (options.show.environment)
         plan.reads(*options.show.environment);
-    for (const FrameFile& frame : frames_of(options))
-        plan.writes(frame.output, "the picture");
-    if (!options.frames.frames)
-        plan.writes(options.output, "the picture");
+    for (const std::filesystem::path& output : outputs_of(options))
+        plan.writes(output, "the picture");
 }
 
 /// Throws UsageError for a background that the file or the picture has not.
@@ -110,46 +121,40 @@ public:
     FrameSequence(const RenderCommandOptions& options, std::span<const double> seconds)
         : world_(options.input, seconds, target_settings_of(options.surface, options.show.up),
                  part_choice_of(options.parts), options.reading),
-          engine_(settings_of(options.engine)),
-          scene_(world_.scene_for(engine_)),
-          receivers_(world_.receivers_for(scene_, settings_for(options))),
-          values_(world_)
+          solver_(world_, engine_for(options))
     {
     }
 
     void pose(double seconds)
     {
         world_.pose(seconds);
-        world_.place(scene_, receivers_);
+        solver_.place();
     }
     [[nodiscard]] const Scene& scene() const { return world_.scene(); }
+    [[nodiscard]] const Box& box() const { return world_.box(); }
 
     /// Of the scene's vertices, then of further receivers.
     [[nodiscard]] std::vector<Occlusion> solve(std::span<const Receiver> more,
                                                const Progress& progress)
     {
-        receivers_.solve(progress);
-        std::vector<Occlusion> values = values_.of(receivers_.occlusion());
-        const std::vector<Occlusion> found = scene_.solve(more, engine_).occlusion;
+        solver_.solve(progress);
+        std::vector<Occlusion> values = solver_.values_of(solver_.answers());
+        const std::vector<Occlusion> found = solver_.solve_others(more);
         values.insert(values.end(), found.begin(), found.end());
         return values;
     }
 
 private:
-    MovingSettings settings_for(const RenderCommandOptions& options)
+    EngineSettings engine_for(const RenderCommandOptions& options) const
     {
-        engine_.definition = definition_of(distance_limit_of(options.measure),
-                                           kernel_of(options.measure), world_.frame());
-        MovingSettings settings;
-        static_cast<SolveSettings&>(settings) = engine_;
-        return settings;
+        EngineSettings engine = settings_of(options.engine);
+        engine.definition = definition_of(distance_limit_of(options.measure),
+                                          kernel_of(options.measure), world_.frame());
+        return engine;
     }
 
     MovingWorld world_;
-    EngineSettings engine_;
-    MovingScene scene_;
-    MovingReceivers receivers_;
-    MovingValues values_;
+    MovingSolver solver_;
 };
 
 using MakeProgress = std::function<Progress(const char*)>;
@@ -230,10 +235,6 @@ void tell(const RenderCommandOptions& options, const Model& model, const EngineS
 /// sequence: null, or of the frame that the options ask for.
 int run(const RenderCommandOptions& options, FrameSequence* sequence)
 {
-    check_image_output(options.output);
-    std::optional<ThreadLimit> limit;
-    if (options.threads)
-        limit.emplace(*options.threads);
     ProgressBar bar;
     const auto stage = [&](const char* name) -> Progress {
         return [&bar, name](double done) { return bar.update(name, done); };
@@ -312,11 +313,19 @@ std::shared_ptr<const GridSources> grid_sources_for(const RenderCommandOptions& 
 /// One picture, or one for each frame, at pixels or not.
 int run_frames(const RenderCommandOptions& options, bool asks_pixels)
 {
+    const std::vector<FrameFile> frames = frames_of(options);
+    OutputFolders folders;
+    for (const std::filesystem::path& output : outputs_of(options)) {
+        folders.make_for(output);
+        check_image_output(output);
+    }
+    std::optional<ThreadLimit> limit;
+    if (options.threads)
+        limit.emplace(*options.threads);
     std::optional<FrameSequence> sequence;
     const auto run_one = [&](const RenderCommandOptions& one) {
         return asks_pixels ? render_pixels(one) : run(one, sequence ? &*sequence : nullptr);
     };
-    const std::vector<FrameFile> frames = frames_of(options);
     RenderCommandOptions one = options;
     if (options.engine.engine == "grid")
         one.grid_sources = grid_sources_for(options, frames);
@@ -324,10 +333,13 @@ int run_frames(const RenderCommandOptions& options, bool asks_pixels)
         return run_one(one);
     // what moves is kept from frame to frame where values at vertices are shown
     if (!asks_pixels && !shown_texels_of(options.texels) &&
+        needs_answer(view_options_of(options.show).colors) &&
         settings_of(options.engine).device == Device::cpu &&
         !ground_plane_of(options.measure, options.show.up))
         sequence.emplace(options, seconds_of(options.frames, {&options.input, 1}));
-    one.box = box_of_frames(frames, options.input, part_choice_of(options.parts), options.reading);
+    one.box = sequence ? sequence->box()
+                       : box_of_frames(frames, options.input, part_choice_of(options.parts),
+                                       options.reading);
     for (const FrameFile& frame : frames) {
         one.reading.moment = frame.moment;
         if (sequence)
@@ -357,11 +369,11 @@ void add_render_command(CLI::App& app, Work& work)
     add_read_options(*command, options->reading);
     add_frame_options(*command, options->frames);
     command->add_option("--width", options->width, "Pixels")
-        ->check(CLI::Range(1, kMostPixels))
+        ->check(whole_from(1, kMostPixels))
         ->type_name("N")
         ->capture_default_str();
     command->add_option("--height", options->height, "Pixels")
-        ->check(CLI::Range(1, kMostPixels))
+        ->check(whole_from(1, kMostPixels))
         ->type_name("N")
         ->capture_default_str();
     command
@@ -369,7 +381,7 @@ void add_render_command(CLI::App& app, Work& work)
             "--samples", options->samples,
             "Samples per pixel: smoother edges; at pixels, what further samples see too is "
             "asked (1: middles alone)")
-        ->check(CLI::Range(1, kMostSamples))
+        ->check(whole_from(1, kMostSamples))
         ->type_name("N")
         ->capture_default_str();
     command
@@ -381,7 +393,7 @@ void add_render_command(CLI::App& app, Work& work)
     command
         ->add_option("--context", options->backend,
                      "What draws: egl (a GPU where there is one), osmesa (software), auto")
-        ->check(CLI::IsMember({"auto", "egl", "osmesa"}))
+        ->check(one_of({"auto", "egl", "osmesa"}))
         ->type_name("auto|egl|osmesa")
         ->capture_default_str();
     add_show_options(*command, options->show);
@@ -395,7 +407,9 @@ void add_render_command(CLI::App& app, Work& work)
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
     add_thread_option(*command, options->threads);
-    command->callback([options, &work] {
+    add_preset_option(*command);
+    command->callback([options, command, &work] {
+        apply_preset(*command);
         check_engine(*options);
         static_cast<void>(distance_limit_of(options->measure));
         static_cast<void>(ground_plane_of(options->measure, options->show.up));

@@ -141,10 +141,6 @@ void tell(const RenderCommandOptions& options, const PixelJob& job, const PixelP
 
 int render_pixels(const RenderCommandOptions& options)
 {
-    check_image_output(options.output);
-    std::optional<ThreadLimit> limit;
-    if (options.threads)
-        limit.emplace(*options.threads);
     ProgressBar bar;
     Stopwatch watch;
     PixelJob job = read_job(options);

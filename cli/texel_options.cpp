@@ -2,6 +2,7 @@
 
 #include "cli/commands.h"
 #include "cli/engine_options.h"
+#include "cli/value_checks.h"
 #include "surfels/extension.h"
 
 #include <CLI/CLI.hpp>
@@ -32,18 +33,18 @@ void add_layout_options(CLI::App& command, TexelOptions& options, const std::str
                     "bake, texels for pictures), a grid of cells round an object (bake, compare), "
                     "and where it is not baked: pixels of the picture, or cube maps inside of the "
                     "scene")
-        ->check(CLI::IsMember({"vertices", "texels", "points", "grid", "pixels", "cubemaps"}))
+        ->check(one_of({"vertices", "texels", "points", "grid", "pixels", "cubemaps"}))
         ->type_name("vertices|texels|points|grid|pixels|cubemaps")
         ->group(group);
     command.add_option("--size", options.size, "Texels of each side of the map")
-        ->check(CLI::Range(1u, kMostTexels))
+        ->check(whole_from(1, kMostTexels))
         ->type_name("N")
         ->default_str("1024")
         ->group(group);
     command
         .add_option("--texels-per-unit", options.texels_per_unit,
                     "Charts of our own at this density: the size follows")
-        ->check(CLI::PositiveNumber)
+        ->check(number_above_zero())
         ->type_name("D")
         ->excludes(command.get_option("--size"))
         ->group(group);
@@ -53,7 +54,7 @@ void add_layout_options(CLI::App& command, TexelOptions& options, const std::str
                     "auto: the file's where each point of the surface has texels of its own, else "
                     "new ones (a picture alone: the first of use). Materials that lie over each "
                     "other get a map each (glTF; NAME.MATERIAL.png)")
-        ->check(CLI::IsMember({"auto", "0", "1", "2", "3", "new"}))
+        ->check(one_of({"auto", "0", "1", "2", "3", "new"}))
         ->type_name("auto|0|1|2|3|new")
         ->default_str("auto")
         ->group(group);
@@ -61,7 +62,7 @@ void add_layout_options(CLI::App& command, TexelOptions& options, const std::str
         .add_option("--charts", options.charts,
                     "Of new coordinates. planar: each triangle in one chart; blended: a page for "
                     "each axis, which fade into each other (drawn by render and view)")
-        ->check(CLI::IsMember({"planar", "blended"}))
+        ->check(one_of({"planar", "blended"}))
         ->type_name("planar|blended")
         ->default_str("planar")
         ->group(group);
@@ -73,7 +74,7 @@ void add_layout_options(CLI::App& command, TexelOptions& options, const std::str
     command
         .add_option("--padding", options.padding,
                     "Texels around what is covered that go on with it; the others hold the mean")
-        ->check(CLI::Range(0u, kMostPadding))
+        ->check(whole_from(0, kMostPadding))
         ->type_name("N")
         ->default_str("4")
         ->group(group);
@@ -86,14 +87,14 @@ void add_texel_options(CLI::App& command, TexelOptions& options)
     command
         .add_option("--depth", options.depth,
                     "Bits of each number: .png 8, 16; .tif 8, 16, 32; .exr 16, 32 (floats)")
-        ->check(CLI::IsMember({8, 16, 32}))
+        ->check(one_of({"8", "16", "32"}))
         ->type_name("8|16|32")
         ->default_str("8, .exr 32")
         ->group(kGroup);
     command
         .add_option("--bent", options.bent,
                     "Bent normals too, as NAME.bent.png, (n + 1) / 2, in this space")
-        ->check(CLI::IsMember({"none", "object", "world", "tangent"}))
+        ->check(one_of({"none", "object", "world", "tangent"}))
         ->type_name("none|object|world|tangent")
         ->default_str("none")
         ->group(kGroup);
@@ -101,7 +102,7 @@ void add_texel_options(CLI::App& command, TexelOptions& options)
         .add_option("--green", options.green,
                     "Of --bent tangent: which way green grows: +y as in OpenGL and glTF, -y as in "
                     "DirectX")
-        ->check(CLI::IsMember({"+y", "-y"}))
+        ->check(one_of({"+y", "-y"}))
         ->type_name("+y|-y")
         ->default_str("+y")
         ->group(kGroup);

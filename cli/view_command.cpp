@@ -3,6 +3,7 @@
 #include "cli/interrupt.h"
 #include "cli/part_options.h"
 #include "cli/pixel_options.h"
+#include "cli/preset.h"
 #include "cli/read_options.h"
 #include "cli/texel_options.h"
 #include "cli/view_options.h"
@@ -157,7 +158,9 @@ void add_view_command(CLI::App& app, Work& work)
     add_measure_options(*command, options->measure);
     add_surface_options(*command, options->surface);
     add_thread_option(*command, options->threads);
-    command->callback([options, &work] {
+    add_preset_option(*command);
+    command->callback([options, command, &work] {
+        apply_preset(*command);
         check_view(*options);
         work = [options] { return run(*options); };
     });

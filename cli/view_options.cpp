@@ -2,6 +2,7 @@
 
 #include "cli/commands.h"
 #include "cli/engine_options.h"
+#include "cli/value_checks.h"
 #include "reference/rays.h"
 #include "surfels/srgb.h"
 
@@ -87,7 +88,9 @@ void add_color_options(CLI::App& command, ShowOptions& options)
             "For --mode difference: the difference at the end of the colours (0.0001 to "
             "1); auto = what 95 % of the pixels stay below, rounded up to 1, 2 or 5 times a "
             "power of ten")
-        ->check(CLI::Range(0.0001f, 1.0f) | CLI::IsMember({"auto"}))
+        ->check([is_number = number_from(0.0001, 1.0)](const std::string& text) {
+            return text == "auto" ? std::string() : is_number(text);
+        })
         ->type_name("D|auto")
         ->capture_default_str()
         ->group("Picture");
@@ -99,7 +102,7 @@ void add_color_options(CLI::App& command, ShowOptions& options)
         .add_option("--colormap", options.color_map,
                     "Colours of numbers: heat, viridis and inferno and grey rise evenly in "
                     "lightness; turbo tells most steps apart")
-        ->check(CLI::IsMember(names_of(kColorMaps)))
+        ->check(one_of(names_of(kColorMaps)))
         ->type_name("NAME")
         ->capture_default_str()
         ->group("Picture");
@@ -125,7 +128,7 @@ void add_show_options(CLI::App& command, ShowOptions& options)
             "per unit of length; textured = the file's base colours times visibility; coverage = "
             "of cube maps (--at cubemaps): red where none answers; headlight = a light at the "
             "camera times visibility")
-        ->check(CLI::IsMember(names_of(kModes)))
+        ->check(one_of(names_of(kModes)))
         ->type_name("MODE")
         ->default_str("visibility")
         ->group("Picture");
@@ -133,7 +136,7 @@ void add_show_options(CLI::App& command, ShowOptions& options)
         .add_option("--surface", options.surface,
                     "What is drawn: triangles; splats = surfels as disks, blended; affine = disks "
                     "by affine projection; points = plain point sprites")
-        ->check(CLI::IsMember(names_of(kSurfaces)))
+        ->check(one_of(names_of(kSurfaces)))
         ->type_name("triangles|splats|affine|points")
         ->capture_default_str()
         ->group("Picture");
@@ -147,14 +150,14 @@ void add_show_options(CLI::App& command, ShowOptions& options)
     command
         .add_option("--exposure", options.exposure,
                     "For --mode environment: brighter by that many stops (-20 to 20)")
-        ->check(CLI::Range(-20.0f, 20.0f))
+        ->check(number_from(-20.0, 20.0))
         ->type_name("EV")
         ->capture_default_str()
         ->group("Picture");
     command
         .add_option("--splat-radius", options.radius_scale,
                     "Factor on the radius of splats; 1 covers the surface (0.01 to 100)")
-        ->check(CLI::Range(0.01f, 100.0f))
+        ->check(number_from(0.01, 100.0))
         ->type_name("F")
         ->capture_default_str()
         ->group("Picture");
@@ -168,8 +171,8 @@ void add_show_options(CLI::App& command, ShowOptions& options)
         ->group("Picture");
     command
         .add_option("--reference-rays", options.reference_rays,
-                    "Rays per vertex of the reference, an even number")
-        ->check(CLI::Range(2u, kMostRays))
+                    "Rays of the reference for each vertex, texel or pixel, an even number")
+        ->check(whole_from(2, kMostRays))
         ->type_name("N")
         ->capture_default_str()
         ->group("Picture");

@@ -120,7 +120,7 @@ TEST_F(Notes, VerticesInsideOfOtherParts)
 TEST_F(Notes, InteriorsNeedAMaximumDistance)
 {
     write(scenes::room({0, 0, 0}, {4, 3, 0.1}, 8));
-    expect({"1 of 1 closed piece faces inward, 100 %", "an interior: try --max-distance 10%"});
+    expect({"1 of 1 closed piece faces inward, 100 %", "an interior: try --preset interior"});
     settings_.max_distance = {90.0, true, Falloff::none};
     expect_in(baked(), {"faces inward", "an interior"}, "90 %");
     settings_.max_distance = {10.0, true, Falloff::none};

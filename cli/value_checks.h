@@ -1,0 +1,28 @@
+/// value_checks.h: what the value of an option may be, and the sentence that refuses another.
+///
+/// For CLI::Option::check(): each returns a function that says nothing of a good value. nan, inf
+/// and numbers with something behind them are refused by all.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace surfelao {
+
+using ValueCheck = std::function<std::string(const std::string&)>;
+
+/// One of these words; another that is near to one is asked whether it was meant.
+[[nodiscard]] ValueCheck one_of(std::vector<std::string> words);
+
+/// A number from low to high, both allowed.
+[[nodiscard]] ValueCheck number_from(double low, double high);
+
+/// A whole number from low to high, both allowed, without zeros in front.
+[[nodiscard]] ValueCheck whole_from(std::int64_t low, std::int64_t high);
+
+/// A finite number above 0.
+[[nodiscard]] ValueCheck number_above_zero();
+
+}  // namespace surfelao
