@@ -124,7 +124,8 @@ TEST(PixelSession, ADraftComesFirstAndAnotherCameraGivesUpWhatRuns)
     session.solve(question_of(model, other, draft));
     ASSERT_TRUE(wait_until(session, is_whole));
     EXPECT_EQ(session.answers().width, kSize.width);
-    EXPECT_FALSE(session.solving());
+    while (session.solving())  // its thread tells the answer before it rests; else ctest's limit
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
 TEST(PixelSession, AnEnginesFailureIsTold)
