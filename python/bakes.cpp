@@ -136,7 +136,8 @@ void add_report(py::class_<Result>& type)
             "dict: wall-clock seconds of each stage.")
         .def_property_readonly(
             "notes", [](const Result& baked) { return baked.told("notes"); },
-            "list of str: what a user should know of the input and the result.");
+            "list of str: what a user should know of the input and the result, in the words of the "
+            "program, whose options are called --so.");
 }
 
 }  // namespace
