@@ -45,13 +45,26 @@ std::vector<Scene> occluders_of(const Options& options)
     return scenes;
 }
 
+/// From what maps hold to what is told everywhere else: 0 is open; directions themselves.
+void decode(MapBake& map)
+{
+    for (float& value : map.visibility.front().values)
+        value = 1.0f - value;
+    if (!map.bent.empty())
+        for (float& value : map.bent.front().values)
+            value = 2.0f * value - 1.0f;
+}
+
 std::shared_ptr<SceneBake> run_bake(Scene scene, std::vector<Scene> others, BakeSettings settings,
                                     const Options& options)
 {
     return result_of(
         [scene = std::make_shared<Scene>(std::move(scene)), others = std::move(others),
          settings = std::move(settings)](const StageProgress& progress) {
-            return bake_scene(std::move(*scene), others, settings, progress);
+            SceneBake bake = bake_scene(std::move(*scene), others, settings, progress);
+            if (bake.map)
+                decode(*bake.map);
+            return bake;
         },
         options.get("progress"), threads_of(options));
 }
@@ -79,16 +92,6 @@ ValueBake cloud_arrays(const py::object& points, const py::dict& given)
         run_bake(cloud_of(points, normal_rows_of(options)), {}, std::move(settings), options));
 }
 
-/// From what maps hold to what is told everywhere else: 0 is open; directions themselves.
-void decode(MapBake& map)
-{
-    for (float& value : map.visibility.front().values)
-        value = 1.0f - value;
-    if (!map.bent.empty())
-        for (float& value : map.bent.front().values)
-            value = 2.0f * value - 1.0f;
-}
-
 TextureBake texture_arrays(const py::object& vertices, const py::object& faces,
                            const py::dict& given)
 {
@@ -99,12 +102,10 @@ TextureBake texture_arrays(const py::object& vertices, const py::object& faces,
     texels.padding = static_cast<std::uint32_t>(options.integer("padding", 0, kMostTexels));
     texels.uvs = options.get("uv").is_none() ? UvChoice::made : UvChoice::file;
     texels.depth = MapDepth::whole;
-    if (options.get("bent").cast<bool>())
+    if (py::bool_(options.get("bent")))
         texels.bent = BentSpace::world;
-    std::shared_ptr<SceneBake> bake = run_bake(scene_of(arrays_of(vertices, faces, options)),
-                                               occluders_of(options), std::move(settings), options);
-    decode(*bake->map);
-    return TextureBake(std::move(bake));
+    return TextureBake(run_bake(scene_of(arrays_of(vertices, faces, options)),
+                                occluders_of(options), std::move(settings), options));
 }
 
 py::array texels_of(const Baked& baked, const Map& map)
@@ -135,7 +136,8 @@ void add_report(py::class_<Result>& type)
             "dict: wall-clock seconds of each stage.")
         .def_property_readonly(
             "notes", [](const Result& baked) { return baked.told("notes"); },
-            "list of str: what a user should know of the input and the result.");
+            "list of str: what a user should know of the input and the result, in the words of the "
+            "program, whose options are called --so.");
 }
 
 }  // namespace

@@ -17,7 +17,7 @@
 
 namespace surfelao {
 
-inline constexpr std::chrono::milliseconds kLook{50};
+inline constexpr std::chrono::milliseconds kLook{20};
 
 /// Runs it to its end. work: owns what it uses, and nothing of Python. listener: None, or called as
 /// listener(stage, done) in this thread; what it returns stops the work where it is False, what it

@@ -10,6 +10,8 @@
 #include <pybind11/pybind11.h>
 #include <glm/geometric.hpp>
 
+#include <cmath>
+#include <cstdint>
 #include <mutex>
 #include <utility>
 

@@ -32,7 +32,7 @@ Arguments that several functions have:
                     is found, in place of `engine`, `quality` and `rays`.
     check           points at which a bake's error is measured, 0 to 10**6; 0: it is not.
     threads         at most so many; None: all cores.
-    progress        called as progress(stage, done), done from 0 to 1, some twenty times a second in
+    progress        called as progress(stage, done), done from 0 to 1, up to fifty times a second in
                     the calling thread. The call ends in Cancelled where it returns False, and in
                     what it raises.
 
