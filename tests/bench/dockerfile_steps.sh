@@ -26,7 +26,7 @@ in_stage() {
                 CMAKE_CXX_COMPILER_LAUNCHER=ccache)
         fi
         exec chroot "$stage" env -i -C "$folder" PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root \
-            LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "${settings[@]}" "$@"' "$@"
+            LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive "${settings[@]}" "$@"' "$@"
 }
 
 stage='' name='' folder=/ entry=''
