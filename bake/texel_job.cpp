@@ -238,6 +238,7 @@ void bake_texels(const Mesh& mesh, Occluders* occluders, SceneBake& baked,
     told.materials = names_of_pages(mesh.scene, layout);
     told.charts = place.charts;
     report.seconds.charts = watch.lap();
+    report.notes = mesh.scene.notes;
     if (!place.why_new.empty())
         report.notes.push_back("new texture coordinates: " + place.why_new);
     std::optional<High> high;

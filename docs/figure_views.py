@@ -490,6 +490,43 @@ def odd_files_count(figures, kind="all"):
 
 
 @view
+def foreign_files(figures):
+    """docs/readers.md: what is read through assimp"""
+    files = figures["foreign"]["files"]
+    read = [[row["file"], row["vertices"], row["triangles"], "; ".join(row["notes"])]
+            for rows in files.values() for row in rows if "sentence" not in row]
+    refused = [[row["file"], row["sentence"]]
+               for rows in files.values() for row in rows if "sentence" in row]
+    return (f"Read, {len(read)} files:\n\n"
+            + table(["file", "vertices", "triangles", "notes"], read)
+            + f"\nRefused, {len(refused)} files:\n\n" + table(["file", "sentence"], refused))
+
+
+@view
+def foreign_pairs(figures):
+    """docs/readers.md: the same model in two formats"""
+    return table(["model", "format", "places", "mean occlusion", "largest difference", "mean"],
+                 [[row["model"], row["format"], row["places"], f"{row['occlusion']:.4f}",
+                   f"{row['largest']:.5f}", f"{row['mean']:.6f}"] for row in figures["foreign"]["pairs"]])
+
+
+@view
+def foreign_mutants(figures):
+    """docs/readers.md: broken files through assimp"""
+    row = figures["foreign"]["mutants"]
+    return table(["files", "read", "refused", "of these: assimp crashed", "took too long",
+                  "asked for too much memory", "peak, MiB", "longest, s"],
+                 [[row["count"], row["read"], row["refused"], row["crashed"], row["too_long"],
+                   row["too_large"], f"{row['peak_mib']:.0f}", f"{row['longest_seconds']:.1f}"]])
+
+
+@view
+def foreign_mutant_count(figures):
+    """how many broken files go through assimp"""
+    return str(figures["foreign"]["mutants"]["count"])
+
+
+@view
 def stability_table(figures, device):
     """stability_table cpu|gpu: RMS and worst error of every hard case, as `stability` prints it"""
     part = figures["stability"]

@@ -2,7 +2,7 @@
 """measure.py: what README.md and docs/ tell in figures, measured anew into docs/figures/*.json.
 
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
-                                    readers stated demo viewers atlas maps map_frontier
+                                    readers foreign stated demo viewers atlas maps map_frontier
                                     clouds clouds_pcv subdivide pixels origin cubes screen moving
                                     grids gridpictures;
                                     default: all, about an hour on two quiet cores
@@ -281,6 +281,13 @@ def part_readers(build):
     return {**provenance(build, "tests/odd_files.sh"), "baked": baked, "refused": refused}
 
 
+def part_foreign(build):
+    if not pathlib.Path("/usr/share/assimp/models/FBX").exists():
+        raise Absent("no package assimp-testmodels")
+    return {**provenance(build, "tests/bench/foreign_formats.py"),
+            **json.loads(run(ROOT / "tests/bench/foreign_formats.py", build))}
+
+
 def check_share(build, path):
     """Time of a bake with its statement over that of the rest of it, the median of several."""
     shares = []
@@ -535,7 +542,7 @@ def part_gridpictures(build):
 
 PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scaling": part_scaling,
          "stability": part_stability, "gpu": part_gpu, "drawing": part_drawing,
-         "readers": part_readers, "stated": part_stated, "demo": part_demo,
+         "readers": part_readers, "foreign": part_foreign, "stated": part_stated, "demo": part_demo,
          "viewers": part_viewers, "atlas": part_atlas, "maps": part_maps,
          "map_frontier": part_map_frontier, "clouds": part_clouds,
          "clouds_pcv": part_clouds_pcv,
