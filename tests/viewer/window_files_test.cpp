@@ -201,13 +201,13 @@ TEST_F(Window, TheWidgetsStayWhileAPictureIsSaved)
 // Under the mouse: the panel's left column. Titles of sections say what they do.
 TEST_F(Window, EveryWidgetSaysWhatItDoes)
 {
-    WidgetFinder finder({30.0f}, 25.0f, 890.0f, 12.0f);
+    WidgetFinder finder({30.0f}, 25.0f, 850.0f, 14.0f);
     std::size_t with_tip = 0;
     std::vector<float> without;
     WindowOptions options;
     options.input = box_file();
-    options.width = 740;
-    options.height = 900;
+    options.width = 724;
+    options.height = 860;
     options.panel.beside = Beside::side_by_side;
     options.panel.reference_rays = 2;
     options.panel.left.settings.engine.engine = Engine::disks;
