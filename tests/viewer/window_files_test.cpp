@@ -41,9 +41,12 @@ TEST(RecentFiles, AreTheLastTenThatAreThereTheLastFirst)
 {
     const TemporaryFolder folder;
     const fs::path list = folder / "state" / "surfelao" / "recent";
+    RecentFiles kept(list);
     for (int i = 0; i < 12; ++i)
-        RecentFiles(list).add(folder.file(std::to_string(i), "x"));
-    RecentFiles(list).add(folder / "5");
+        kept.add(folder.file(std::to_string(i), "x"));
+    kept.add(folder / "5");
+    EXPECT_EQ(kept.files().size(), kMostRecent);
+    EXPECT_EQ(kept.files(), RecentFiles(list).files());
     fs::remove(folder / "9");
     const RecentFiles found(list);
     EXPECT_EQ(found.files().size(), 9u);
@@ -150,7 +153,9 @@ TEST_F(Window, NothingBesideAResultIsLostEither)
     EXPECT_EQ(contents_of(folder / "paint.png"), paint);
     folder.file("x-2.ao.png", "mine");
     EXPECT_TRUE(saved_by(options, {GLFW_KEY_B, GLFW_KEY_ESCAPE}).empty());
-    EXPECT_EQ(saved_by(options, {GLFW_KEY_B, GLFW_KEY_K}).front(), folder / "x-3.obj");
+    EXPECT_EQ(
+        saved_by(options, {GLFW_KEY_B, GLFW_KEY_K}),
+        (std::vector<fs::path>{folder / "x-3.obj", folder / "x-3.ao.png", folder / "x-3.ao.mtl"}));
     EXPECT_EQ(contents_of(folder / "x-2.ao.png"), "mine");
 }
 
