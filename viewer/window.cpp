@@ -122,8 +122,10 @@ private:
         PartChoice& parts =
             panel_state_.left.settings.parts;  // names are of the file that is shown
         parts.exclude = parts.receivers = {};
-        mover_.begin_at({});
-        left_.session().open(path, up_, panel_state_.left.settings);
+        const bool is_input = whole_path(path) == whole_path(options_.input);
+        const ReadOptions reading = is_input ? options_.reading : ReadOptions{};
+        mover_.begin_at(reading.moment);
+        left_.session().open(path, up_, panel_state_.left.settings, reading);
     }
 
     void list_open(const std::filesystem::path& path)

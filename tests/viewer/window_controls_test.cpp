@@ -24,8 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kRest = 3;        // frames until widgets stand still
-constexpr int kMostPasses = 3;  // what a click has opened is clicked in the next one
+constexpr int kRest = 1;        // frames until widgets stand still
+constexpr int kMostPasses = 2;  // what a click has opened is clicked in the next one
 
 /// Finds all that is under the mouse in the panel, clicks each once, and closes what has opened.
 class Clicker {
@@ -66,8 +66,8 @@ private:
     {
         if (!finder_) {
             const ImGuiWindow* panel = ImGui::FindWindowByName("surfelao");
-            const float step = 0.6f * ImGui::GetFontSize(), right = panel->SizeFull.x;
-            finder_.emplace(std::vector<float>{0.07f * right, 0.3f * right, 0.55f * right},
+            const float step = 0.9f * ImGui::GetFontSize(), right = panel->SizeFull.x;
+            finder_.emplace(std::vector<float>{0.07f * right, 0.5f * right},
                             1.5f * ImGui::GetFrameHeight(), panel->SizeFull.y - step, step);
         }
         if (finder_->go_on())

@@ -41,9 +41,12 @@ TEST(RecentFiles, AreTheLastTenThatAreThereTheLastFirst)
 {
     const TemporaryFolder folder;
     const fs::path list = folder / "state" / "surfelao" / "recent";
+    RecentFiles kept(list);
     for (int i = 0; i < 12; ++i)
-        RecentFiles(list).add(folder.file(std::to_string(i), "x"));
-    RecentFiles(list).add(folder / "5");
+        kept.add(folder.file(std::to_string(i), "x"));
+    kept.add(folder / "5");
+    EXPECT_EQ(kept.files().size(), kMostRecent);
+    EXPECT_EQ(kept.files(), RecentFiles(list).files());
     fs::remove(folder / "9");
     const RecentFiles found(list);
     EXPECT_EQ(found.files().size(), 9u);
@@ -150,7 +153,9 @@ TEST_F(Window, NothingBesideAResultIsLostEither)
     EXPECT_EQ(contents_of(folder / "paint.png"), paint);
     folder.file("x-2.ao.png", "mine");
     EXPECT_TRUE(saved_by(options, {GLFW_KEY_B, GLFW_KEY_ESCAPE}).empty());
-    EXPECT_EQ(saved_by(options, {GLFW_KEY_B, GLFW_KEY_K}).front(), folder / "x-3.obj");
+    EXPECT_EQ(
+        saved_by(options, {GLFW_KEY_B, GLFW_KEY_K}),
+        (std::vector<fs::path>{folder / "x-3.obj", folder / "x-3.ao.png", folder / "x-3.ao.mtl"}));
     EXPECT_EQ(contents_of(folder / "x-2.ao.png"), "mine");
 }
 
@@ -201,13 +206,13 @@ TEST_F(Window, TheWidgetsStayWhileAPictureIsSaved)
 // Under the mouse: the panel's left column. Titles of sections say what they do.
 TEST_F(Window, EveryWidgetSaysWhatItDoes)
 {
-    WidgetFinder finder({30.0f}, 25.0f, 890.0f, 12.0f);
+    WidgetFinder finder({30.0f}, 25.0f, 850.0f, 14.0f);
     std::size_t with_tip = 0;
     std::vector<float> without;
     WindowOptions options;
     options.input = box_file();
-    options.width = 740;
-    options.height = 900;
+    options.width = 724;
+    options.height = 860;
     options.panel.beside = Beside::side_by_side;
     options.panel.reference_rays = 2;
     options.panel.left.settings.engine.engine = Engine::disks;

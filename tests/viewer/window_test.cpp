@@ -417,12 +417,12 @@ TEST_F(Window, AnotherTargetInThePanelMakesTheModelAnewUnderTheSameCamera)
 {
     int frames = 0, frames_after = 0;
     double small = 0.0, after = 0.0;
-    WidgetFinder finder({60.0f}, 160.0f, 360.0f, 8.0f);
+    WidgetFinder finder({60.0f}, 200.0f, 330.0f, 9.0f);
     ImVec2 widget(0.0f, 0.0f);
     WindowOptions options;
     options.input = box_file();
-    options.width = 1000;
-    options.height = 700;
+    options.width = 730;
+    options.height = 500;
     options.on_frame = [&](const Image& shown, const Session& session) {
         if (!session.state().is_solved || session.state().is_draft)
             return true;
