@@ -86,6 +86,7 @@ struct Frontier {
 
 /// Keys summary{at_010{median_ratio, worst_ratio, best_ratio, quartiles, scenes, left_out}, at_005,
 /// with_builds{at_010, at_005}, with_files{...}}, summary_of_engines{NAME{...}}, scenes[...].
+/// Ratios are null where !stands_for_all().
 [[nodiscard]] std::string json_of(const Frontier& frontier);
 [[nodiscard]] std::string csv_of(const Frontier& frontier);
 [[nodiscard]] std::string table_of(const Frontier& frontier);

@@ -18,7 +18,7 @@ constexpr int kDigits = 3;  // significant ones of a time or an error
 
 std::string rounded(double value)
 {
-    return significant(value, kDigits);
+    return value < 1000.0 ? significant(value, kDigits) : fixed(value, 0);
 }
 
 /// "64" of 64 rays, "0.5" of quality 0.5: short enough to stand at a point.

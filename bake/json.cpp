@@ -352,13 +352,10 @@ Json json_object_of(const Comparison& comparison)
 
 Json json_of(const RatioSummary& summary)
 {
-    if (summary.scenes == 0) {
-        return {{"median_ratio", nullptr},
-                {"worst_ratio", nullptr},
-                {"best_ratio", nullptr},
-                {"quartiles", nullptr},
-                {"scenes", 0},
-                {"left_out", summary.left_out}};
+    if (!stands_for_all(summary)) {
+        return {{"median_ratio", nullptr},  {"worst_ratio", nullptr},
+                {"best_ratio", nullptr},    {"quartiles", nullptr},
+                {"scenes", summary.scenes}, {"left_out", summary.left_out}};
     }
     return {{"median_ratio", summary.median},
             {"worst_ratio", summary.worst},

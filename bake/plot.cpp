@@ -202,8 +202,7 @@ std::string body_of(const Plot& plot)
     }
     for (std::size_t i = 0; i < plot.lines.size(); ++i) {
         const std::string color = kLineColors[i % kLineColors.size()];
-        std::vector<PlotPoint> points = plot.lines[i].points;
-        std::ranges::stable_sort(points, {}, &PlotPoint::x);
+        const std::vector<PlotPoint>& points = plot.lines[i].points;
         std::string way;
         for (const PlotPoint& point : points)
             way += pixels(x.at(point.x)) + ',' + pixels(y.at(point.y)) + ' ';

@@ -13,7 +13,7 @@ struct PlotPoint {
 
 struct PlotLine {
     std::string name;
-    std::vector<PlotPoint> points;  ///< not empty; drawn in the order of x
+    std::vector<PlotPoint> points;  ///< not empty; joined in this order
 };
 
 struct Plot {

@@ -212,9 +212,9 @@ std::string html_of(const PixelComparison& comparison)
         " %. Pictures are cut to what is seen, and reduced to at most " +
         std::to_string(kWidestPicture) + " pixels.</p>\n" + facts_html(run_facts()) +
         csv_link(csv_of(comparison), "surfelao-pixels") + "<p>" +
-        lines_html(settings_text(comparison)) + "</p>\n<h2>" + escaped(means_text(comparison)) +
-        "</h2>\n";
-    html += plot_html(comparison) + rows_html(comparison.means);
+        lines_html(settings_text(comparison)) + "</p>\n" + plot_html(comparison);
+    if (comparison.cameras.size() > 1)
+        html += "<h2>" + escaped(means_text(comparison)) + "</h2>\n" + rows_html(comparison.means);
     if (comparison.sweep)
         html += "<pre>" + escaped(sweep_table(comparison, *comparison.sweep)) + "</pre>\n";
     for (std::size_t camera = 0; camera < comparison.cameras.size(); ++camera)

@@ -80,6 +80,10 @@ TEST(Frontier, AnErrorThatIsReachedOnFewScenesHasNoMedian)
     frontier.scenes.push_back(made_up_scene(4.0, 0.05, 0.02));
     EXPECT_FALSE(stands_for_all(summary()));
     EXPECT_NE(html_of(frontier).find("<td>2 of 4</td><td>-</td>"), std::string::npos);
+    const Json few = Json::parse(json_of(frontier))["summary"]["at_010"];
+    EXPECT_TRUE(few["median_ratio"].is_null());
+    EXPECT_EQ(few["scenes"], 2);
+    EXPECT_EQ(few["left_out"], 2);
     EXPECT_NE(table_of(frontier).find("reached on"), std::string::npos);
 }
 

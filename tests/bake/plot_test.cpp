@@ -11,7 +11,7 @@ namespace {
 const Plot kPlot = {"error & time",
                     "seconds",
                     "error",
-                    {{"masks", {{1.0, 0.001, "best"}, {0.01, 0.1, "draft"}, {0.1, 0.01, "good"}}},
+                    {{"masks", {{0.01, 0.1, "draft"}, {0.1, 0.01, "good"}, {1.0, 0.001, "best"}}},
                      {"Embree", {{0.4, 0.02, "4 rays"}}}}};
 
 /// Places of the points, in the order of the drawing.

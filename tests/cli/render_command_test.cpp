@@ -46,6 +46,39 @@ protected:
     const char* input_ = "a.obj";
 };
 
+// Straight alpha in .png, premultiplied in .exr: read back they are the same picture.
+TEST_F(RenderCommand, LeavesTheBackgroundTransparentInBothFormats)
+{
+    const std::vector<std::string> clear = {"--background", "transparent"};
+    ASSERT_EQ(render("x.png", clear).code, 0);
+    ASSERT_EQ(render("x.exr", clear).code, 0);
+    const Image png = read_image(folder_ / "x.png"), exr = read_image(folder_ / "x.exr");
+    EXPECT_EQ(png.at(0, 0).a, 0.0f);
+    EXPECT_EQ(png.at(32, 24).a, 1.0f);
+    for (std::size_t i = 0; i < png.pixels.size(); ++i) {
+        EXPECT_NEAR(png.pixels[i].a, exr.pixels[i].a, 0.6f / 255.0f);
+        EXPECT_NEAR(srgb_encode(png.pixels[i].g) * exr.pixels[i].a,
+                    srgb_encode(exr.pixels[i].g) * exr.pixels[i].a, 0.6f / 255.0f);
+    }
+    const std::vector<std::string> blue = {"--background", "#0000ff"};
+    ASSERT_EQ(render("x.png", blue).code, 0);
+    EXPECT_EQ(read_image(folder_ / "x.png").at(0, 0), glm::vec4(0.0f, 0.0f, 1.0f, 1.0f));
+}
+
+TEST_F(RenderCommand, RefusesColoursThatDoNotGoTogether)
+{
+    const std::vector<std::vector<std::string>> wrong = {
+        {"--background", "pink"},
+        {"--background", "#12345"},
+        {"--signed"},
+        {"--difference-scale", "auto"},
+        {"--mode", "difference", "--difference-scale", "7"},
+        {"--colormap", "diverging"}};
+    for (const std::vector<std::string>& options : wrong)
+        EXPECT_EQ(render("x.png", options).code, 2) << options[0];
+    EXPECT_EQ(render("x.jpg", {"--background", "transparent"}).code, 2);
+}
+
 TEST_F(RenderCommand, WritesAPictureOfTheSizeAskedFor)
 {
     for (const char* name : {"x.png", "x.jpg", "x.exr"}) {
