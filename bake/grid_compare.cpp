@@ -86,8 +86,7 @@ std::string text_of_row(const GridRow& row)
            (row.is_origin ? " (origin)" : "");
 }
 
-}  // namespace
-
+/// Of Malmer et al.: even cells in a box of eps .1, cones, rescaled at the border.
 GridSettings origin_settings(int resolution)
 {
     return {.resolution = resolution,
@@ -96,6 +95,8 @@ GridSettings origin_settings(int resolution)
             .store = GridStore::cone,
             .border = GridBorder::rescale};
 }
+
+}  // namespace
 
 GridComparison compare_grids(const Geometry& object, const GridCompareSettings& settings,
                              const StageProgress& progress)

@@ -30,7 +30,7 @@ struct GridCompareSettings {
 struct GridRow {
     EngineSettings engine;
     GridSettings grid;
-    bool is_origin = false;  ///< the settings of Malmer et al. (origin_settings())
+    bool is_origin = false;  ///< the settings of Malmer et al., the same number of cells
     double build_s = 0.0;
     double solve_s = 0.0;
     double repair_s = 0.0;
@@ -52,9 +52,6 @@ struct GridComparison {
     int rounds = 0;
     std::vector<GridRow> rows;  ///< each candidate as cones and as harmonics, then the origin's
 };
-
-/// Even cells in a box of eps .1, cones, rescaled at the border; cells of the same number.
-[[nodiscard]] GridSettings origin_settings(int resolution);
 
 /// Throws InputError, SettingsError, Cancelled.
 [[nodiscard]] GridComparison compare_grids(const GridCompareSettings& settings,

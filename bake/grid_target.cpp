@@ -41,6 +41,9 @@ constexpr float kMovedOut = 2e-3f;
 /// To tell whether a place is inside.
 constexpr std::size_t kInsideRays = 64;
 
+/// The box near an object beside its own, in which half of places_about() are.
+constexpr double kNearShare = 1.2;
+
 /// Directions even over the sphere along a spiral.
 template <std::size_t count>
 std::array<glm::vec3, count> spiral_directions()
@@ -165,6 +168,33 @@ std::vector<glm::vec3> places_of_cells(const AoGrid& grid, const Frame& frame)
 float alpha_of(const AoGrid& grid, std::size_t cell)
 {
     return moments_of(grid.store, &grid.values[cell * channels_of(grid.store)]).w;
+}
+
+/// 1 for places from which most of kInsideRays rays first meet the inner side of a surface, else 0.
+/// Unit frame. scene: of the object.
+std::vector<std::uint8_t> inside_object(const RayScene& scene, std::span<const glm::vec3> places)
+{
+    constexpr std::size_t kAtOnce = 4096;  // 8 MB of rays
+    static const auto directions = spiral_directions<kInsideRays>();
+    std::vector<std::uint8_t> is_inside(places.size(), 0);
+    std::vector<Ray> rays;
+    for (std::size_t begin = 0; begin < places.size(); begin += kAtOnce) {
+        const std::size_t end = std::min(begin + kAtOnce, places.size());
+        rays.clear();
+        for (std::size_t i = begin; i < end; ++i)
+            for (const glm::vec3 direction : directions)
+                rays.push_back({places[i], direction, std::numeric_limits<float>::infinity()});
+        const std::vector<ClosestHit> hits = closest_hits(scene, rays);
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto first =
+                hits.begin() + static_cast<std::ptrdiff_t>((i - begin) * kInsideRays);
+            const auto backs = std::count_if(first, first + kInsideRays, [](const ClosestHit& hit) {
+                return hit.triangle != ClosestHit::kNone && hit.is_back;
+            });
+            is_inside[i] = backs > static_cast<std::ptrdiff_t>(kInsideRays / 2) ? 1 : 0;
+        }
+    }
+    return is_inside;
 }
 
 /// Cells inside of the object take what is seen from its surface.
@@ -340,31 +370,6 @@ Box box_of_triangles(const Geometry& geometry)
             box.include(geometry.frame.centre +
                         geometry.frame.diagonal * glm::dvec3(geometry.positions[t[corner]]));
     return box;
-}
-
-std::vector<std::uint8_t> inside_object(const RayScene& scene, std::span<const glm::vec3> places)
-{
-    constexpr std::size_t kAtOnce = 4096;  // 8 MB of rays
-    static const auto directions = spiral_directions<kInsideRays>();
-    std::vector<std::uint8_t> is_inside(places.size(), 0);
-    std::vector<Ray> rays;
-    for (std::size_t begin = 0; begin < places.size(); begin += kAtOnce) {
-        const std::size_t end = std::min(begin + kAtOnce, places.size());
-        rays.clear();
-        for (std::size_t i = begin; i < end; ++i)
-            for (const glm::vec3 direction : directions)
-                rays.push_back({places[i], direction, std::numeric_limits<float>::infinity()});
-        const std::vector<ClosestHit> hits = closest_hits(scene, rays);
-        for (std::size_t i = begin; i < end; ++i) {
-            const auto first =
-                hits.begin() + static_cast<std::ptrdiff_t>((i - begin) * kInsideRays);
-            const auto backs = std::count_if(first, first + kInsideRays, [](const ClosestHit& hit) {
-                return hit.triangle != ClosestHit::kNone && hit.is_back;
-            });
-            is_inside[i] = backs > static_cast<std::ptrdiff_t>(kInsideRays / 2) ? 1 : 0;
-        }
-    }
-    return is_inside;
 }
 
 std::vector<Receiver> places_about(const Geometry& object, const AoGrid& box, const RayScene& scene,

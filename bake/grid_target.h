@@ -89,17 +89,11 @@ struct GridBake {
                                  const EngineSettings& engine, std::uint32_t check,
                                  const StageProgress& progress = {});
 
-/// 1 for places from which most of 64 rays first meet the inner side of a surface, else 0. Unit
-/// frame. scene: of the object.
-[[nodiscard]] std::vector<std::uint8_t> inside_object(const RayScene& scene,
-                                                      std::span<const glm::vec3> places);
-
 /// Places outside of the object, with normals of all directions, where a grid is measured: of two
-/// one is anywhere in the box, the other in kNearShare of the object's own. Offsets are 0.
+/// one is anywhere in the box, the other in 1.2 times the object's own. Offsets are 0.
 [[nodiscard]] std::vector<Receiver> places_about(const Geometry& object, const AoGrid& box,
                                                  const RayScene& scene, std::size_t count,
                                                  std::uint64_t seed);
-inline constexpr double kNearShare = 1.2;
 
 /// What a grid tells of a receiver in the object's unit frame.
 [[nodiscard]] float occlusion_at(const AoGrid& grid, const Frame& frame, const Receiver& receiver);

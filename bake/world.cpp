@@ -177,13 +177,19 @@ std::vector<Scene> read_all(std::span<const std::filesystem::path> paths,
     return scenes;
 }
 
+/// PartChoice::occluders as they stand: a moment is one of the inputs' animation.
+std::vector<Scene> read_others(const PartChoice& choice, ReadOptions reading)
+{
+    reading.moment.reset();
+    return read_all(choice.occluders, reading);
+}
+
 }  // namespace
 
 BakeWorld read_world(std::span<const std::filesystem::path> inputs, const NormalSettings& normals,
                      const PartChoice& choice, const ReadOptions& reading)
 {
-    return make_world(read_all(inputs, reading), read_all(choice.occluders, reading), normals,
-                      choice);
+    return make_world(read_all(inputs, reading), read_others(choice, reading), normals, choice);
 }
 
 Mesh mesh_of(Scene scene, const NormalSettings& normals, const PartChoice& choice,
@@ -192,7 +198,7 @@ Mesh mesh_of(Scene scene, const NormalSettings& normals, const PartChoice& choic
     std::vector<Scene> input;
     input.push_back(std::move(scene));
     return std::move(
-        make_world(std::move(input), read_all(choice.occluders, reading), normals, choice, frame)
+        make_world(std::move(input), read_others(choice, reading), normals, choice, frame)
             .meshes.front());
 }
 

@@ -63,7 +63,8 @@ struct BakeWorld {
                                    const NormalSettings& normals, const PartChoice& choice,
                                    const std::optional<Frame>& frame = {});
 
-/// Reads the files and makes the world of them. Throws as read_scene() too.
+/// Reads the files and makes the world of them. A moment is that of the inputs: others stand as
+/// they do. Throws as read_scene() too.
 [[nodiscard]] BakeWorld read_world(std::span<const std::filesystem::path> inputs,
                                    const NormalSettings& normals, const PartChoice& choice,
                                    const ReadOptions& reading = {});

@@ -94,8 +94,10 @@ fs::path result_in_folder(const BakeOptions& options, const fs::path& input)
 std::vector<Job> jobs_of(const BakeOptions& options)
 {
     std::error_code error;
-    if (options.inputs.size() > 1 && fs::is_regular_file(options.output, error))
-        throw UsageError(options.output + " is no folder, but several files are to be written.");
+    if (options.inputs.size() > 1 && !fs::is_directory(options.output, error) &&
+        (fs::path(options.output).has_extension() || fs::exists(options.output, error)))
+        throw UsageError(options.output +
+                         " is no folder, but several files are to be written: -o FOLDER/.");
     FilePlan files;
     for (const std::string& input : options.inputs)
         files.reads(input);

@@ -153,6 +153,8 @@ void print_report(const BakeReport& report)
                       : report.grid ? " about the object"
                                     : "");
     std::cout << "\n  read " << time(seconds.read);
+    if (const auto& motion = report.motion)
+        std::cout << ", pose " << time(motion->pose) << ", place " << time(motion->place);
     if (report.points)
         std::cout << ", points " << time(seconds.points);
     if (report.subdivision)

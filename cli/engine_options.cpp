@@ -2,6 +2,7 @@
 
 #include "bake/subdivide.h"
 #include "cli/commands.h"
+#include "cli/did_you_mean.h"
 #include "cli/value_checks.h"
 #include "reference/rays.h"
 #include "surfels/number_text.h"
@@ -291,8 +292,9 @@ float quality_of(const std::string& text, Engine engine)
     const float least = least_quality(engine);
     const float most = most_quality(engine);
     if (!number || *number < least || *number > most) {
+        const std::vector<std::string> words = {"draft", "good", "best"};
         throw UsageError("--quality: \"" + text + "\" is not draft, good, best or a number from " +
-                         exact(least) + " to " + exact(most) + ".");
+                         exact(least) + " to " + exact(most) + did_you_mean(text, words, "."));
     }
     return static_cast<float>(*number);
 }

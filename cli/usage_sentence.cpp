@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <string_view>
 #include <vector>
 
@@ -51,6 +52,10 @@ std::string unknown_option(const CLI::App& command, const std::string& word)
 /// What the program itself does not know: there is no command yet.
 std::string before_the_command(const CLI::App& app, const std::string& word)
 {
+    std::error_code error;
+    if (std::filesystem::exists(word, error))
+        return '"' + word + "\" is a file: a command stands before it, as in surfelao bake " +
+               word + " -o OUT or surfelao view " + word + '.';
     return is_option(word) ? name_in(word) + ": options stand behind the command, as in surfelao " +
                                  "bake IN -o OUT " + name_in(word) + '.'
                            : no_command_sentence(app, word);

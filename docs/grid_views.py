@@ -25,22 +25,6 @@ def grid_errors(figures):
     return table(["object", "masks", "cells hold", "moved out", "RMSE", "bias", "p95", "max"], rows)
 
 
-@view
-def grid_error(figures, name, setting, store):
-    """grid_error OBJECT draft|good|best cone|sh: its RMSE"""
-    scene = next(scene for scene in figures["grids"]["objects"] if scene["input"] == name)
-    row = next(row for row in scene["rows"]
-               if (row["setting"], row["store"], row["origin"]) == (setting, store, False))
-    return short(row["error"]["rmse"], 4)
-
-
-@view
-def grid_origin_error(figures, name):
-    """grid_origin_error OBJECT: the RMSE of the report's settings"""
-    scene = next(scene for scene in figures["grids"]["objects"] if scene["input"] == name)
-    return short(next(row["error"]["rmse"] for row in scene["rows"] if row["origin"]), 4)
-
-
 def seconds(value):
     return "" if value is None else fixed(value, 2 if value < 10 else 0)
 

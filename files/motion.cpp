@@ -30,8 +30,6 @@
 namespace surfelao {
 namespace {
 
-namespace fs = std::filesystem;
-
 /// A part this much smaller than its distance from the origin, or this much flatter than wide, has
 /// lost too many of a double's 16 digits for its shape to be told from its positions at rest.
 constexpr double kMostLost = 1e-6;
@@ -396,10 +394,6 @@ Motion::Motion(const Scene& rest, const std::string& animation)
     : impl_(std::make_unique<const Impl>(rest, animation))
 {
 }
-Motion::Motion(const fs::path& path, const std::string& animation)
-    : Motion(read_scene(path), animation)
-{
-}
 Motion::~Motion() = default;
 Motion::Motion(Motion&&) noexcept = default;
 Motion& Motion::operator=(Motion&&) noexcept = default;
@@ -458,11 +452,6 @@ std::vector<std::string> animations_of(const Scene& scene)
         names.push_back(name.is_string() ? name.get<std::string>() : std::string());
     }
     return names;
-}
-
-std::vector<std::string> animations_of(const fs::path& path)
-{
-    return animations_of(read_scene(path));
 }
 
 }  // namespace surfelao

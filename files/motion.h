@@ -14,7 +14,6 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,8 +41,6 @@ public:
     /// glTF, where it has no such animation, where that moves no node, and as read_scene() with a
     /// moment. O(keys + vertices of deformed parts).
     explicit Motion(const Scene& rest, const std::string& animation = {});
-    /// Of read_scene(path).
-    explicit Motion(const std::filesystem::path& path, const std::string& animation = {});
     ~Motion();
     Motion(Motion&&) noexcept;
     Motion& operator=(Motion&&) noexcept;
@@ -74,11 +71,7 @@ private:
     std::unique_ptr<const Impl> impl_;
 };
 
-/// Names of the animations of a glTF, "" where one has none; empty for other files. Reads the file.
-/// Throws InputError as read_scene().
-[[nodiscard]] std::vector<std::string> animations_of(const std::filesystem::path& path);
-
-/// The same of a scene that was read.
+/// Names of the animations of a glTF that was read, "" where one has none; empty for others.
 [[nodiscard]] std::vector<std::string> animations_of(const Scene& scene);
 
 }  // namespace surfelao

@@ -169,7 +169,8 @@ namespace {
 
 [[noreturn]] void refuse(std::string_view part, const char* wanted)
 {
-    throw InputError("camera: \"" + std::string(part) + "\" was found, " + wanted + " was wanted");
+    throw SettingsError("--camera: \"" + std::string(part) + "\" was found, " + wanted +
+                        " was wanted");
 }
 
 double parse_number(std::string_view part, std::string_view text)
@@ -240,8 +241,8 @@ Camera parse_camera(std::string_view text, const CameraWishes& wishes)
         }
     }
     if (eye && has_angles)
-        throw InputError(
-            "camera: eye= together with azimuth=, elevation= or distance= says two things");
+        throw SettingsError(
+            "--camera: eye= together with azimuth=, elevation= or distance= says two things");
 
     Camera camera = frame_points(wishes.points, wishes.up, wishes.aspect, direction, fovy_deg);
     if (target) {
@@ -252,7 +253,7 @@ Camera parse_camera(std::string_view text, const CameraWishes& wishes)
         camera.eye = *eye;
     camera.eye = camera.target + distance * (camera.eye - camera.target);
     if (glm::distance(camera.eye, camera.target) < 1e-6f)
-        throw InputError("camera: eye and target are the same place");
+        throw SettingsError("--camera: eye and target are the same place");
     return camera;
 }
 

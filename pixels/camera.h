@@ -85,7 +85,7 @@ struct CameraWishes {
 
 /// Reads "azimuth=30,elevation=20,distance=1.5,fov=35" or "eye=X:Y:Z,target=X:Y:Z,fov=35", any part
 /// of either. Angles in degrees, eye and target in the file's own units, distance as a multiple of
-/// the framed one. What is not said is framed on the points. Throws InputError with one sentence
+/// the framed one. What is not said is framed on the points. Throws SettingsError with one sentence
 /// for anything else: unknown names, numbers that are none or out of range, angles together with an
 /// eye.
 [[nodiscard]] Camera parse_camera(std::string_view text, const CameraWishes& wishes);

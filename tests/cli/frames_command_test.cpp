@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -94,6 +96,35 @@ TEST_F(FramesCommand, TellsWhatAFrameTookAndGoesOn)
     const auto resumed = nlohmann::json::parse(std::ifstream(folder_ / "report.json"));
     EXPECT_TRUE(resumed[0].contains("skipped") && resumed[3].contains("skipped"));
     EXPECT_TRUE(resumed[1].contains("motion"));
+}
+
+// What a file that occludes says is told of a sequence too.
+TEST_F(FramesCommand, KeepTheNotesOfOccluders)
+{
+    test::GltfMaker glass = test::square();
+    glass.add("materials", {{"name", "Glass"}, {"alphaMode", "BLEND"}});
+    glass.document["meshes"][0]["primitives"][0]["material"] = 0;
+    std::ofstream(folder_ / "glass.glb", std::ios::binary) << glass.glb();
+    const Outcome outcome = bake("f.%d.ply", {"--frames", "0:1", "--check", "0", "--occluders",
+                                              folder_ / "glass.glb", "--json", "-"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    for (const auto& frame : nlohmann::json::parse(outcome.out))
+        EXPECT_NE(frame["notes"].dump().find("glass.glb: material Glass, which light goes through"),
+                  std::string::npos)
+            << frame["notes"];
+}
+
+// --time is of the animation that is baked: a file without one occludes as it stands.
+TEST_F(FramesCommand, OccludersStandStill)
+{
+    std::ofstream(folder_ / "still.glb", std::ios::binary) << test::square().glb();
+    for (const Strings& at :
+         {Strings{"f.ply", "--time", "1"}, Strings{"f.%d.ply", "--frames", "0:1"}}) {
+        Strings more(at.begin() + 1, at.end());
+        more.insert(more.end(), {"--check", "0", "--occluders", folder_ / "still.glb"});
+        const Outcome outcome = bake(at.front(), more);
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+    }
 }
 
 TEST_F(FramesCommand, AreCompared)
@@ -184,6 +215,36 @@ TEST_F(FramesCommand, PicturesKeepTheCamera)
         EXPECT_EQ(covered, lower_first);  // where the square was seen it is seen, or the lid is
         EXPECT_GE(lower_last, lower_first);
     }
+}
+
+// A scene that is kept from frame to frame shows what rays show in each frame by itself.
+TEST_F(FramesCommand, PicturesShowEachMoment)
+{
+    const auto pictures = [&](const std::string& mode) {
+        const Outcome outcome = run(folder_.path(), {"render",     folder_ / "lid.glb",
+                                                     "-o",         folder_ / "f.%d.png",
+                                                     "--frames",   "0:1",
+                                                     "--fps",      "1",
+                                                     "--mode",     mode,
+                                                     "--width",    "64",
+                                                     "--height",   "64",
+                                                     "--samples",  "1",
+                                                     "--context",  "osmesa",
+                                                     "--up",       "z",
+                                                     "--no-ground"});
+        EXPECT_EQ(outcome.code, 0) << outcome.err;
+        return std::array{read_image(folder_ / "f.0.png"), read_image(folder_ / "f.1.png")};
+    };
+    const auto difference = [](const Image& a, const Image& b) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < a.pixels.size(); ++i)
+            sum += std::abs(static_cast<double>(a.pixels[i].x - b.pixels[i].x));
+        return sum / static_cast<double>(a.pixels.size());
+    };
+    const auto kept = pictures("visibility"), alone = pictures("rays");
+    const double moved = difference(kept[0], kept[1]);
+    for (std::size_t frame = 0; frame < 2; ++frame)
+        EXPECT_LT(difference(kept[frame], alone[frame]), 0.1 * moved) << frame;
 }
 
 TEST_F(FramesCommand, RefusesWhatItCannotMean)

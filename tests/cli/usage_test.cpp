@@ -74,6 +74,9 @@ TEST_F(Usage, WordsThatAreNotKnownAreNamedWithTheNearestOnes)
     expect_refusal({"--engine", "MASKS"},
                    "--engine: \"MASKS\" is none of masks, disks, rays: did you mean masks?");
     expect_refusal({"--engine", "magic"}, "--engine: \"magic\" is none of masks, disks, rays.");
+    expect_refusal({"--quality", "bset"},
+                   "--quality: \"bset\" is not draft, good, best or a number from -1 to 4: did you "
+                   "mean best?");
     expect_sentence({"compare", in(), "--engines", "masks,discs"},
                     "--engines: \"discs\" is none of masks, disks, rays, grid, ssao-disc, "
                     "ssao-sphere, vo, hbao, gtao, bitmask: did you mean disks?");
@@ -112,6 +115,23 @@ TEST_F(Usage, NumbersAreFiniteWholeWhereTheyCountAndInTheirRange)
     }
     for (const char* text : {"2.5", "1e2", "-1", "010", "99999999999999999999"})
         refused("--threads", text, "a whole number from 1 to 1024");
+}
+
+// What only the file can tell is wrong usage all the same.
+TEST_F(Usage, SettingsThatAreNotForTheFileAreWrongUsage)
+{
+    const std::string picture = folder_ / "x.png";
+    const std::string columns = in() + ": columns are told of .xyz .pts .txt .asc only";
+    expect_sentence({"info", in(), "--columns", "x y z"}, columns);
+    expect_sentence({"render", in(), "-o", picture, "--columns", "x y z"}, columns);
+    expect_sentence({"render", in(), "-o", picture, "--camera", "fov=nan", "--context", "osmesa"},
+                    "--camera: \"fov=nan\" was found, a number was wanted");
+    expect_sentence({"bake", in(), "-o", folder_ / "g.png", "--at", "grid", "--crease", "30"},
+                    "--normals, --crease, --values, --offset, --viewpoint and --occluder-spacing "
+                    "are not for --at grid: it asks about the object, not on it.");
+    expect_sentence({"compare", in(), "--at", "grid", "--size", "64"},
+                    "Of the options of maps only --depth is for --at grid.");
+    EXPECT_EQ(run({"compare", in(), "--at", "grid", "--normals", "flat"}).code, 2);
 }
 
 TEST_F(Usage, FoldersOfOutputsAreMadeAndTakenBackWhereTheRunFails)
@@ -158,7 +178,7 @@ TEST_F(Usage, TheCommonMistakesAreAnsweredAsTheirPageSays)
         std::getline(page, sentence);
         EXPECT_EQ("    " + said, sentence + '\n') << line;
     }
-    EXPECT_EQ(count, 11);
+    EXPECT_EQ(count, 13);
 }
 
 }  // namespace

@@ -180,7 +180,7 @@ TEST(ParseCamera, RefusesWhatItDoesNotUnderstand)
          {"azimut=3", "azimuth", "azimuth=", "azimuth=3x", "azimuth=nan", "elevation=91",
           "distance=0", "fov=0", "fov=171", "eye=1:2", "eye=1:2:3:4", "eye=1:2:3,azimuth=4",
           "eye=1:2:3,target=1:2:3", ",", "azimuth=1,,elevation=2", "eye=1e400:0:0"}) {
-        EXPECT_THROW((void)parse_camera(text, wishes()), InputError) << text;
+        EXPECT_THROW((void)parse_camera(text, wishes()), SettingsError) << text;
     }
 }
 
