@@ -70,10 +70,8 @@ std::vector<glm::uvec3> merged(const Geometry& geometry, const Surface& surface,
             t = {t.y, t.z, t.x};
         triangles.push_back(t);
     }
-    const auto key = [](const glm::uvec3& t) { return std::tuple(t.x, t.y, t.z); };
-    std::ranges::sort(triangles, {}, key);
-    const auto rest = std::ranges::unique(triangles, {}, key);
-    triangles.erase(rest.begin(), rest.end());
+    std::ranges::sort(triangles, {}, [](const glm::uvec3& t) { return std::tuple(t.x, t.y, t.z); });
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
     return triangles;
 }
 

@@ -26,7 +26,7 @@ namespace surfelao {
                                                        const Surface& surface, std::size_t most);
 
 /// What a moving model of any size has at most.
-inline constexpr std::size_t kCoarseTriangles = 60'000;
+inline constexpr std::size_t kCoarseTriangles = 40'000;
 
 /// How much of a picture is drawn.
 struct Detail {
@@ -36,8 +36,8 @@ struct Detail {
 /// From fine to coarse.
 inline constexpr std::array<Detail, 4> kDetails = {{{1, true}, {1, false}, {2, false}, {4, false}}};
 
-/// A picture may take so long while something moves: 20 a second.
-inline constexpr double kMovingMs = 50.0;
+/// A picture may take so long while something moves: with what else a frame takes, 15 a second.
+inline constexpr double kMovingMs = 40.0;
 /// What has not moved for so long rests.
 inline constexpr double kRestSeconds = 0.15;
 

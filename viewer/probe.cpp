@@ -50,6 +50,22 @@ std::optional<Occlusion> told_by(std::span<const Occlusion> values, std::uint32_
     return vertex < values.size() ? std::optional(values[vertex]) : std::nullopt;
 }
 
+/// In the file's units: the file's own numbers where nothing is moved.
+glm::dvec3 position_of(const CellView& view, const glm::uvec3& corners, const glm::vec3& shares,
+                       bool at_vertex, const Reading& reading)
+{
+    const Mesh& mesh = *view.model()->mesh;
+    const Frame& frame = mesh.geometry.frame;
+    if (view.is_moved())
+        return frame.centre + frame.diagonal * glm::dvec3(reading.place);
+    const std::vector<glm::dvec3>& positions = mesh.scene.positions;
+    if (at_vertex)
+        return positions[reading.vertex];
+    return static_cast<double>(shares.x) * positions[corners.x] +
+           static_cast<double>(shares.y) * positions[corners.y] +
+           static_cast<double>(shares.z) * positions[corners.z];
+}
+
 void read_values(const CellView& view, const Cell& cell, glm::ivec2 pixel, Reading& reading)
 {
     const SessionState& state = view.session().state();
@@ -90,7 +106,8 @@ Reading read_at(const CellView& view, const Cell& cell, const SurfacePoint& poin
     reading.vertex = corners[nearest];
     reading.triangle = geometry.scene_triangle(point.triangle);
     reading.part = part_at(model.mesh->scene, reading.triangle);
-    if (where_of(cell) == Where::vertices) {
+    const bool at_vertex = where_of(cell) == Where::vertices;
+    if (at_vertex) {
         reading.place = positions[reading.vertex];
         reading.normal = normals[wedges[nearest]];
     } else {
@@ -102,8 +119,7 @@ Reading read_at(const CellView& view, const Cell& cell, const SurfacePoint& poin
         const float length = glm::length(normal);
         reading.normal = length > 0.0f ? normal / length : normal;
     }
-    const Frame& frame = geometry.frame;
-    reading.position = frame.centre + frame.diagonal * glm::dvec3(reading.place);
+    reading.position = position_of(view, corners, shares, at_vertex, reading);
     read_values(view, cell, pixel, reading);
     return reading;
 }

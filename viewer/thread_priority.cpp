@@ -8,7 +8,7 @@
 namespace surfelao {
 namespace {
 
-constexpr int kNice = 10;  // a tenth of the time of a thread that draws
+constexpr int kNice = 5;  // a third of the time of a thread that draws
 
 void lower_thread_priority()
 {
