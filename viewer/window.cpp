@@ -330,7 +330,7 @@ private:
         if (is_first && has_view())
             frame_all();
         apply(input);
-        if (input.save_picture)
+        if (input.files.save == Saved::picture || input.reply != SaveReply::none)
             moved_at_ = -kRestSeconds;  // whole, at once
         choose_detail();
 
