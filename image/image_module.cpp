@@ -26,15 +26,21 @@ std::string fault_of_size(const OIIO::ImageSpec& spec)
     return {};
 }
 
-/// From the file, or from `memory` in the format that `path` has.
-std::string read(const std::string& path, Image& image, OIIO::Filesystem::IOProxy* memory = nullptr)
+/// From the file, or from `memory`: then in that format of OpenImageIO's, where it is told.
+std::string read(const std::string& path, Image& image, OIIO::Filesystem::IOProxy* memory = nullptr,
+                 const std::string& format = {})
 {
     OIIO::ImageSpec wishes;
     wishes.attribute("oiio:UnassociatedAlpha", 1);
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &wishes, memory);
+    // ImageInput::open() says of some pictures in memory that it cannot open the file
+    const std::unique_ptr<OIIO::ImageInput> input =
+        format.empty() ? OIIO::ImageInput::open(path, &wishes, memory)
+                       : OIIO::ImageInput::create(format);
     if (!input)
         return OIIO::geterror();
-    const OIIO::ImageSpec spec = input->spec();
+    OIIO::ImageSpec spec = input->spec();
+    if (!format.empty() && (!input->set_ioproxy(memory) || !input->open(path, spec, wishes)))
+        return input->has_error() ? input->geterror() : "is no " + format;
     if (std::string fault = fault_of_size(spec); !fault.empty())
         return fault;
 
@@ -67,7 +73,9 @@ std::string read(const std::string& path, Image& image, OIIO::Filesystem::IOProx
 std::string read_bytes(std::string_view bytes, Image& image)
 {
     OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
-    return read(bytes.starts_with("\xff\xd8") ? "memory.jpg" : "memory.png", image, &memory);
+    if (bytes.starts_with("\xff\xd8"))
+        return read("memory.jpg", image, &memory, "jpeg");
+    return read("memory.png", image, &memory, bytes.starts_with("\x89PNG") ? "png" : "");
 }
 
 std::string write(const std::string& path, const Image& image, bool alpha)

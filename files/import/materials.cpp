@@ -73,6 +73,9 @@ int wrap_of(aiTextureMapMode mode)
 std::string file_beside(const fs::path& folder, std::string name)
 {
     std::ranges::replace(name, '\\', '/');
+    // X3D has a list of them in quotes, the best first
+    name.erase(0, std::min(name.find_first_not_of('"'), name.size()));
+    name.erase(std::min(name.find('"'), name.size()));
     const fs::path path = fs::path(name).lexically_normal();
     std::error_code error;
     const bool is_found = path.is_relative() && fs::exists(folder / path, error);
@@ -262,8 +265,8 @@ void add_materials(const aiScene& scene, const fs::path& folder, tinygltf::Model
         model.materials.push_back(std::move(material));
     }
     if (textures.lost_count() > 0)
-        notes.push_back(std::to_string(textures.lost_count()) +
-                        " textures in the file are neither PNG nor JPEG and are left out");
+        notes.push_back("textures in the file that are neither PNG nor JPEG and are left out: " +
+                        std::to_string(textures.lost_count()));
 }
 
 }  // namespace surfelao
