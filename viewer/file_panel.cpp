@@ -96,8 +96,8 @@ void FilePanel::open_list(const FileLists& files, FileWishes& wishes)
         ImGui::BeginDisabled(file == files.shown);
         if (ImGui::SmallButton("x"))
             wishes.forget = file;
-        tip("take it off the list; the one that is shown stays");
         ImGui::EndDisabled();
+        tip("take it off the list; the one that is shown stays");
         ImGui::PopID();
     }
     ImGui::EndListBox();
@@ -114,8 +114,8 @@ void FilePanel::open_widgets(const FileLists& files, FileWishes& wishes)
     ImGui::BeginDisabled(files.recent.empty());
     if (ImGui::Button("Recent"))
         ImGui::OpenPopup("recent");
-    tip("the files that were opened last, at most ten that are still there");
     ImGui::EndDisabled();
+    tip("the files that were opened last, at most ten that are still there");
     if (ImGui::BeginPopup("recent")) {
         recent(files, wishes);
         ImGui::EndPopup();

@@ -115,14 +115,14 @@ void MotionPanel::widgets(double draw_ms)
     ImGui::BeginDisabled(!mover_.is_moved());
     if (ImGui::SmallButton("reset all"))
         mover_.reset_all();
-    tip("all parts go back to where the file has them");
     ImGui::EndDisabled();
+    tip("all parts go back to where the file has them");
     ImGui::SameLine();
     ImGui::BeginDisabled(!mover_.can_undo());
     if (ImGui::SmallButton("undo (Z)"))
         mover_.undo();
-    tip("takes back the last move");
     ImGui::EndDisabled();
+    tip("takes back the last move");
     if (!mover_.animations().empty())
         playing();
     figures(draw_ms);
@@ -198,8 +198,8 @@ void MotionPanel::numbers(std::uint32_t movable)
         mover_.remember();
         mover_.set_move(movable, {});
     }
-    tip("this part goes back to where the file has it");
     ImGui::EndDisabled();
+    tip("this part goes back to where the file has it");
     ImGui::SameLine();
 }
 
