@@ -82,7 +82,6 @@ TEST_F(MapCommand, RefusesWhatItCannotDo)
           {{"in.obj", "-o", "x.obj", "--at", "texels", "--charts", "blended"}, 1, "from glTF"},
           {{"in.obj", "-o", "x.png", "--size", "0"}, 2, "--size"},
           {{"in.obj", "-o", "x.png", "--size", "65536"}, 2, "--size"},
-          {{"in.obj", "-o", "none/x.png"}, 1, "there is no folder"},
           {{"in.obj", "-o", "x.png", "--depth", "32"}, 1, "8 or 16 bits"},
           {{"in.obj", "-o", "x.ply", "--size", "64"}, 2, "Options of maps"},
           {{"in.obj", "-o", "x.png", "--uv", "new"}, 2, "--uv new"},

@@ -154,11 +154,10 @@ TEST_F(RenderCommand, RefusesWhatCannotBeDoneInOneSentence)
         EXPECT_FALSE(fs::exists(folder_ / output));
     };
     refused(1, "written as .png, .jpg or .exr", "x.bmp", {});
-    refused(1, "there is no folder", "none/x.png", {});
     refused(1, "none.hdr: no such file", "x.png", {"--environment", "none.hdr"});
     refused(1, "cannot be read as a picture", "x.png",
             {"--environment", (folder_ / "a.obj").string()});
-    refused(1, "camera: \"azimuth=x\"", "x.png", {"--camera", "azimuth=x"});
+    refused(2, "--camera: \"azimuth=x\"", "x.png", {"--camera", "azimuth=x"});
     refused(2, "only for --mode environment", "x.png",
             {"--environment", "sky.hdr", "--mode", "rays"});
     refused(2, "--reference-rays must be an even number", "x.png", {"--reference-rays", "15"});
