@@ -308,9 +308,7 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     enter(progress, "read");
     Stopwatch watch;
     Scene scene = read_scene(settings.input, settings.reading);
-    std::vector<Scene> others;
-    for (const fs::path& path : settings.parts.occluders)
-        others.push_back(read_scene(path, settings.reading));
+    const std::vector<Scene> others = read_others(settings.parts, settings.reading);
     return bake_read(std::move(scene), others, settings, watch, progress).report;
 }
 

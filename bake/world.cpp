@@ -177,14 +177,13 @@ std::vector<Scene> read_all(std::span<const std::filesystem::path> paths,
     return scenes;
 }
 
-/// PartChoice::occluders as they stand: a moment is one of the inputs' animation.
+}  // namespace
+
 std::vector<Scene> read_others(const PartChoice& choice, ReadOptions reading)
 {
     reading.moment.reset();
     return read_all(choice.occluders, reading);
 }
-
-}  // namespace
 
 BakeWorld read_world(std::span<const std::filesystem::path> inputs, const NormalSettings& normals,
                      const PartChoice& choice, const ReadOptions& reading)

@@ -63,6 +63,10 @@ struct BakeWorld {
                                    const NormalSettings& normals, const PartChoice& choice,
                                    const std::optional<Frame>& frame = {});
 
+/// The files of PartChoice::occluders as they stand: a moment is one of the inputs' animation.
+/// Throws as read_scene().
+[[nodiscard]] std::vector<Scene> read_others(const PartChoice& choice, ReadOptions reading);
+
 /// Reads the files and makes the world of them. A moment is that of the inputs: others stand as
 /// they do. Throws as read_scene() too.
 [[nodiscard]] BakeWorld read_world(std::span<const std::filesystem::path> inputs,

@@ -4,6 +4,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <string>
+
 namespace surfelao {
 namespace {
 
@@ -14,6 +17,19 @@ constexpr const char* kAbout =
 
 constexpr const char* kExitCodes =
     "Exit code: 0 done, 1 failed, 2 wrong usage, 128 + signal when interrupted.";
+
+/// "a|b:{a,b}" as "a|b": what an option takes is said once.
+void say_choices_once(CLI::Option& option)
+{
+    const std::string said = option.get_type_name();
+    const std::size_t colon = said.find(":{");
+    if (colon == std::string::npos || said.back() != '}')
+        return;
+    std::string words = said.substr(colon + 2, said.size() - colon - 3);
+    std::ranges::replace(words, ',', '|');
+    if (words == said.substr(0, colon))
+        option.get_validator()->description("");
+}
 
 }  // namespace
 
@@ -28,6 +44,9 @@ void add_commands(CLI::App& app, Work& work)
          {add_bake_command, add_compare_command, add_info_command, add_merge_command,
           add_render_command, add_view_command, add_help_command})
         add(app, work);
+    for (CLI::App* command : app.get_subcommands({}))
+        for (CLI::Option* option : command->get_options())
+            say_choices_once(*option);
 }
 
 }  // namespace surfelao

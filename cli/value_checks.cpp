@@ -3,6 +3,8 @@
 #include "cli/did_you_mean.h"
 #include "surfels/number_text.h"
 
+#include <CLI/CLI.hpp>
+
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -38,43 +40,49 @@ std::string list_of(const std::vector<std::string>& words)
 
 ValueCheck one_of(std::vector<std::string> words)
 {
-    return [words = std::move(words)](const std::string& text) {
+    const std::string set = CLI::detail::generate_set(words);
+    const auto check = [words = std::move(words)](const std::string& text) {
         for (const std::string& word : words)
             if (text == word)
                 return std::string();
         return '"' + text + "\" is none of " + list_of(words) + did_you_mean(text, words, "");
     };
+    return {check, set};
 }
 
 ValueCheck number_from(double low, double high)
 {
-    return [low, high](const std::string& text) {
+    const std::string range = exact(low) + " to " + exact(high);
+    const auto check = [low, high, range](const std::string& text) {
         const auto value = whole_text_as<double>(text);
         return value && *value >= low && *value <= high  // nan is neither
                    ? std::string()
-                   : refusal(text, "a number from " + exact(low) + " to " + exact(high));
+                   : refusal(text, "a number from " + range);
     };
+    return {check, range};
 }
 
 ValueCheck whole_from(std::int64_t low, std::int64_t high)
 {
-    return [low, high](const std::string& text) {
+    const std::string range = std::to_string(low) + " to " + std::to_string(high);
+    const auto check = [low, high, range](const std::string& text) {
         const auto value = whole_text_as<std::int64_t>(text);
         const bool is_octal = text.size() > 1 && text.front() == '0';  // to who reads it next
         return value && *value >= low && *value <= high && !is_octal
                    ? std::string()
-                   : refusal(text, "a whole number from " + std::to_string(low) + " to " +
-                                       std::to_string(high));
+                   : refusal(text, "a whole number from " + range);
     };
+    return {check, range};
 }
 
 ValueCheck number_above_zero()
 {
-    return [](const std::string& text) {
+    const auto check = [](const std::string& text) {
         const auto value = whole_text_as<double>(text);
         return value && *value > 0.0 && std::isfinite(*value) ? std::string()
                                                               : refusal(text, "a number above 0");
     };
+    return {check, "above 0"};
 }
 
 }  // namespace surfelao

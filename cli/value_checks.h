@@ -1,17 +1,20 @@
 /// value_checks.h: what the value of an option may be, and the sentence that refuses another.
 ///
-/// For CLI::Option::check(): each returns a function that says nothing of a good value. nan, inf
-/// and numbers with something behind them are refused by all.
+/// For CLI::Option::check(). nan, inf and numbers with something behind them are refused by all.
+/// Each says of itself what it takes ("{cpu,gpu}", "0 to 180"), for help, manuals and completions.
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
+namespace CLI {
+class Validator;
+}
+
 namespace surfelao {
 
-using ValueCheck = std::function<std::string(const std::string&)>;
+using ValueCheck = CLI::Validator;
 
 /// One of these words; another that is near to one is asked whether it was meant.
 [[nodiscard]] ValueCheck one_of(std::vector<std::string> words);

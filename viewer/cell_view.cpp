@@ -128,6 +128,12 @@ std::span<const Occlusion> CellView::vertex_values() const
     return std::span(session_.occlusion()).first(drawn_->geometry().positions.size());
 }
 
+bool CellView::can_show(Colors colors) const
+{
+    return has_values() || colors == Colors::levels || colors == Colors::textured ||
+           (colors == Colors::rays && has_reference());
+}
+
 bool CellView::has_values() const
 {
     return has_pixels() || (moved_ ? moved_has_values_ : session_.state().is_solved);

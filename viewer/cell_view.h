@@ -69,6 +69,8 @@ public:
     std::span<const Occlusion> vertex_values() const;
     /// At vertices, in a map, or at pixels: there is something to show.
     bool has_values() const;
+    /// The same, or the colours need no answer.
+    bool can_show(Colors colors) const;
 
     /// Once a frame, before it is drawn. A model must be there. True where other values lie on the
     /// pixels than before. view: as it is drawn; Colors::radius has values of its own, and what is

@@ -2,6 +2,7 @@
 
 #include "image/lettering.h"
 #include "surfels/srgb.h"
+#include "viewer/atlas_picture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,6 +42,17 @@ void draw_labels(Image& image, const PaneLabels& labels, float line)
 }
 
 }  // namespace
+
+Image flat_map(const Pane& pane, const CellView& cell, const ViewOptions& view)
+{
+    const SessionState& state = cell.session().state();
+    const ModelMap* rays = state.map_reference.get();
+    const SurfaceData data{.layout = state.layout.get(),
+                           .map = rays && pane.as.wipe == 0.0f ? rays : state.map.get(),
+                           .reference = rays,
+                           .paint = cell.paint()};
+    return atlas_picture(*state.model->mesh, data, view, pane.size().width, pane.size().height);
+}
 
 Image picture_of(std::span<const Pane> panes, const PaneLabels& labels, float line)
 {

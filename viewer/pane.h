@@ -5,6 +5,7 @@
 #include "gpu/objects.h"
 #include "image/image.h"
 #include "pixels/pixel_engine.h"
+#include "viewer/cell_view.h"
 #include "viewer/renderer.h"
 #include "viewer/sample_sum.h"
 
@@ -34,6 +35,9 @@ struct Pane {
     Framebuffer target;
     SampleSum sum;
 };
+
+/// The map of a cell in place of the model; the rays' where the pane shows them alone.
+[[nodiscard]] Image flat_map(const Pane& pane, const CellView& cell, const ViewOptions& view);
 
 /// What stands on both sides of a line; empty where there is no line.
 struct PaneLabels {

@@ -4,7 +4,6 @@
 #include "image/image_file.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
-#include "viewer/atlas_picture.h"
 #include "viewer/cell_view.h"
 #include "viewer/coarse.h"
 #include "viewer/motion_panel.h"
@@ -29,9 +28,9 @@
 namespace surfelao {
 namespace {
 
-constexpr int kMostSamples = 32;       // a view at rest is done then
-constexpr double kPollSeconds = 0.03;  // while something runs in the background
-constexpr double kIdleSeconds = 0.5;
+constexpr int kMostSamples = 32;  // a view at rest is done then
+constexpr double kPollSeconds = 0.03,
+                 kIdleSeconds = 0.5;      // something runs in the background, or not
 constexpr double kMovingSeconds = 0.004;  // while something moves: little beside a picture
 constexpr int kEchoFrames = 4;  // after an event: widgets take some until they stand still
 
@@ -361,10 +360,7 @@ private:
             options_for(of_right ? right_cell(panel_state_) : panel_state_.left, panel_state_.view);
         if (cell.is_moved() && needs_reference(view))
             view.colors = Colors::visibility;
-        const bool has_values = cell.has_values() || view.colors == Colors::levels ||
-                                view.colors == Colors::textured ||
-                                (view.colors == Colors::rays && cell.has_reference());
-        if (!has_values)
+        if (!cell.can_show(view.colors))
             view.colors = Colors::normals;
         view.coarse = !detail().is_whole;
         return view;
@@ -420,18 +416,6 @@ private:
         }
         cell.draw_frame(pane.target, camera_, view, sample_shift(pane.sum.count()));
         pane.sum.add(pane.target, detail().pixel);
-    }
-
-    /// The rays' where the pane shows them alone.
-    static Image flat_map(const Pane& pane, const CellView& cell, const ViewOptions& view)
-    {
-        const SessionState& state = cell.session().state();
-        const ModelMap* rays = state.map_reference.get();
-        const SurfaceData data{.layout = state.layout.get(),
-                               .map = rays && pane.as.wipe == 0.0f ? rays : state.map.get(),
-                               .reference = rays,
-                               .paint = cell.paint()};
-        return atlas_picture(*state.model->mesh, data, view, pane.size().width, pane.size().height);
     }
 
     PanelFigures figures() const

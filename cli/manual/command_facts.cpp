@@ -60,17 +60,6 @@ bool is_literal(const std::string& word)
     });
 }
 
-/// "FLOAT in [0 - 180]" as "0 to 180"
-std::string range_of(const std::string& check)
-{
-    const std::size_t open = check.find(" in ["), between = check.find(" - ");
-    if (open == std::string::npos || between == std::string::npos || check.back() != ']')
-        return check == "POSITIVE" ? "above 0" : check;
-    const std::size_t first = open + 5;
-    return check.substr(first, between - first) + " to " +
-           check.substr(between + 3, check.size() - between - 4);
-}
-
 /// "ply" and "glb" of "(.ply, .glb)"
 std::vector<std::string> extensions_in(const std::string& text)
 {
@@ -129,7 +118,7 @@ void read_value(CLI::Option& option, OptionFacts& facts)
             for (const std::string& word : split(check.substr(1, check.size() - 2), ','))
                 add_new(facts.choices, word);
         } else {
-            facts.range = range_of(check);
+            facts.range = check;
         }
     }
     facts.takes_files = has_word(facts.value, {"FILE", "OUT", "IN", "PART"});
