@@ -118,9 +118,8 @@ private:
 
     void open(const std::filesystem::path& path)
     {
-        PartChoice& parts =
-            panel_state_.left.settings.parts;  // names are of the file that is shown
-        parts.exclude = parts.receivers = {};
+        PartChoice& parts = panel_state_.left.settings.parts;
+        parts.exclude = parts.receivers = {};  // names of the file that was shown
         const bool is_input = whole_path(path) == whole_path(options_.input);
         const ReadOptions reading = is_input ? options_.reading : ReadOptions{};
         mover_.begin_at(reading.moment);
