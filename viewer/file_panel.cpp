@@ -101,6 +101,10 @@ void FilePanel::open_list(const FileLists& files, FileWishes& wishes)
         ImGui::PopID();
     }
     ImGui::EndListBox();
+    bool together = files.are_together;
+    if (ImGui::Checkbox("in one world", &together))
+        wishes.together = together;
+    tip("all files of the list occlude the one that is shown, each in its own coordinates");
 }
 
 void FilePanel::open_widgets(const FileLists& files, FileWishes& wishes)

@@ -18,6 +18,7 @@ struct FileLists {
     std::span<const std::filesystem::path> recent;  ///< of any, the last first
     std::filesystem::path shown;                    ///< of `open`; empty where nothing is shown
     UpAxis up = UpAxis::y;                          ///< of what is shown and opened
+    bool are_together = false;                      ///< OpenFiles::are_together
 };
 
 /// What the user wants of files in a frame.
@@ -26,6 +27,7 @@ struct FileWishes {
     std::filesystem::path forget;       ///< of those that are open: it leaves the list
     std::filesystem::path environment;  ///< a panorama
     std::optional<UpAxis> up;
+    std::optional<bool> together;
     std::optional<Saved> save;  ///< to the path of its kind
 };
 

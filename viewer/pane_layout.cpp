@@ -1,5 +1,7 @@
 #include "viewer/pane_layout.h"
 
+#include <algorithm>
+
 namespace surfelao {
 
 std::vector<PaneWish> wanted_panes(const Rect& part, Beside beside, float wipe, bool traced,
@@ -17,6 +19,24 @@ std::vector<PaneWish> wanted_panes(const Rect& part, Beside beside, float wipe, 
                 {part, {part.x + line, part.y, part.width - line, part.height}, 1.0f, true}};
     }
     return {{part, part, traced && beside == Beside::wipe ? wipe : 1.0f}};
+}
+
+bool is_in_place(const Pane& pane, const PaneWish& wish)
+{
+    const Rect &a = pane.as.place, &b = wish.place;
+    return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height &&
+           pane.as.right == wish.right;
+}
+
+std::vector<Rect> places_of(std::span<const Pane> panes)
+{
+    std::vector<Rect> places;
+    for (const Pane& pane : panes) {
+        const Rect& own = pane.as.place;
+        if (std::ranges::find(places, own.x, &Rect::x) == places.end())
+            places.push_back(own);
+    }
+    return places;
 }
 
 PictureSize drawn_size(const Pane& pane, const Detail& detail)

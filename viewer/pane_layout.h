@@ -5,6 +5,7 @@
 #include "viewer/pane.h"
 #include "viewer/panel.h"
 
+#include <span>
 #include <vector>
 
 namespace surfelao {
@@ -13,6 +14,11 @@ namespace surfelao {
 /// reference. One that is not there yet is not shown instead of the result.
 [[nodiscard]] std::vector<PaneWish> wanted_panes(const Rect& part, Beside beside, float wipe,
                                                  bool traced, bool right);
+
+/// Whether it stands where it is wanted, with what is wanted.
+[[nodiscard]] bool is_in_place(const Pane& pane, const PaneWish& wish);
+/// Each once: pictures of a wipe lie over each other.
+[[nodiscard]] std::vector<Rect> places_of(std::span<const Pane> panes);
 
 /// Of what is drawn for a pane.
 [[nodiscard]] PictureSize drawn_size(const Pane& pane, const Detail& detail);

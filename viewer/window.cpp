@@ -9,6 +9,7 @@
 #include "viewer/motion_panel.h"
 #include "viewer/mover.h"
 #include "viewer/native_window.h"
+#include "viewer/open_files.h"
 #include "viewer/pane.h"
 #include "viewer/pane_labels.h"
 #include "viewer/pane_layout.h"
@@ -48,16 +49,17 @@ public:
           panel_(window),
           environment_(options.environment),
           recent_(options.recent_list),
-          up_(options.up)
+          up_(options.up),
+          open_files_(options.panel.left.settings.parts.occluders)
     {
         if (environment_)
             left_.renderer().set_environment(*environment_);
         for (const std::filesystem::path& path : options.other_inputs)
             saver_.add_input(path);
         if (!options.input.empty())
-            list_open(options.input);
+            add_open(options.input);
         for (const std::filesystem::path& path : options.more_inputs)
-            list_open(path);
+            add_open(path);
         panel_state_.wants_reference |= needs_reference(panel_state_);
         left_.session().solve(panel_state_.left.settings);
         mover_.begin_at(options.reading.moment);
@@ -112,13 +114,14 @@ private:
         if (dropped.empty())
             return;
         for (const std::filesystem::path& path : dropped)
-            list_open(path);
+            add_open(path);
         open(dropped.front());
     }
 
     void open(const std::filesystem::path& path)
     {
         PartChoice& parts = panel_state_.left.settings.parts;
+        parts.occluders = open_files_.occluders_of(whole_path(path));
         parts.exclude = parts.receivers = {};  // names of the file that was shown
         const bool is_input = whole_path(path) == whole_path(options_.input);
         const ReadOptions reading = is_input ? options_.reading : ReadOptions{};
@@ -126,10 +129,11 @@ private:
         left_.session().open(path, up_, panel_state_.left.settings, reading);
     }
 
-    void list_open(const std::filesystem::path& path)
+    void add_open(const std::filesystem::path& path)
     {
-        if (std::ranges::find(open_files_, whole_path(path)) == open_files_.end())
-            open_files_.push_back(whole_path(path));
+        open_files_.add(whole_path(path));
+        if (open_files_.are_together)
+            saver_.add_input(path);
     }
 
     const SessionState& state() const { return left_.session().state(); }
@@ -148,7 +152,7 @@ private:
                 times_ = {};
                 note_.clear();
                 saver_.add_input(state().path);
-                list_open(state().path);
+                add_open(state().path);
                 recent_.add(state().path);
                 glfwSetWindowTitle(window_,
                                    (state().path.filename().string() + " - surfelao").c_str());
@@ -211,7 +215,6 @@ private:
     }
 
     CellView& view_of_pane(const Pane& pane) { return pane.as.right ? *right_ : left_; }
-
     bool shows_atlas() const { return panel_state_.shows_atlas && state().layout; }
     /// What moves leaves its time to the engine.
     int most_samples() const
@@ -276,21 +279,15 @@ private:
         const std::vector<PaneWish> wanted =
             wanted_panes(part, panel_state_.beside, panel_state_.wipe, left_.has_reference(),
                          right_.has_value());
-        const auto same = [](const Pane& pane, const PaneWish& wish) {
-            const Rect &a = pane.as.place, &b = wish.place;
-            return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height &&
-                   pane.as.right == wish.right;
-        };
-        if (!std::equal(panes_.begin(), panes_.end(), wanted.begin(), wanted.end(), same)) {
+        if (!std::ranges::equal(panes_, wanted, is_in_place)) {
             panes_.clear();
             level_ = 0;
             for (const PaneWish& wish : wanted)
                 panes_.emplace_back(left_.renderer(), context_, wish);
         }
-        for (std::size_t i = 0; i < wanted.size(); ++i) {
+        for (std::size_t i = 0; i < wanted.size(); ++i)
             if (std::exchange(panes_[i].as, wanted[i]).wipe != wanted[i].wipe)
                 restart();
-        }
     }
 
     /// What lies on the pixels of the pictures.
@@ -365,18 +362,12 @@ private:
         return view;
     }
 
-    /// Each place once: pictures of a wipe lie over each other.
     MotionView motion_view() const
     {
         MotionView view{.camera = camera_, .pictures = {}, .positions = {}, .triangles = {}};
         if (!has_view() || shows_atlas())
             return view;
-        for (const Pane& pane : panes_) {
-            const bool is_new = std::ranges::none_of(
-                view.pictures, [&](const Rect& place) { return place.x == pane.as.place.x; });
-            if (is_new)
-                view.pictures.push_back(pane.as.place);
-        }
+        view.pictures = places_of(panes_);
         view.positions = left_.positions();
         view.triangles = left_.model()->geometry().triangles;
         view.is_culled = panel_state_.view.cull;
@@ -425,14 +416,18 @@ private:
                 .note = note_,
                 .device = info.renderer,
                 .written = saver_.written(),
-                .files = {open_files_, recent_.files(),
-                          has_view() ? whole_path(state().path) : std::filesystem::path(), up_},
+                .files = {open_files_.all(), recent_.files(),
+                          has_view() ? whole_path(state().path) : std::filesystem::path(), up_,
+                          open_files_.are_together},
                 .labels = labels(),
                 .question = saver_.question() ? &*saver_.question() : nullptr};
     }
 
     void apply(const PanelInput& input)
     {
+        if (has_view() && !left_.session().making())  // what fails to open leaves the last one
+            panel_state_.left.settings.parts.occluders =
+                open_files_.occluders_of(whole_path(state().path));
         left_.session().solve(panel_state_.left.settings);
         // at pixels they are traced there
         left_.session().want_reference(panel_state_.wants_reference && !panel_state_.left.at_pixels
@@ -529,10 +524,15 @@ private:
     void take_wishes(const FileWishes& wishes)
     {
         if (!wishes.open.empty()) {
-            list_open(wishes.open);
+            add_open(wishes.open);
             open(wishes.open);
         }
-        std::erase(open_files_, wishes.forget);
+        open_files_.forget(wishes.forget);
+        if (wishes.together) {
+            open_files_.are_together = *wishes.together;
+            for (const std::filesystem::path& path : open_files_.all())
+                saver_.add_input(path);
+        }
         if (!wishes.environment.empty())
             set_environment(wishes.environment);
         if (wishes.up) {
@@ -575,7 +575,7 @@ private:
     std::optional<Image> environment_;
     RecentFiles recent_;
     UpAxis up_;
-    std::vector<std::filesystem::path> open_files_;
+    OpenFiles open_files_;
     Saver saver_;
     std::string note_;
     Stopwatch drawing_;

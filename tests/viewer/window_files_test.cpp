@@ -4,6 +4,7 @@
 #include "image/image_file.h"
 #include "temporary_folder.h"
 #include "viewer/folder_list.h"
+#include "viewer/open_files.h"
 #include "viewer/recent_files.h"
 #include "viewer/window.h"
 #include "widget_finder.h"
@@ -66,6 +67,19 @@ TEST(RecentFiles, StandWhereTheDesktopKeepsStates)
     RecentFiles nowhere("/proc/nowhere/recent");
     nowhere.add("/proc/version");
     EXPECT_EQ(RecentFiles("").files().size(), 0u);
+}
+
+TEST(OpenFiles, OccludeEachOtherWhereTheyStandInOneWorld)
+{
+    OpenFiles files({"/rock"});
+    for (const char* file : {"/a", "/b", "/a", "/c"})
+        files.add(file);
+    EXPECT_EQ(files.all(), (OpenFiles::Paths{"/a", "/b", "/c"}));
+    EXPECT_EQ(files.occluders_of("/b"), (OpenFiles::Paths{"/rock"}));
+    files.are_together = true;
+    EXPECT_EQ(files.occluders_of("/b"), (OpenFiles::Paths{"/rock", "/a", "/c"}));
+    files.forget("/a");
+    EXPECT_EQ(files.occluders_of("/b"), (OpenFiles::Paths{"/rock", "/c"}));
 }
 
 void hold(int key, int action)
