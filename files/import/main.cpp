@@ -7,6 +7,7 @@
 
 #include <assimp/BaseImporter.h>
 #include <assimp/config.h>
+#include <assimp/mesh.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <assimp/version.h>
@@ -19,6 +20,7 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -51,6 +53,18 @@ void keep_reader_of(const std::string& extension, Assimp::Importer& importer)
     }
 }
 
+/// What moves in the file and stands still here.
+void note_what_rests(const aiScene& scene, std::vector<std::string>& notes)
+{
+    if (scene.mNumAnimations > 0)
+        notes.push_back("animations are left out: " + std::to_string(scene.mNumAnimations));
+    const std::span<aiMesh* const> meshes(scene.mMeshes, scene.mNumMeshes);
+    const auto morphed =
+        std::ranges::count_if(meshes, [](const aiMesh* mesh) { return mesh->mNumAnimMeshes > 0; });
+    if (morphed > 0)
+        notes.push_back("morph targets are left out, of meshes: " + std::to_string(morphed));
+}
+
 std::string import_as_glb(const std::filesystem::path& file, std::vector<std::string>& notes)
 {
     Assimp::Importer importer;
@@ -72,6 +86,7 @@ std::string import_as_glb(const std::filesystem::path& file, std::vector<std::st
     std::ranges::transform(format, format.begin(),
                            [](unsigned char letter) { return std::toupper(letter); });
     notes.push_back("read through " + assimp_version() + " (" + format + ")");
+    note_what_rests(*scene, notes);
     return glb_of(*scene, file.parent_path(), format, notes);
 }
 

@@ -201,6 +201,12 @@ TEST(Foreign, BinaryFormats)
         EXPECT_EQ(read_scene(models / name).triangles.size(), triangle_count) << name;
 }
 
+TEST(Foreign, WhatRestsIsTold)
+{
+    const Scene scene = read_scene("/usr/share/assimp/models/Collada/box_nested_animation.dae");
+    EXPECT_NE(std::ranges::find(scene.notes, "animations are left out: 1"), scene.notes.end());
+}
+
 TEST(Foreign, NamesInLatin1AreUtf8)
 {
     const TemporaryFolder folder;
