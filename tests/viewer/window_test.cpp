@@ -164,7 +164,8 @@ TEST_F(Window, KeysThatGoDownAndUpWithinAFrameCountAndMovingSolvesNothing)
             press(GLFW_KEY_F);
         }
         framed = light;
-        return frames < 6;
+        // what moves may be drawn coarsely: what has come to rest is whole
+        return frames < 6 || (frames < 2000 && std::abs(framed - near) > 1e-3);
     };
     (void)show_window(options);
     EXPECT_LT(far, 0.5 * near);
