@@ -47,7 +47,7 @@ library with its headers for C++, and where it was built with it, the module
 surfelao for Python.")
 # opened when first used, so not seen by shlibdeps
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libgl1-mesa-dri")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS libosmesa6)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libosmesa6, fonts-dejavu-core")
 # to compile against the library
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
     "libglm-dev, libembree-dev, libhwy-dev, libopenmesh-dev, libtbb-dev, libtinygltf-dev")
