@@ -50,9 +50,9 @@ glm::dvec2 corner_of(const Mesh& mesh, const Facets& facets, const Chart& chart,
     return {place.x, -place.y};
 }
 
-Shape shape_of(const Mesh& mesh, const Facets& facets, const Chart& chart, std::uint32_t page)
+ChartShape shape_of(const Mesh& mesh, const Facets& facets, const Chart& chart, std::uint32_t page)
 {
-    Shape shape;
+    ChartShape shape;
     shape.page = page;
     shape.triangles.reserve(chart.triangles.size());
     for (const std::uint32_t t : chart.triangles)
@@ -64,7 +64,7 @@ Shape shape_of(const Mesh& mesh, const Facets& facets, const Chart& chart, std::
 
 /// A page's set: a value for each place in each chart.
 UvSet uvs_of(const Mesh& mesh, const Facets& facets, std::span<const Chart> charts,
-             std::span<const Placement> placements, std::uint32_t size)
+             std::span<const ChartPlacement> placements, std::uint32_t size)
 {
     constexpr std::uint32_t kNever = 0xffffffff;
     UvSet uvs;
@@ -128,10 +128,10 @@ void measure_stretch(const Facets& facets, std::span<const std::vector<Chart>> p
     atlas.mean_stretch = area > 0.0 ? sum / area : 1.0;
 }
 
-std::vector<Shape> shapes_of(const Mesh& mesh, const Facets& facets,
-                             std::span<const std::vector<Chart>> pages)
+std::vector<ChartShape> shapes_of(const Mesh& mesh, const Facets& facets,
+                                  std::span<const std::vector<Chart>> pages)
 {
-    std::vector<Shape> shapes;
+    std::vector<ChartShape> shapes;
     for (std::uint32_t page = 0; page < pages.size(); ++page)
         for (const Chart& chart : pages[page])
             shapes.push_back(shape_of(mesh, facets, chart, page));
@@ -145,7 +145,7 @@ struct Extent {
     [[nodiscard]] double length() const { return high[longer()] - low[longer()]; }
 };
 
-Extent extent_of(const Shape& shape, const Placement& placement)
+Extent extent_of(const ChartShape& shape, const ChartPlacement& placement)
 {
     Extent extent;
     for (const auto& triangle : shape.triangles) {
@@ -169,7 +169,7 @@ void cut_to_fill(const Mesh& mesh, const Facets& facets, const PackingSettings& 
     int vain = 0;
     for (int cuts = 0; cuts < kMostCuts && static_cast<double>(packing.covered) < wanted; ++cuts) {
         std::vector<Chart>& charts = tried_pages.front();
-        const std::vector<Shape> shapes = shapes_of(mesh, facets, tried_pages);
+        const std::vector<ChartShape> shapes = shapes_of(mesh, facets, tried_pages);
         std::size_t longest = 0;
         Extent extent;
         for (std::size_t c = 0; c < charts.size(); ++c) {
@@ -243,7 +243,7 @@ Atlas make_atlas(const Mesh& mesh, const AtlasSettings& settings, const Progress
     atlas.layout.is_blended = settings.blended;
     double seams = 0.0;
     for (const std::vector<Chart>& charts : pages) {
-        const std::span<const Placement> placements =
+        const std::span<const ChartPlacement> placements =
             std::span(packing.placements).subspan(atlas.chart_count, charts.size());
         atlas.layout.pages.push_back(uvs_of(mesh, facets, charts, placements, packing.size));
         std::vector<std::uint32_t>& chart_of = atlas.chart_of.emplace_back(count, kNoChart);

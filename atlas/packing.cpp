@@ -38,7 +38,7 @@ double turn_of(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c)
 }
 
 /// Andrew's monotone chain (Another efficient algorithm for convex hulls in two dimensions. 1979).
-std::vector<glm::dvec2> hull_of(const Shape& shape)
+std::vector<glm::dvec2> hull_of(const ChartShape& shape)
 {
     std::vector<glm::dvec2> points;
     for (const auto& triangle : shape.triangles)
@@ -71,7 +71,7 @@ struct Upright {
     double area = 0.0;
 };
 
-Upright upright(const Shape& shape)
+Upright upright(const ChartShape& shape)
 {
     const std::vector<glm::dvec2> hull = hull_of(shape);
     Upright best;
@@ -281,7 +281,7 @@ struct Trial {
 
 class Packer {
 public:
-    Packer(std::span<const Shape> shapes, const PackingSettings& settings)
+    Packer(std::span<const ChartShape> shapes, const PackingSettings& settings)
         : shapes_(shapes),
           pages_(settings.pages),
           padding_(std::max(1u, settings.padding)),
@@ -339,7 +339,7 @@ public:
             needed[shapes_[i].page] += masks[i].count();
         if (std::ranges::max(needed) > std::uint64_t{size} * size)
             return {};
-        Packing packing{size, scale, std::vector<Placement>(shapes_.size()), 0};
+        Packing packing{size, scale, std::vector<ChartPlacement>(shapes_.size()), 0};
         packing.covered = std::accumulate(covered.begin(), covered.end(), std::uint64_t{0});
         std::vector<Page> pages(pages_, Page(size / cell));
         for (const std::size_t i : orders_[trial.order]) {
@@ -360,14 +360,14 @@ private:
             return std::max(1u, static_cast<std::uint32_t>(std::ceil(length - kCornerNoise)));
         };
         BitMask mask(cells(extent.x), cells(extent.y));
-        const Placement place = local(i, scale, mask);
+        const ChartPlacement place = local(i, scale, mask);
         for (const auto& t : shapes_[i].triangles)
             draw({place.at(t[0]), place.at(t[1]), place.at(t[2])}, mask);
         return mask;
     }
 
     /// From the shape's plane to its mask.
-    [[nodiscard]] Placement local(std::size_t i, double scale, const BitMask& mask) const
+    [[nodiscard]] ChartPlacement local(std::size_t i, double scale, const BitMask& mask) const
     {
         const Upright& one = upright_[i];
         const glm::dvec2 room = glm::dvec2(mask.width(), mask.height()) - scale * one.extent;
@@ -395,10 +395,10 @@ private:
         return best;
     }
 
-    [[nodiscard]] Placement placement(std::size_t i, double scale, const BitMask& mask,
-                                      std::uint32_t cell, Spot spot) const
+    [[nodiscard]] ChartPlacement placement(std::size_t i, double scale, const BitMask& mask,
+                                           std::uint32_t cell, Spot spot) const
     {
-        Placement place = local(i, scale, mask);
+        ChartPlacement place = local(i, scale, mask);
         double width = mask.width(), height = mask.height();
         for (std::uint32_t turn = 0; turn < spot.turn; ++turn) {
             place.right = product({0.0, 1.0}, place.right);
@@ -409,7 +409,7 @@ private:
         return place;
     }
 
-    std::span<const Shape> shapes_;
+    std::span<const ChartShape> shapes_;
     std::uint32_t pages_, padding_;
     std::vector<Upright> upright_;
     std::array<std::vector<std::size_t>, kOrders> orders_;
@@ -545,7 +545,7 @@ std::optional<Packing> smallest_size(const Packer& packer, double scale, std::ui
 
 }  // namespace
 
-Packing pack(std::span<const Shape> shapes, const PackingSettings& settings,
+Packing pack(std::span<const ChartShape> shapes, const PackingSettings& settings,
              ProgressMeter& progress, std::uint64_t units)
 {
     if (shapes.empty())

@@ -14,13 +14,13 @@
 namespace surfelao {
 
 /// Triangles of a plane, with its axes as the map's: x to the right, y down.
-struct Shape {
+struct ChartShape {
     std::vector<std::array<glm::dvec2, 3>> triangles;  ///< at least one; finite
     std::uint32_t page = 0;
 };
 
 /// How a shape lies on its page: turned, scaled and moved, never mirrored.
-struct Placement {
+struct ChartPlacement {
     glm::dvec2 right{1.0, 0.0};  ///< where a step to the right goes, in texels
     glm::dvec2 origin{0.0};      ///< where (0, 0) goes
 
@@ -39,10 +39,10 @@ struct PackingSettings {
 };
 
 struct Packing {
-    std::uint32_t size = 0;             ///< of each page
-    double scale = 0.0;                 ///< texels per unit, the same for all
-    std::vector<Placement> placements;  ///< per shape
-    std::uint64_t covered = 0;          ///< texels that shapes touch, of all pages
+    std::uint32_t size = 0;                  ///< of each page
+    double scale = 0.0;                      ///< texels per unit, the same for all
+    std::vector<ChartPlacement> placements;  ///< per shape
+    std::uint64_t covered = 0;               ///< texels that shapes touch, of all pages
 };
 
 /// Finds the largest scale at which all shapes fit their pages (within some 0.5 % of use), or, with
@@ -57,7 +57,7 @@ struct Packing {
 /// Without shapes pages have the size of the settings. Throws SettingsError where the shapes do not
 /// fit: so many that not even their padding does, or at the given scale not on kMostTexels. All
 /// cores, the same bytes on any number of them; progress gets `units` in all.
-[[nodiscard]] Packing pack(std::span<const Shape> shapes, const PackingSettings& settings,
+[[nodiscard]] Packing pack(std::span<const ChartShape> shapes, const PackingSettings& settings,
                            ProgressMeter& progress, std::uint64_t units);
 
 /// Shapes of at most so many texels in both directions have a padding of 1, whatever is asked:

@@ -9,9 +9,9 @@
 
 namespace surfelao {
 
-class Baked {
+class BakeResult {
 public:
-    explicit Baked(std::shared_ptr<SceneBake> bake);
+    explicit BakeResult(std::shared_ptr<SceneBake> bake);
 
     [[nodiscard]] const SceneBake& bake() const { return *bake_; }
     [[nodiscard]] std::shared_ptr<const void> owner() const { return bake_; }
@@ -25,8 +25,8 @@ private:
 };
 
 /// Values at vertices or points.
-struct ValueBake : Baked {
-    using Baked::Baked;
+struct ValueBake : BakeResult {
+    using BakeResult::BakeResult;
 };
 
 }  // namespace surfelao

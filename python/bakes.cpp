@@ -15,8 +15,8 @@ namespace py = pybind11;
 namespace surfelao {
 namespace {
 
-struct TextureBake : Baked {
-    using Baked::Baked;
+struct TextureBake : BakeResult {
+    using BakeResult::BakeResult;
 };
 
 /// As the program's --json tells it.
@@ -108,7 +108,7 @@ TextureBake texture_arrays(const py::object& vertices, const py::object& faces,
                                 occluders_of(options), std::move(settings), options));
 }
 
-py::array texels_of(const Baked& baked, const Map& map)
+py::array texels_of(const BakeResult& baked, const Map& map)
 {
     const auto rows = static_cast<py::ssize_t>(map.height);
     const auto columns = static_cast<py::ssize_t>(map.width);
@@ -142,7 +142,7 @@ void add_report(py::class_<Result>& type)
 
 }  // namespace
 
-Baked::Baked(std::shared_ptr<SceneBake> bake)
+BakeResult::BakeResult(std::shared_ptr<SceneBake> bake)
     : bake_(std::move(bake)), report_(report_of(bake_->report))
 {
 }

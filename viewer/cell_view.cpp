@@ -525,7 +525,7 @@ void CellView::measure()
         own.push_back({value.r, glm::vec3(0.0f)});
         traced.push_back(sample.values[i]);
     }
-    error_ = PixelError{error_statistics(own, traced), rays_asked_->first.rays};
+    error_ = ShownError{error_statistics(own, traced), rays_asked_->first.rays};
 }
 
 bool CellView::is_busy() const

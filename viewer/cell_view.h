@@ -25,7 +25,7 @@
 namespace surfelao {
 
 /// How far what a picture shows is from rays at some of its pixels.
-struct PixelError {
+struct ShownError {
     ErrorStatistics found;   ///< its count: the pixels
     std::uint32_t rays = 0;  ///< each
 };
@@ -103,7 +103,7 @@ public:
         return has_pixels() ? rays_picture_.has_value()
                             : !is_moved() && session_.state().has_reference();
     }
-    const std::optional<PixelError>& pixel_error() const { return error_; }
+    const std::optional<ShownError>& pixel_error() const { return error_; }
     const PixelAnswers& pixels() const { return pixels_.answers(); }
     const PixelAnswers& ray_pixels() const { return rays_.answers(); }
     /// The occlusion at a pixel of the last look() where a method of the picture or cube maps tell
@@ -193,7 +193,7 @@ private:
     std::optional<Texture2D> filled_;  ///< map_picture_ with its holes solved
     bool shows_holes_ = false;
     bool is_measured_ = false;  ///< error_ is of what is shown
-    std::optional<PixelError> error_;
+    std::optional<ShownError> error_;
     bool was_cancelled_ = false;  ///< the pixels, before their end
     PixelSession pixels_, holes_, rays_;
     CubeSession cubes_;

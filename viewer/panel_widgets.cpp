@@ -367,7 +367,7 @@ void cell_progress(const CellView& view)
         progress_line("pixels", *done);
 }
 
-void error_lines(const PixelError& error)
+void error_lines(const ShownError& error)
 {
     ImGui::TextWrapped(
         "at pixels: RMSE %.4f   bias %+.4f\n95 %% %.4f   (%llu pixels, %u rays each)",

@@ -37,7 +37,7 @@ void progress_line(const char* what, double done);
 void cell_progress(const CellView& view);
 
 /// What a picture shows against rays at its pixels.
-void error_lines(const PixelError& error);
+void error_lines(const ShownError& error);
 
 /// How many cube maps there are, and how much they show.
 void map_lines(const CellView& view);

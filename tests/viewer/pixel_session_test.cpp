@@ -193,7 +193,7 @@ TEST(PixelFill, ASampleHasOnePixelOfEachRun)
 }
 
 /// Updates and looks until there is an error of what is shown whole.
-std::optional<PixelError> error_of_cell(CellView& view, const Cell& cell, const Camera& camera)
+std::optional<ShownError> error_of_cell(CellView& view, const Cell& cell, const Camera& camera)
 {
     for (int i = 0; i < 30000; ++i) {
         static_cast<void>(view.update());
@@ -317,7 +317,7 @@ TEST(CellView, TheErrorIsThatOfWhatIsShownAtTheSamePixels)
         CellView view(test_context());
         view.session().open(folder / "ball.obj", UpAxis::y, cell.settings);
         const auto model = ball_model();
-        const std::optional<PixelError> error = error_of_cell(view, cell, camera_of(*model, 30.0f));
+        const std::optional<ShownError> error = error_of_cell(view, cell, camera_of(*model, 30.0f));
         ASSERT_TRUE(error.has_value());
         EXPECT_EQ(error->rays, 64u);
         // all the pixels: there are no 4,000
