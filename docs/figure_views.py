@@ -683,6 +683,7 @@ import cloud_views  # noqa: E402, F401
 import cube_views  # noqa: E402, F401
 import grid_picture_views  # noqa: E402, F401
 import exact_views  # noqa: E402, F401
+import family_views  # noqa: E402, F401
 import grid_views  # noqa: E402, F401
 import map_views  # noqa: E402, F401
 import moving_views  # noqa: E402, F401

@@ -2,8 +2,8 @@
 """measure.py: what README.md and docs/ tell in figures, measured anew into docs/figures/*.json.
 
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
-                                    readers foreign stated demo viewers atlas maps map_frontier
-                                    clouds clouds_pcv subdivide pixels origin cubes screen moving
+                                    readers foreign stated family demo viewers atlas maps
+                                    map_frontier clouds clouds_pcv subdivide pixels origin cubes screen moving
                                     grids gridpictures;
                                     default: all, about an hour on two quiet cores
 
@@ -309,6 +309,20 @@ def part_stated(build):
     return {**provenance(build, "stated_tables"), "bakes": rows, "costs": costs}
 
 
+FAMILY_LIMITS = {"none": [], "3 %": ["--limit", 3], "10 %": ["--limit", 10], "30 %": ["--limit", 30],
+                 "10 %, smooth": ["--limit", 10, "--smooth"]}
+
+
+def part_family(build):
+    """Solve errors of masks over the family of generated scenes, and over the models."""
+    scenes = ["0", "61"] if TRIAL else ["0", "1"]
+    files = [f"{name}={path}" for path, name, _ in models()]
+    return {**provenance(build, "family_tables"),
+            "limits": {limit: json.loads(run(build / "bin/family_tables", *words, *scenes, *files,
+                                             shown=f"family_tables, limit {limit}"))
+                       for limit, words in FAMILY_LIMITS.items()}}
+
+
 def part_demo(build):
     if not (ROOT / "data/models/bunny.obj").exists():
         raise Absent("no data/models/bunny.obj (data/fetch.sh)")
@@ -542,7 +556,8 @@ def part_gridpictures(build):
 
 PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scaling": part_scaling,
          "stability": part_stability, "gpu": part_gpu, "drawing": part_drawing,
-         "readers": part_readers, "foreign": part_foreign, "stated": part_stated, "demo": part_demo,
+         "readers": part_readers, "foreign": part_foreign, "stated": part_stated,
+         "family": part_family, "demo": part_demo,
          "viewers": part_viewers, "atlas": part_atlas, "maps": part_maps,
          "map_frontier": part_map_frontier, "clouds": part_clouds,
          "clouds_pcv": part_clouds_pcv,
