@@ -100,7 +100,7 @@ std::string rows_run_once(const Comparison& comparison)
     std::string text;
     for (const CompareRow& row : comparison.rows) {
         if (row.rounds == 1 && comparison.rounds != 1)
-            text += name_of(row.settings.engine) + ' ' + setting_of(row.settings) + " ran once\n";
+            text += name_of(row.settings.engine) + ", " + setting_of(row.settings) + ": ran once\n";
     }
     return text;
 }

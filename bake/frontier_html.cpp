@@ -14,11 +14,26 @@
 namespace surfelao {
 namespace {
 
-constexpr int kDigits = 3;  // significant ones of a time or an error
-
+/// A time or an error with three digits that count: "0.0250", "2.20", "156".
 std::string rounded(double value)
 {
-    return value < 1000.0 ? significant(value, kDigits) : fixed(value, 0);
+    const double size = std::fabs(value);
+    const int before_point = size > 0.0 ? static_cast<int>(std::floor(std::log10(size))) + 1 : 1;
+    return fixed(value, std::clamp(3 - before_point, 0, 7));
+}
+
+/// Rays are the opponent.
+std::string shown_name(const CompareRow& row)
+{
+    return is_opponent(row) ? "Embree" : name_of(row.settings.engine);
+}
+
+/// To be found in the scene, no more.
+std::string place_text(const glm::dvec3& place)
+{
+    constexpr int kPlaceDigits = 6;
+    return significant(place.x, kPlaceDigits) + ", " + significant(place.y, kPlaceDigits) + ", " +
+           significant(place.z, kPlaceDigits);
 }
 
 /// "64" of 64 rays, "0.5" of quality 0.5: short enough to stand at a point.
@@ -44,7 +59,7 @@ std::optional<Plot> plot_of(const Comparison& comparison, Cost cost)
                    (is_map ? "fill" : "fit");
     plot.y_title = "RMS error beyond the floor";
     for (const CompareRow& row : comparison.rows) {
-        const std::string name = is_opponent(row) ? "Embree" : name_of(row.settings.engine);
+        const std::string name = shown_name(row);
         const double seconds = seconds_of(comparison, row, cost);
         if (!(row.beyond > 0.0) || !(seconds > 0.0))
             continue;
@@ -75,15 +90,15 @@ std::string rows_html(const Comparison& comparison)
     const bool is_map = comparison.texels.has_value();
     std::vector<std::vector<std::string>> rows;
     for (const CompareRow& row : comparison.rows) {
-        rows.push_back(
-            {name_of(row.settings.engine), setting_of(row.settings), rounded(row.build_s),
-             rounded(row.solve_s), rounded(is_map ? row.fill_s : row.fit_s),
-             rounded(seconds_of(comparison, row, Cost::file)), rounded(row.us_per_receiver),
-             rounded(row.seen.rmse), signed_fixed(row.seen.bias, 4), rounded(row.seen.p95),
-             rounded(row.seen.max), bent_text(comparison, row.seen.bent_mean_deg),
-             bent_text(comparison, row.seen.bent_p95_deg), rounded(row.solve.rmse),
-             rounded(row.solve.max), rounded(row.beyond), text_of(row.ratio),
-             text_of(row.ratio_with_builds)});
+        rows.push_back({shown_name(row), setting_of(row.settings), rounded(row.build_s),
+                        rounded(row.solve_s), rounded(is_map ? row.fill_s : row.fit_s),
+                        rounded(seconds_of(comparison, row, Cost::file)),
+                        rounded(row.us_per_receiver), rounded(row.seen.rmse),
+                        signed_fixed(row.seen.bias, 4), rounded(row.seen.p95),
+                        rounded(row.seen.max), bent_text(comparison, row.seen.bent_mean_deg),
+                        bent_text(comparison, row.seen.bent_p95_deg), rounded(row.solve.rmse),
+                        rounded(row.solve.max), rounded(row.beyond), text_of(row.ratio),
+                        text_of(row.ratio_with_builds)});
     }
     return table_html(
         {"engine", "setting", "build s", "solve s", is_map ? "fill s" : "fit s", "whole job s",
@@ -99,10 +114,8 @@ std::string worst_html(const Comparison& comparison)
         if (is_opponent(row) || row.settings.quality != kGood)
             continue;
         for (const WorstPoint& point : row.worst) {
-            const glm::dvec3 p = point.position;
             rows.push_back({name_of(row.settings.engine) + ", " + setting_of(row.settings),
-                            std::to_string(point.triangle),
-                            exact(p.x) + ", " + exact(p.y) + ", " + exact(p.z),
+                            std::to_string(point.triangle), place_text(point.position),
                             fixed(point.displayed, 3), fixed(point.reference, 3),
                             signed_fixed(point.displayed - point.reference, 3)});
         }
@@ -118,23 +131,24 @@ std::string scene_html(const FrontierScene& scene)
         return html + "<p>Refused: " + escaped(scene.error) + "</p>\n";
     const Comparison& comparison = *scene.comparison;
     const Definition& definition = comparison.rows.front().settings.definition;
-    html +=
-        "<p>" + std::to_string(comparison.vertices) + " vertices, " +
-        std::to_string(comparison.receivers) + " receivers, " +
-        std::to_string(comparison.triangles) + " triangles (" +
-        std::to_string(comparison.dropped_triangles) + " without area dropped); " +
-        (comparison.texels ? "a map of " + target_text(comparison) + "; " : "") +
-        lines_html(errors_text(comparison)) + ". " + std::to_string(comparison.threads) +
-        " threads, medians of " + std::to_string(comparison.rounds) + " rounds. Distance limit " +
-        (std::isfinite(definition.max_distance) ? exact(definition.max_distance) : "none") +
-        (definition.falloff == Falloff::smooth ? " with smooth falloff" : "") + " (in diagonals)" +
-        (comparison.ground.empty() ? "" : ", a ground at " + comparison.ground) + ".</p>\n";
+    html += "<p>" + std::to_string(comparison.vertices) + " vertices, " +
+            std::to_string(comparison.receivers) + " receivers, " +
+            std::to_string(comparison.triangles) + " triangles (" +
+            std::to_string(comparison.dropped_triangles) + " without area dropped); " +
+            (comparison.texels ? "a map of " + target_text(comparison) + "; " : "") +
+            lines_html(errors_text(comparison)) + ". " + std::to_string(comparison.threads) +
+            " threads, medians of " + std::to_string(comparison.rounds) + " rounds" +
+            (std::isfinite(definition.max_distance)
+                 ? ". Distance limit " + significant(definition.max_distance) + " diagonals"
+                 : ". No distance limit") +
+            (definition.falloff == Falloff::smooth ? " with smooth falloff" : "") +
+            (comparison.ground.empty() ? "" : ", a ground at " + comparison.ground) + ".</p>\n";
     html += plots_html(comparison) + rows_html(comparison) + "<p>" +
             lines_html(rows_run_once(comparison)) + "</p>\n<div class=\"pictures\">\n";
     for (const ReportPicture& picture : scene.pictures)
-        html +=
-            figure_html(picture.png, picture.caption,
-                        picture.is_error ? error_bar(rounded(kFullColorError)) : visibility_bar());
+        html += figure_html(
+            picture.png, picture.caption,
+            picture.is_error ? error_bar(significant(kFullColorError)) : visibility_bar());
     return html + "</div>\n" + worst_html(comparison);
 }
 

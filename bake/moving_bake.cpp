@@ -69,12 +69,13 @@ public:
         report.residual = solved.residual;
         stage.lap();
         const std::vector<Occlusion>& values = solver_->values_of(solver_->answers());
+        report.misfit = world_.misfit(solver_->answers(), values);
         report.seconds.fit = stage.lap();
         if (settings_.check > 0)
             check(values, report);
         report.seconds.check = stage.lap();
         enter("write");
-        report.notes = is_first ? first_notes(values) : world_.scene().notes;
+        report.notes = is_first ? first_notes(values, report.misfit) : world_.scene().notes;
         write(values, report);
         report.seconds.write = stage.lap();
         fill(values, report);
@@ -133,12 +134,13 @@ private:
     }
 
     /// What the user should know of the whole sequence, told with one frame of it.
-    std::vector<std::string> first_notes(const std::vector<Occlusion>& values) const
+    std::vector<std::string> first_notes(const std::vector<Occlusion>& values,
+                                         const std::optional<Misfit>& misfit) const
     {
         const Mesh mesh = mesh_of(Scene(world_.scene()), settings_.target.normals, settings_.parts,
                                   settings_.reading, world_.frame());
-        return notes_of({mesh, analyse_topology(mesh.geometry), settings_.engine.definition, values,
-                         std::nullopt});
+        return notes_of(
+            {mesh, analyse_topology(mesh.geometry), settings_.engine.definition, values, misfit});
     }
 
     void fill(const std::vector<Occlusion>& values, BakeReport& report) const

@@ -516,6 +516,31 @@ double MovingWorld::mean_occlusion_of(std::span<const Occlusion> values) const
     return count > 0 ? sum / static_cast<double>(count) : 0.0;
 }
 
+std::optional<Misfit> MovingWorld::misfit(std::span<const Occlusion> answers,
+                                          std::span<const Occlusion> values) const
+{
+    Misfit all;
+    for (const Body& body : bodies_) {
+        if (!body.target || body.is_gone)
+            continue;
+        std::vector<Occlusion> own_values;
+        for (const std::uint32_t vertex : body.vertices)
+            own_values.push_back(values[vertex]);
+        const auto own = body.target->misfit(
+            answers.subspan(body.first_receiver, body.target->receivers().size()), own_values);
+        if (!own)
+            continue;
+        // its samples stand where it was made: placed, it may be of another size
+        const double area = own->area * body.placement.scale * body.placement.scale;
+        all.rms += area * own->rms * own->rms;
+        all.share += area * own->share;
+        all.area += area;
+    }
+    if (!(all.area > 0.0))
+        return {};
+    return Misfit{std::sqrt(all.rms / all.area), all.share / all.area, all.area};
+}
+
 Geometry MovingWorld::occluders_now() const
 {
     Geometry now = occluders_;

@@ -101,6 +101,10 @@ public:
     [[nodiscard]] std::vector<Occlusion> on_surface(std::span<const Occlusion> values) const;
     /// Over the vertices that are baked and have a normal, of bodies that are there.
     [[nodiscard]] double mean_occlusion_of(std::span<const Occlusion> values) const;
+    /// As VertexTarget::misfit(), over all bodies that are there. answers: one per receiver;
+    /// values: one per scene vertex.
+    [[nodiscard]] std::optional<Misfit> misfit(std::span<const Occlusion> answers,
+                                               std::span<const Occlusion> values) const;
     /// The same of what occludes, without what is gone.
     [[nodiscard]] Geometry occluders_now() const;
     /// The receivers of points of surface_now().

@@ -172,7 +172,7 @@ std::optional<Misfit> VertexTarget::misfit(std::span<const Occlusion> answers,
     }
     if (!(whole > 0.0))
         return {};
-    return Misfit{std::sqrt(sum / whole), coarse / whole};
+    return Misfit{std::sqrt(sum / whole), coarse / whole, whole};
 }
 
 std::vector<float> VertexTarget::triangle_misfits(std::span<const Occlusion> answers,

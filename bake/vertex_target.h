@@ -63,6 +63,7 @@ struct Misfit {
     double rms = 0.0;    ///< over the surface, by area
     double share = 0.0;  ///< of the area: triangles of several samples whose own RMS is above
                          ///< kCoarse; one sample does not show that it is the triangle's size
+    double area = 0.0;   ///< that has samples, in the unit frame
 };
 
 /// In occlusion: what is seen as a wrong shade.

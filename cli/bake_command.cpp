@@ -193,10 +193,19 @@ void refuse_foreign_text(const BakeSettings& settings)
                          ": stands there and was not made by bake (--overwrite replaces it)");
 }
 
-/// One job, or several that are baked together; `label` stands in front of its progress. False when
-/// it failed: the others can still be done.
-bool run_jobs(const std::vector<BakeSettings>& settings, bool ask_before_replacing, bool overwrite,
-              const std::string& label, std::span<BatchEntry> entries)
+/// Of what could not be done; the exit code.
+int tell_failure(const std::exception& error, std::span<BatchEntry> entries)
+{
+    std::cerr << "surfelao: " << error.what() << '\n';
+    for (BatchEntry& entry : entries)
+        entry.error = error.what();
+    return dynamic_cast<const SettingsError*>(&error) != nullptr ? kWrongUsage : kFailed;
+}
+
+/// One job, or several that are baked together; `label` stands in front of its progress. The exit
+/// code: whatever it is, the others can still be done.
+int run_jobs(const std::vector<BakeSettings>& settings, bool ask_before_replacing, bool overwrite,
+             const std::string& label, std::span<BatchEntry> entries)
 {
     try {
         for (const BakeSettings& one : settings) {
@@ -210,21 +219,12 @@ bool run_jobs(const std::vector<BakeSettings>& settings, bool ask_before_replaci
             settings, [&](std::string_view stage, double done) { return bar.update(stage, done); });
         for (std::size_t i = 0; i < reports.size(); ++i)
             entries[i].report = std::move(reports[i]);
-        return true;
     } catch (const Cancelled&) {
         throw;
-    } catch (const SettingsError& error) {
-        if (label.empty())
-            throw;
-        std::cerr << "surfelao: " << error.what() << '\n';
-        for (BatchEntry& entry : entries)
-            entry.error = error.what();
     } catch (const std::exception& error) {
-        std::cerr << "surfelao: " << error.what() << '\n';
-        for (BatchEntry& entry : entries)
-            entry.error = error.what();
+        return tell_failure(error, entries);
     }
-    return false;
+    return kDone;
 }
 
 void add_written(const BatchEntry& entry, std::vector<fs::path>& written)
@@ -248,9 +248,9 @@ std::string label_of(const std::vector<Job>& jobs, std::size_t job)
            jobs[job].input.filename().string() + " ";
 }
 
-/// Frames of one animation, in one go; false when it failed.
-bool run_sequence(const std::vector<Job>& jobs, std::span<const BakeSettings> settings, bool resume,
-                  bool quiet, std::span<BatchEntry> entries, std::vector<fs::path>& written)
+/// Frames of one animation, in one go; the exit code.
+int run_sequence(const std::vector<Job>& jobs, std::span<const BakeSettings> settings, bool resume,
+                 bool quiet, std::span<BatchEntry> entries, std::vector<fs::path>& written)
 {
     std::optional<ProgressBar> bar(label_of(jobs, 0));
     std::size_t next = 0;
@@ -272,23 +272,20 @@ bool run_sequence(const std::vector<Job>& jobs, std::span<const BakeSettings> se
                     bar.emplace(label_of(jobs, next));
             },
             [&](std::string_view stage, double done) { return bar->update(stage, done); });
-        return true;
     } catch (const Cancelled&) {
         throw;
-    } catch (const SettingsError&) {
-        throw;
     } catch (const std::exception& error) {
-        std::cerr << "surfelao: " << error.what() << '\n';
-        for (BatchEntry& entry : entries.subspan(next))
-            entry.error = error.what();
+        return tell_failure(error, entries.subspan(next));
     }
-    return false;
+    return kDone;
 }
 
-/// Tells what was written; the exit code.
-int finish(const BakeOptions& options, std::span<const BatchEntry> entries,
-           std::vector<fs::path>& written, std::size_t failed)
+/// Tells what was written, and how many failed.
+void finish(const BakeOptions& options, std::span<const BatchEntry> entries,
+            std::vector<fs::path>& written)
 {
+    const auto failed = static_cast<std::size_t>(std::ranges::count_if(
+        entries, [](const BatchEntry& entry) { return !entry.error.empty(); }));
     const bool quiet = options.json == "-";
     if (options.json)
         write_report(*options.json, json_of(entries));
@@ -299,7 +296,6 @@ int finish(const BakeOptions& options, std::span<const BatchEntry> entries,
     if (failed > 0 && entries.size() > 1 && !is_whole_sequence)
         std::cerr << "surfelao: " << failed << " of " << entries.size()
                   << (options.frames.frames ? " frames failed\n" : " files failed\n");
-    return failed > 0 ? kFailed : kDone;
 }
 
 int run(const BakeOptions& options, const std::vector<Job>& jobs)
@@ -316,7 +312,7 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
     const bool batch = jobs.size() > 1;
     const bool quiet = options.json == "-";
     const bool ask = is_folder(options) && !options.overwrite;
-    std::size_t failed = 0;
+    int code = kDone;
     std::vector<BatchEntry> entries;
     for (const Job& job : jobs) {
         BatchEntry& entry = entries.emplace_back();
@@ -328,11 +324,9 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
         std::vector<BakeSettings> settings;
         for (const Job& job : jobs)
             settings.push_back(settings_for(options, job));
-        failed = run_sequence(jobs, settings, options.resume, quiet, entries, written)
-                     ? 0
-                     : static_cast<std::size_t>(std::ranges::count_if(
-                           entries, [](const BatchEntry& entry) { return !entry.error.empty(); }));
-        return finish(options, entries, written, failed);
+        code = run_sequence(jobs, settings, options.resume, quiet, entries, written);
+        finish(options, entries, written);
+        return code;
     }
     const std::optional<Box> box = box_of_frames(frames_of(options), options.inputs.front(),
                                                  part_choice_of(options.parts), options.reading);
@@ -350,18 +344,19 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
                     std::cout << entry.input.string() << ": finished before, skipped\n";
             continue;
         }
-        if (!run_jobs(settings, ask, options.overwrite,
-                      batch && step == 1 ? label_of(jobs, first) : "", of_run)) {
-            failed += step;
+        const int of_jobs = run_jobs(settings, ask, options.overwrite,
+                                     batch && step == 1 ? label_of(jobs, first) : "", of_run);
+        code = std::max(code, of_jobs);  // wrong usage is what its user can mend
+        if (of_jobs != kDone)
             continue;
-        }
         for (const BatchEntry& entry : of_run) {
             add_written(entry, written);
             if (!quiet)
                 print_report(*entry.report);
         }
     }
-    return finish(options, entries, written, failed);
+    finish(options, entries, written);
+    return code;
 }
 
 /// Throws UsageError for what cannot be done in shares.
@@ -397,10 +392,22 @@ void check_grid_options(const BakeOptions& options)
 std::vector<std::string> moot_of(const BakeOptions& options)
 {
     if (is_at_grid(options.texels))
-        return {"--normals", "--crease", "--subdivide"};
-    if (options.frames.frames || texel_settings_of(options.texels, options.output))
+        return {"--normals", "--crease", "--subdivide", "--colors"};
+    if (texel_settings_of(options.texels, options.output))
+        return {"--subdivide", "--colors"};
+    if (options.frames.frames)
         return {"--subdivide"};
     return {};
+}
+
+/// Throws UsageError for colours of what has none.
+void check_colors(const BakeOptions& options)
+{
+    if ((options.colors.colors || options.colors.encoding) &&
+        (is_at_grid(options.texels) || texel_settings_of(options.texels, options.output)))
+        throw UsageError(
+            "--colors and --encoding are for values at vertices and points: neither a map nor a "
+            "grid has such colours.");
 }
 
 /// Throws UsageError for what contradicts itself.
@@ -410,6 +417,7 @@ void check_options(const BakeOptions& options)
     static_cast<void>(distance_limit_of(options.measure));
     static_cast<void>(ground_plane_of(options.measure, options.up));
     static_cast<void>(target_settings_of(options.surface, options.up));
+    check_colors(options);
     check_kernel(engine.engine, kernel_of(options.measure));
     if (options.error && options.check == 0)
         throw UsageError("--error needs the points of --check.");

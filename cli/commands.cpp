@@ -45,8 +45,10 @@ void add_commands(CLI::App& app, Work& work)
           add_render_command, add_view_command, add_help_command})
         add(app, work);
     for (CLI::App* command : app.get_subcommands({}))
-        for (CLI::Option* option : command->get_options())
+        for (CLI::Option* option : command->get_options()) {
             say_choices_once(*option);
+            option->disable_flag_override();
+        }
 }
 
 }  // namespace surfelao

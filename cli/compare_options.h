@@ -43,7 +43,7 @@ struct CompareOptions {
     FrameOptions frames;
     bool overwrite = false;
     bool frontier = false;
-    std::vector<std::string> engines;  ///< empty: default_engines()
+    std::vector<std::string> engines;  ///< empty: what --at has by default
     std::vector<std::string> devices = {"cpu"};
     std::optional<std::vector<std::string>> qualities;
     MeasureOptions measure;

@@ -167,7 +167,7 @@ void check_pixel_table(const CompareOptions& options)
     const bool tunes = pixels.tune.has_value();
     check_grid_options(pixels.grids, engines, options.texels);
     if (is_at_cube_maps(options.texels))
-        throw UsageError("compare is at vertices, texels, points or pixels.");
+        throw UsageError("compare is at vertices, texels, points, pixels or grid.");
     if (!is_at_pixels(options.texels)) {
         check_pixel_options(engines, pixels.methods, options.texels, options.measure);
         if (std::ranges::find(engines, "rays") != engines.end() || !pixels.rays.empty())

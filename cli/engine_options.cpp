@@ -331,8 +331,6 @@ TargetSettings target_settings_of(const SurfaceOptions& options,
         if (options.normals == name_of(source))
             settings.normals.source = source;
     }
-    if (options.crease && std::isnan(*options.crease))
-        throw UsageError("--crease: nan is not a number from 0 to 180.");
     settings.normals.crease = options.crease.value_or(settings.normals.crease);
     if (options.values == name_of(VertexValues::point))
         settings.values = VertexValues::point;

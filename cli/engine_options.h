@@ -52,8 +52,8 @@ struct SurfaceOptions {
 
 /// What a result's colours show.
 struct ColorOptions {
-    std::string colors = "auto";
-    std::string encoding = "auto";
+    std::optional<std::string> colors;
+    std::optional<std::string> encoding;
 };
 
 /// names: of the engines that may be asked.

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -32,8 +33,10 @@ int run(const InfoOptions& options)
         std::cout << text_of(info);
     if (options.json)
         write_report(*options.json, json_of(info));
-    if (options.json && options.json != "-")
-        std::cout << "wrote " << *options.json << '\n';
+    if (options.json && options.json != "-") {
+        const std::filesystem::path written[] = {*options.json};
+        print_written(written, false);
+    }
     return kDone;
 }
 

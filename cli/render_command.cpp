@@ -396,18 +396,9 @@ void add_render_command(CLI::App& app, Work& work)
         ->check(one_of({"auto", "egl", "osmesa"}))
         ->type_name("auto|egl|osmesa")
         ->capture_default_str();
-    add_show_options(*command, options->show);
-    add_layout_options(*command, options->texels, kShownMaps);
-    add_part_options(*command, options->parts);
-    add_atlas_option(*command, options->atlas);
-    add_engine_options(*command, options->engine, pixel_engine_names());
-    add_pixel_options(*command, options->pixels);
+    add_model_options(*command, *options);
     add_cube_options(*command, options->cubes);
     add_grid_options(*command, options->grids);
-    add_measure_options(*command, options->measure);
-    add_surface_options(*command, options->surface);
-    add_thread_option(*command, options->threads);
-    add_preset_option(*command);
     command->callback([options, command, &work] {
         apply_preset(*command);
         check_engine(*options);

@@ -2,14 +2,9 @@
 #pragma once
 
 #include "cli/cube_options.h"
-#include "cli/engine_options.h"
 #include "cli/frame_options.h"
 #include "cli/grid_options.h"
-#include "cli/part_options.h"
-#include "cli/pixel_options.h"
-#include "cli/read_options.h"
-#include "cli/texel_options.h"
-#include "cli/view_options.h"
+#include "cli/model_options.h"
 #include "gpu/context.h"
 #include "pixels/camera.h"
 
@@ -20,28 +15,17 @@
 
 namespace surfelao {
 
-struct RenderCommandOptions {
+struct RenderCommandOptions : ModelOptions {
     std::string input;
     std::string output;
-    ReadOptions reading;
     FrameOptions frames;
     std::optional<Box> box = {};  ///< of all frames, for each of them
     int width = 1280, height = 720;
     int samples = 16;
-    std::string camera;
     std::string backend = "auto";
-    ShowOptions show;
-    EngineOptions engine;
-    MeasureOptions measure;
-    SurfaceOptions surface;
-    TexelOptions texels;
-    PixelOptions pixels;
     CubeOptions cubes;
     GridOptions grids;
     std::shared_ptr<const GridSources> grid_sources = {};  ///< of all frames, once they are there
-    PartOptions parts;
-    bool atlas = false;
-    std::optional<int> threads;
 };
 
 /// "egl", "osmesa", "auto"

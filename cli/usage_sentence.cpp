@@ -73,10 +73,14 @@ std::string missing(const CLI::App& command)
 /// Of an option that has too many values, or too few.
 std::string mismatch(const CLI::App& command, const std::string& what)
 {
-    const std::string name = what.substr(0, what.find_first_of(": "));
+    std::string name = what.substr(0, what.find_first_of(": "));
+    if (!is_option(name))  // flags are named without
+        name.insert(0, "--");
     const CLI::Option* option = command.get_option_no_throw(name);
     if (option == nullptr)
         return what + '.';
+    if (option->get_items_expected_max() == 0)
+        return name + " takes no value.";
     if (option->count() > 1)
         return name + " is given " + std::to_string(option->count()) +
                " times: it has one value only.";

@@ -1,12 +1,8 @@
 #include "cli/commands.h"
-#include "cli/engine_options.h"
 #include "cli/interrupt.h"
-#include "cli/part_options.h"
-#include "cli/pixel_options.h"
+#include "cli/model_options.h"
+#include "cli/output.h"
 #include "cli/preset.h"
-#include "cli/read_options.h"
-#include "cli/texel_options.h"
-#include "cli/view_options.h"
 #include "engines/threads.h"
 #include "image/image_file.h"
 #include "surfels/errors.h"
@@ -17,7 +13,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,19 +23,8 @@
 namespace surfelao {
 namespace {
 
-struct ViewCommandOptions {
+struct ViewCommandOptions : ModelOptions {
     std::vector<std::string> inputs;
-    ReadOptions reading;
-    std::string camera;
-    ShowOptions show;
-    EngineOptions engine;
-    PixelOptions pixels;
-    MeasureOptions measure;
-    SurfaceOptions surface;
-    TexelOptions texels;
-    PartOptions parts;
-    bool atlas = false;
-    std::optional<int> threads;
 };
 
 /// Of the picture; the engine of the scene where it is that one.
@@ -123,8 +107,7 @@ int run(const ViewCommandOptions& options)
                                options.parts.occluders.end());
     window.panel.shows_atlas = options.atlas;
     window.keep_open = [] { return caught_signal() == 0; };
-    for (const std::filesystem::path& file : show_window(window))
-        std::cout << "wrote " << file.string() << '\n';
+    print_written(show_window(window), false);
     if (caught_signal() != 0)
         return kKilledBy + caught_signal();
     return kDone;
@@ -149,16 +132,7 @@ void add_view_command(CLI::App& app, Work& work)
                      "Where from, as for render: azimuth=30,elevation=18,distance=1,fov=35")
         ->type_name("WHERE");
     add_read_options(*command, options->reading);
-    add_show_options(*command, options->show);
-    add_layout_options(*command, options->texels, kShownMaps);
-    add_part_options(*command, options->parts);
-    add_atlas_option(*command, options->atlas);
-    add_engine_options(*command, options->engine, pixel_engine_names());
-    add_pixel_options(*command, options->pixels);
-    add_measure_options(*command, options->measure);
-    add_surface_options(*command, options->surface);
-    add_thread_option(*command, options->threads);
-    add_preset_option(*command);
+    add_model_options(*command, *options);
     command->callback([options, command, &work] {
         apply_preset(*command);
         check_view(*options);

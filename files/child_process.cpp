@@ -93,9 +93,12 @@ struct Child {
     ~Child() { kill(); }
     bool has_ended()
     {
-        if (waitpid(id, &status, WNOHANG) != id)
+        const pid_t found = waitpid(id, &status, WNOHANG);
+        if (found == 0 || (found < 0 && errno == EINTR))
             return false;
-        id = -1;
+        id = -1;        // from now on it may be another's
+        if (found < 0)  // whoever we are part of ignores SIGCHLD
+            fail("another program cannot be waited for");
         return true;
     }
     void kill()

@@ -120,22 +120,22 @@ py::array texels_of(const BakeResult& baked, const Map& map)
                    {columns * channels * kSize, channels * kSize, kSize});
 }
 
-template <class Result>
-void add_report(py::class_<Result>& type)
+void bind_result(py::module_& module)
 {
-    type.def_property_readonly(
-            "report", [](const Result& baked) { return baked.report(); },
+    py::class_<BakeResult>(module, "Result", "What every bake tells of itself.")
+        .def_property_readonly(
+            "report", [](const BakeResult& baked) { return baked.report(); },
             "dict: everything that is told of the bake, as `surfelao bake --json` writes it.")
         .def_property_readonly(
-            "error", [](const Result& baked) { return baked.told("error"); },
+            "error", [](const BakeResult& baked) { return baked.told("error"); },
             "dict or None: the error of what is displayed, measured at `check` points: rmse, in 95 "
             "of 100 bakes between low and high; bias (positive: too dark), p95, floor (what more "
             "exact answers would leave).")
         .def_property_readonly(
-            "seconds", [](const Result& baked) { return baked.told("seconds"); },
+            "seconds", [](const BakeResult& baked) { return baked.told("seconds"); },
             "dict: wall-clock seconds of each stage.")
         .def_property_readonly(
-            "notes", [](const Result& baked) { return baked.told("notes"); },
+            "notes", [](const BakeResult& baked) { return baked.told("notes"); },
             "list of str: what a user should know of the input and the result, in the words of the "
             "program, whose options are called --so.");
 }
@@ -149,8 +149,9 @@ BakeResult::BakeResult(std::shared_ptr<SceneBake> bake)
 
 void bind_bakes(py::module_& module)
 {
-    py::class_<ValueBake> bake(module, "Bake", "Values at vertices or points.");
-    bake.def_property_readonly(
+    bind_result(module);
+    py::class_<ValueBake, BakeResult>(module, "Bake", "Values at vertices or points.")
+        .def_property_readonly(
             "occlusion",
             [](const ValueBake& baked) { return occlusion_of(baked.owner(), baked.bake().values); },
             "(n,) float32, 0 = open to 1 = closed. A view of the engine's memory.")
@@ -160,12 +161,9 @@ void bind_bakes(py::module_& module)
                 return bent_normals_of(baked.owner(), baked.bake().values);
             },
             "(n, 3) float32, of unit length: to the middle of what is open; zero where a vertex "
-            "has "
-            "no normal. A view of the engine's memory.");
-    add_report(bake);
+            "has no normal. A view of the engine's memory.");
 
-    py::class_<TextureBake> texture(module, "Texture", "A map over a surface.");
-    texture
+    py::class_<TextureBake, BakeResult>(module, "Texture", "A map over a surface.")
         .def_property_readonly(
             "occlusion",
             [](const TextureBake& baked) {
@@ -193,7 +191,6 @@ void bind_bakes(py::module_& module)
             },
             "(m, 3) uint32: rows of uv at the corners of each face, 2**32 - 1 where it has no "
             "place; None: the faces themselves.");
-    add_report(texture);
 
     module.def("bake", &bake_arrays, py::arg("vertices"), py::arg("faces"), py::arg("options"));
     module.def("cloud", &cloud_arrays, py::arg("points"), py::arg("options"));

@@ -6,7 +6,7 @@
 
 namespace surfelao {
 
-void bind_bakes(pybind11::module_& module);     ///< Bake, Texture; bake, cloud, texture
+void bind_bakes(pybind11::module_& module);     ///< Result, Bake, Texture; bake, cloud, texture
 void bind_prepared(pybind11::module_& module);  ///< Prepared; prepare
 void bind_compare(pybind11::module_& module);   ///< compare
 void bind_files(pybind11::module_& module);     ///< Mesh; read

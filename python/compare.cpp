@@ -8,7 +8,6 @@
 
 #include <pybind11/pybind11.h>
 
-#include <limits>
 #include <utility>
 
 namespace py = pybind11;
@@ -35,7 +34,7 @@ std::int64_t rays_in(const py::handle& number)
 {
     py::dict one;
     one["rays"] = number;
-    return Options(one).integer("rays", 1, std::numeric_limits<std::uint32_t>::max());
+    return Options(one).integer("rays", 1, kMostRays);
 }
 
 CompareSettings compare_settings_of(const Options& options)

@@ -29,7 +29,12 @@ py::object rows_or_none(const FileMesh& mesh, const List& list)
 
 FileMesh read_arrays(const std::filesystem::path& path)
 {
-    return {result_of([path](const StageProgress&) { return read_scene(path); }, py::none(), {})};
+    return {result_of(
+        [path](const StageProgress& progress) {
+            return read_scene(path,
+                              {.progress = [&](double done) { return progress("read", done); }});
+        },
+        py::none(), {})};
 }
 
 py::list list_of_texts(const std::vector<std::string>& texts)

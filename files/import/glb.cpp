@@ -4,6 +4,7 @@
 #include "files/import/materials.h"
 #include "files/import/meshes.h"
 #include "files/import/names.h"
+#include "files/import/unit.h"
 
 #include <assimp/scene.h>
 #include <tiny_gltf.h>
@@ -29,12 +30,14 @@ std::array<ai_real, 16> columns_of(const aiMatrix4x4& m)
 const aiMatrix4x4 kUpright(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
 
 /// From the world of the file to glTF's, where assimp leaves that to us. Of FBX it tells the axes
-/// and the unit; in 3MF z is up; COLLADA, 3DS and X3D stand upright already.
-aiMatrix4x4 to_gltf_world(const aiScene& scene, const std::string& format)
+/// and the unit, of 3MF, in which z is up, neither; COLLADA, 3DS and X3D stand upright already.
+aiMatrix4x4 to_gltf_world(const aiScene& scene, const SourceFile& file)
 {
-    aiMatrix4x4 to_world;
-    if (format == "3MF")
-        return kUpright;
+    aiMatrix4x4 to_world, scaling;
+    if (file.format == "3MF") {
+        aiMatrix4x4::Scaling(aiVector3D(metres_of_3mf(file.path)), scaling);
+        return kUpright * scaling;
+    }
     if (!scene.mMetaData)
         return to_world;
     int up = 1, sign = 1;
@@ -44,7 +47,6 @@ aiMatrix4x4 to_gltf_world(const aiScene& scene, const std::string& format)
         to_world = kUpright;
     float centimetres = 100.0f;
     scene.mMetaData->Get("UnitScaleFactor", centimetres);
-    aiMatrix4x4 scaling;
     aiMatrix4x4::Scaling(aiVector3D(centimetres / 100.0f), scaling);
     return to_world * scaling;
 }
@@ -174,14 +176,13 @@ private:
 
 }  // namespace
 
-std::string glb_of(const aiScene& scene, const std::filesystem::path& folder,
-                   const std::string& format, std::vector<std::string>& notes)
+std::string glb_of(const aiScene& scene, const SourceFile& file, std::vector<std::string>& notes)
 {
     tinygltf::Model model;
     model.asset.version = "2.0";
     model.asset.generator = "surfelao-import";
-    add_materials(scene, folder, model, notes);
-    Nodes(scene, model).add_all(to_gltf_world(scene, format));
+    add_materials(scene, file, model, notes);
+    Nodes(scene, model).add_all(to_gltf_world(scene, file));
     std::ostringstream glb;
     tinygltf::TinyGLTF writer;
     writer.SetImageWriter(nullptr, nullptr);  // else names of files are lost

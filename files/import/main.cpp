@@ -71,7 +71,6 @@ std::string import_as_glb(const std::filesystem::path& file, std::vector<std::st
     keep_reader_of(file.extension().string(), importer);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
     const aiScene* const scene =
         importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
@@ -82,12 +81,12 @@ std::string import_as_glb(const std::filesystem::path& file, std::vector<std::st
             throw std::bad_alloc();  // which assimp has caught
         throw std::runtime_error(reason);
     }
-    std::string format = file.extension().string().substr(1);
-    std::ranges::transform(format, format.begin(),
+    SourceFile source{file, file.extension().string().substr(1)};
+    std::ranges::transform(source.format, source.format.begin(),
                            [](unsigned char letter) { return std::toupper(letter); });
-    notes.push_back("read through " + assimp_version() + " (" + format + ")");
+    notes.push_back("read through " + assimp_version() + " (" + source.format + ")");
     note_what_rests(*scene, notes);
-    return glb_of(*scene, file.parent_path(), format, notes);
+    return glb_of(*scene, source, notes);
 }
 
 /// False where it could not be written.

@@ -177,8 +177,21 @@ std::array<double, 3> color_of(const aiMaterial& material, const char* key, doub
     return {part(value.r), part(value.g), part(value.b)};
 }
 
+bool is_written_as_clear(const aiMaterial& material)
+{
+    return number_of(material, "$mat.opacity", 1.0) <= 0.0;
+}
+
+/// FBX and COLLADA say 0 for the opacity of what their programs show as solid: some of these count
+/// transparency the other way round.
+bool means_what_it_says(const SourceFile& file)
+{
+    return file.format == "3DS" || file.format == "X3D";
+}
+
 /// In these formats a texture stands in place of the colour.
-void set_base_color(const aiMaterial& material, Textures& textures, tinygltf::Material& to)
+void set_base_color(const aiMaterial& material, bool is_solid, Textures& textures,
+                    tinygltf::Material& to)
 {
     tinygltf::PbrMetallicRoughness& pbr = to.pbrMetallicRoughness;
     const std::array<double, 3> diffuse = color_of(material, "$clr.diffuse", 1.0);
@@ -186,9 +199,8 @@ void set_base_color(const aiMaterial& material, Textures& textures, tinygltf::Ma
     const std::array<double, 3> color = material.Get(AI_MATKEY_BASE_COLOR, base) == aiReturn_SUCCESS
                                             ? color_of(material, "$clr.base", 1.0)
                                             : diffuse;
-    // a file that says 0 for the opacity of what it shows has counted the other way round
     const double opacity = number_of(material, "$mat.opacity", 1.0);
-    const double alpha = opacity > 0.0 && opacity < 1.0 ? opacity : 1.0;
+    const double alpha = !is_solid && opacity >= 0.0 && opacity < 1.0 ? opacity : 1.0;
     pbr.baseColorFactor = {color[0], color[1], color[2], alpha};
     if (alpha < 1.0)
         to.alphaMode = "BLEND";
@@ -205,13 +217,14 @@ void set_base_color(const aiMaterial& material, Textures& textures, tinygltf::Ma
         to.alphaMode = "MASK";
 }
 
-tinygltf::Material material_of(const aiMaterial& material, Textures& textures)
+/// is_solid: whatever its opacity is.
+tinygltf::Material material_of(const aiMaterial& material, bool is_solid, Textures& textures)
 {
     tinygltf::Material to;
     aiString name;
     if (material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS)
         to.name = to_utf8(name.C_Str());
-    set_base_color(material, textures, to);
+    set_base_color(material, is_solid, textures, to);
     to.pbrMetallicRoughness.metallicFactor = number_of(material, "$mat.metallicFactor", 0.0);
     to.pbrMetallicRoughness.roughnessFactor = number_of(material, "$mat.roughnessFactor", 1.0);
     int is_two_sided = 0;
@@ -223,7 +236,8 @@ tinygltf::Material material_of(const aiMaterial& material, Textures& textures)
             texture_of(material, aiTextureType_EMISSION_COLOR, aiTextureType_EMISSIVE)) {
         to.emissiveTexture.index = textures.add(*texture);
         to.emissiveTexture.texCoord = static_cast<int>(texture->uv_set);
-        to.emissiveFactor = {1.0, 1.0, 1.0};
+        if (to.emissiveTexture.index >= 0)
+            to.emissiveFactor = {1.0, 1.0, 1.0};
     }
     if (const auto texture =
             texture_of(material, aiTextureType_NORMAL_CAMERA, aiTextureType_NORMALS)) {
@@ -247,13 +261,18 @@ std::vector<int> uv_set_counts(const aiScene& scene)
 
 }  // namespace
 
-void add_materials(const aiScene& scene, const fs::path& folder, tinygltf::Model& model,
+void add_materials(const aiScene& scene, const SourceFile& file, tinygltf::Model& model,
                    std::vector<std::string>& notes)
 {
+    const fs::path folder = file.path.parent_path();
     Textures textures(scene, folder, model);
+    std::size_t solid_count = 0;
     const std::vector<int> sets = uv_set_counts(scene);
     for (unsigned int i = 0; i < scene.mNumMaterials; ++i) {
-        tinygltf::Material material = material_of(*scene.mMaterials[i], textures);
+        const bool is_solid =
+            is_written_as_clear(*scene.mMaterials[i]) && !means_what_it_says(file);
+        solid_count += is_solid ? 1 : 0;
+        tinygltf::Material material = material_of(*scene.mMaterials[i], is_solid, textures);
         if (i + 1 == scene.mNumMaterials && material.name == AI_DEFAULT_MATERIAL_NAME)
             break;  // assimp's own
         for (int* const set :
@@ -267,6 +286,10 @@ void add_materials(const aiScene& scene, const fs::path& folder, tinygltf::Model
     if (textures.lost_count() > 0)
         notes.push_back("textures in the file that are neither PNG nor JPEG and are left out: " +
                         std::to_string(textures.lost_count()));
+    if (solid_count > 0)
+        notes.push_back(
+            "materials with an opacity of 0, which " + file.format +
+            " has of solid ones too, are taken as solid: " + std::to_string(solid_count));
 }
 
 }  // namespace surfelao

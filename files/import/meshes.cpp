@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -101,6 +102,9 @@ tinygltf::Primitive add_primitive(const aiMesh& mesh, tinygltf::Model& model)
 
 void add_joints(const aiMesh& mesh, tinygltf::Primitive& primitive, tinygltf::Model& model)
 {
+    if (mesh.mNumBones > 65536)
+        throw std::runtime_error("it has a mesh of " + std::to_string(mesh.mNumBones) +
+                                 " bones, of which glTF numbers 65536");
     std::vector<std::array<std::uint16_t, 4>> joints(mesh.mNumVertices);
     std::vector<std::array<float, 4>> weights(mesh.mNumVertices);
     for (unsigned int bone = 0; bone < mesh.mNumBones; ++bone) {

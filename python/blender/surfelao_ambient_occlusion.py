@@ -145,7 +145,7 @@ class OBJECT_OT_surfelao_bake(bpy.types.Operator):
         return {"FINISHED"}
 
     def bake(self, context, objects, settings, progress):
-        """Throws ValueError. The error of what is displayed, of several maps the largest."""
+        """Raises ValueError. Returns the error of what is displayed, of several maps the largest."""
         depsgraph = context.evaluated_depsgraph_get()
         meshes = [self.mesh_of(o, depsgraph) for o in objects]
         others = occluding_meshes(depsgraph, objects) if settings.occluders == "VISIBLE" else []

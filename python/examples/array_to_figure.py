@@ -14,5 +14,6 @@ faces = np.concatenate([np.stack(c, 1) for c in ((i, i + 1, i + side + 1), (i, i
 baked = surfelao.bake(np.stack([x, y, z], -1).reshape(-1, 3), faces)
 plt.imshow(baked.occlusion.reshape(side, side), cmap="gray_r", extent=(0, 10, 0, 10), origin="lower")
 plt.colorbar(label="occlusion, 0 = open")
+plt.gca().set(xlabel="x", ylabel="y")
 plt.title(f"seen error {baked.error['rmse']:.4f}, {baked.seconds['total']:.2f} s")
 plt.savefig("waves.png", dpi=150)

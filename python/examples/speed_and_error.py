@@ -20,12 +20,13 @@ def main():
         rows = [row for row in told["rows"] if row["engine"] == engine]
         rows.sort(key=lambda row: row["beyond"])
         seconds = [row["build_s"] + row["solve_s"] + row["fit_s"] for row in rows]
-        axes.loglog([row["beyond"] for row in rows], seconds, marker=marker, label=engine)
+        axes.loglog(seconds, [row["beyond"] for row in rows], marker=marker, label=engine)
         for row, time in zip(rows, seconds):
-            axes.annotate(row["setting"], (row["beyond"], time), xytext=(4, 4),
+            axes.annotate(row["setting"], (time, row["beyond"]), xytext=(4, 4),
                           textcoords="offset points", fontsize=7)
-    axes.set_xlabel(f"RMS error beyond the floor of {told['floor']['rmse']:.4f}")
-    axes.set_ylabel("seconds: build, solve and fit")
+    axes.set_xlabel("seconds: build, solve and fit")
+    axes.set_ylabel(f"RMS error beyond the floor of {told['floor']['rmse']:.4f}")
+    axes.margins(0.12)  # room for the words at the last points
     axes.set_title(f"{mesh.name}: {told['vertices']} vertices, {told['threads']} threads")
     axes.grid(True, which="both", alpha=0.3)
     axes.legend()

@@ -178,7 +178,8 @@ def compare(vertices: ArrayLike, faces: ArrayLike, *,
 
 
 def read(path: Union[str, os.PathLike]) -> Mesh:
-    """The mesh or the cloud of a file: .obj .ply .off .stl .gltf .glb, .pcd .xyz .pts .txt .asc.
+    """The mesh or the cloud of a file: .obj .ply .off .stl .gltf .glb, .pcd .xyz .pts .txt .asc, and
+    .fbx .dae .zae .3ds .3mf .x3d through assimp.
 
     Raises InputError, with one sentence, for what is no complete, finite, consistent one.
     """

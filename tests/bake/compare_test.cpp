@@ -159,7 +159,7 @@ TEST_F(Compare, AddsARowOfRaysWhereACandidateIsMoreExact)
     EXPECT_EQ(c.rows.back().rounds, 1);
     EXPECT_EQ(c.rows.front().rounds, 2);
     EXPECT_EQ(Json::parse(json_of(c))["rows"][3]["rounds"], 1);
-    EXPECT_NE(table_of(c).find("8 rays ran once"), std::string::npos);
+    EXPECT_NE(table_of(c).find("8 rays: ran once"), std::string::npos);
 }
 
 TEST_F(Compare, OpenScenesHaveNoRatioAndNoError)

@@ -115,6 +115,20 @@ MovingWorld world_of(const std::vector<BakeSettings>& frames)
     return MovingWorld(frames.front().input, seconds, {}, {}, {});
 }
 
+// The floor, and both boxes as they stand after a second.
+TEST_F(MovingBake, MisfitIsThatOfAllBodies)
+{
+    MovingWorld world = world_of(frames("x"));
+    world.pose(1.0);
+    const std::vector<Occlusion> answers(world.receiver_count(), Occlusion{.occlusion = 0.3f});
+    const std::vector<Occlusion> open(world.scene().positions.size());
+    const std::optional<Misfit> misfit = world.misfit(answers, open);
+    ASSERT_TRUE(misfit.has_value());
+    EXPECT_NEAR(misfit->rms, 0.3, 1e-6);
+    const double unit = world.frame().diagonal * world.frame().diagonal;
+    EXPECT_NEAR(misfit->area * unit, 3600 + 24 + 40, 0.01);
+}
+
 // The way there and back shows each frame's bytes again, and the floor farther from the boxes than
 // rays and the fit reach never changes.
 TEST_F(MovingBake, ChangesOnlyWhatChanges)

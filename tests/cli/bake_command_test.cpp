@@ -286,6 +286,19 @@ TEST_F(BakeCommand, OneFailingFileDoesNotStopTheBatch)
     EXPECT_TRUE(json[1].contains("error"));
 }
 
+// A setting that is not for one of the files is wrong usage, as it is for that file alone.
+TEST_F(BakeCommand, ASettingThatIsNotForAFileOfABatchIsWrongUsage)
+{
+    std::ofstream(folder_ / "points.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    std::ofstream(folder_ / "bad.obj") << "v 1 2\n";
+    const Outcome outcome =
+        run({"bake", folder_ / "points.obj", folder_ / "a.obj", folder_ / "bad.obj", "-o",
+             folder_ / "out", "--subdivide", "--check", "0"});
+    EXPECT_EQ(outcome.code, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find("2 of 3 files failed"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(fs::exists(folder_ / "out/a.obj"));
+}
+
 TEST_F(BakeCommand, ColoursAreAsAskedForAndABakeOfABakeIsABakeOfTheOriginal)
 {
     std::ofstream(folder_ / "scan.obj")

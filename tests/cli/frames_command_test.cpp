@@ -81,6 +81,7 @@ TEST_F(FramesCommand, TellsWhatAFrameTookAndGoesOn)
         for (const char* key : {"pose", "place", "tree", "solve", "fit", "write"})
             EXPECT_TRUE(motion[key].is_number()) << key;
         EXPECT_LE(motion["bound"], 0.002);
+        EXPECT_TRUE(report[i]["misfit"]["rms"].is_number());
         EXPECT_EQ(report[i]["notes"].back(),
                   std::string("the pose is that of animation 0 \"fall\" at ") + seconds[i] + " s");
     }

@@ -50,6 +50,8 @@ TEST_F(PresetTest, GivesWayToWhatIsGiven)
                                     "--at",    "texels", "--size",   "16",
                                     "--check", "0",      "--preset", "cad"};
     EXPECT_EQ(run(folder_.path(), map).code, 0);
+    map.back() = "game";  // nor has it colours
+    EXPECT_EQ(run(folder_.path(), map).code, 0);
     map.emplace_back("--subdivide");
     EXPECT_EQ(run(folder_.path(), map).code, 2);
 }

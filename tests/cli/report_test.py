@@ -72,7 +72,7 @@ def main(program):
         folder = pathlib.Path(name)
         (folder / "a.obj").write_text(hills(12))
         saved = check(report(program, folder, "--reference-rays", "64", "--sample", "300"),
-                      {"masks", "disks", "rays"})
+                      {"masks", "disks", "Embree"})
         assert set(saved) == PLOTS | {"surfelao-compare.csv"}, set(saved)
         saved = check(report(program, folder, "--at", "pixels", "--views", "1", "--width", "48",
                              "--height", "36", "--reference-rays", "16", "--engines", "masks,gtao"),

@@ -91,6 +91,7 @@ TEST_F(Usage, WhatIsMissingOrTooMuchIsNamed)
     expect_refusal({"-o", "again.ply"}, "--output is given 2 times: it has one value only.");
     expect_refusal({"--error", "0.1", "--rays", "8"}, "--rays excludes --error.");
     expect_refusal({"--fps", "24"}, "--fps requires --frames.");
+    expect_refusal({"--resume=7"}, "--resume takes no value.");
 }
 
 TEST_F(Usage, NumbersAreFiniteWholeWhereTheyCountAndInTheirRange)
@@ -115,6 +116,17 @@ TEST_F(Usage, NumbersAreFiniteWholeWhereTheyCountAndInTheirRange)
     }
     for (const char* text : {"2.5", "1e2", "-1", "010", "99999999999999999999"})
         refused("--threads", text, "a whole number from 1 to 1024");
+}
+
+TEST_F(Usage, ColoursAreForWhatHasThem)
+{
+    const std::string sentence =
+        "--colors and --encoding are for values at vertices and points: neither a map nor a grid "
+        "has such colours.";
+    const std::string picture = folder_ / "map.png", mesh = folder_ / "map.obj";
+    expect_sentence({"bake", in(), "-o", picture, "--colors", "grey"}, sentence);
+    expect_sentence({"bake", in(), "-o", mesh, "--at", "texels", "--encoding", "srgb"}, sentence);
+    expect_sentence({"bake", in(), "-o", picture, "--at", "grid", "--colors", "auto"}, sentence);
 }
 
 // What only the file can tell is wrong usage all the same.

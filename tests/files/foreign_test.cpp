@@ -6,11 +6,13 @@
 #include "temporary_folder.h"
 
 #include <gtest/gtest.h>
+#include <minizip/zip.h>
 
 #include <signal.h>
 
 #include <algorithm>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -113,6 +115,37 @@ Connections:  {
 }
 )";
 
+/// Goes into its objects and its connections: the board rises within a second.
+constexpr const char* kFbxAnimation = R"(
+	AnimationStack: 30, "AnimStack::Rise", "" {
+		Properties70:  {
+			P: "LocalStop", "KTime", "Time", "",46186158000
+		}
+	}
+	AnimationLayer: 31, "AnimLayer::Base", "" {
+	}
+	AnimationCurveNode: 32, "AnimCurveNode::T", "" {
+		Properties70:  {
+			P: "d|Z", "Number", "", "A",50
+		}
+	}
+	AnimationCurve: 33, "AnimCurve::", "" {
+		Default: 0
+		KeyVer: 4009
+		KeyTime: *2 {
+			a: 0,46186158000
+		}
+		KeyValueFloat: *2 {
+			a: 50,90
+		}
+	}
+)";
+constexpr const char* kFbxConnections = R"(	C: "OO",31,30
+	C: "OO",32,31
+	C: "OP",32,20, "Lcl Translation"
+	C: "OP",33,32, "d|Z"
+)";
+
 /// Whether a vertex of the scene stands there; what assimp computes is a float's.
 bool has_vertex(const Scene& scene, const glm::dvec3& place)
 {
@@ -205,6 +238,82 @@ TEST(Foreign, WhatRestsIsTold)
 {
     const Scene scene = read_scene("/usr/share/assimp/models/Collada/box_nested_animation.dae");
     EXPECT_NE(std::ranges::find(scene.notes, "animations are left out: 1"), scene.notes.end());
+}
+
+TEST(Foreign, AnimationsOfFbxAreToldToo)
+{
+    const TemporaryFolder folder;
+    std::string text = kFbxBoard;
+    text.insert(text.find("}\nConnections"), kFbxAnimation);
+    text.insert(text.rfind('}'), kFbxConnections);
+    const Scene scene = read_scene(folder.file("board.fbx", text));
+    EXPECT_NE(std::ranges::find(scene.notes, "animations are left out: 1"), scene.notes.end());
+    EXPECT_TRUE(has_vertex(scene, {1, .5, -2}));
+}
+
+/// A 3MF of one triangle, with this in the element of its model.
+fs::path triangle_of_3mf(const TemporaryFolder& folder, const std::string& unit)
+{
+    const fs::path path = folder / "triangle.3mf";
+    const zipFile archive = zipOpen64(path.c_str(), APPEND_STATUS_CREATE);
+    for (const auto& [name, text] :
+         {std::pair<const char*, std::string>{
+              "_rels/.rels",
+              "<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/"
+              "relationships\"><Relationship Id=\"r\" Target=\"/3D/3dmodel.model\" "
+              "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>"
+              "</Relationships>"},
+          {"3D/3dmodel.model",
+           "<?xml version=\"1.0\"?><model " + unit +
+               " xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">"
+               "<resources><object id=\"1\" type=\"model\"><mesh><vertices>"
+               "<vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"100\" y=\"0\" z=\"0\"/>"
+               "<vertex x=\"0\" y=\"0\" z=\"200\"/></vertices><triangles>"
+               "<triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh></object></resources>"
+               "<build><item objectid=\"1\"/></build></model>"}}) {
+        zipOpenNewFileInZip(archive, name, nullptr, nullptr, 0, nullptr, 0, nullptr, Z_DEFLATED, 1);
+        zipWriteInFileInZip(archive, text.data(), static_cast<unsigned>(text.size()));
+        zipCloseFileInZip(archive);
+    }
+    zipClose(archive, nullptr);
+    return path;
+}
+
+TEST(Foreign, Of3mfTheUnitCounts)
+{
+    const TemporaryFolder folder;
+    EXPECT_TRUE(has_vertex(read_scene(triangle_of_3mf(folder, "")), {0, 0.2, 0}));
+    EXPECT_TRUE(has_vertex(read_scene(triangle_of_3mf(folder, "xml:lang='en' unit='inch'")),
+                           {0, 200 * 0.0254, 0}));
+    try {
+        static_cast<void>(read_scene(triangle_of_3mf(folder, "unit=\"furlong\"")));
+        ADD_FAILURE() << "a furlong is read";
+    } catch (const InputError& error) {
+        EXPECT_TRUE(std::string(error.what()).ends_with("its unit \"furlong\" is none of 3MF"))
+            << error.what();
+    }
+}
+
+// What COLLADA calls clear may be solid, what X3D calls so is.
+TEST(Foreign, AnOpacityOfNothingIsBelievedWhereItIsMeant)
+{
+    const TemporaryFolder folder;
+    std::string collada = collada_board("plain");
+    collada.insert(collada.find("</lambert>"),
+                   "<transparent opaque=\"A_ONE\"><color>1 1 1 1</color></transparent>"
+                   "<transparency><float>0</float></transparency>");
+    const Scene solid = read_scene(folder.file("board.dae", collada));
+    EXPECT_EQ(solid.asset->base_colors().materials[0].opacity, Opacity::solid);
+    EXPECT_NE(std::ranges::find(solid.notes,
+                                "materials with an opacity of 0, which DAE has of solid ones too, "
+                                "are taken as solid: 1"),
+              solid.notes.end());
+    std::string x3d = kX3dBoard;
+    x3d.insert(x3d.find("<IndexedFaceSet"),
+               "<Appearance><Material transparency=\"1\"/></Appearance>");
+    const Scene clear = read_scene(folder.file("board.x3d", x3d));
+    EXPECT_EQ(clear.asset->base_colors().materials[0].opacity, Opacity::clear);
+    EXPECT_EQ(clear.asset->base_colors().materials[0].alpha, 0.0f);
 }
 
 TEST(Foreign, NamesInLatin1AreUtf8)
@@ -303,6 +412,22 @@ TEST(ForeignProgram, NoneIsLeftBehindByWhoeverStops)
     std::ifstream(told) >> child;
     ASSERT_GT(child, 0);
     EXPECT_EQ(kill(child, 0), -1);
+}
+
+// As part of a program that ignores SIGCHLD we never learn how a child ended.
+TEST(ForeignProgram, AnEndThatNobodyLearnsOfIsNoHang)
+{
+    const TemporaryFolder folder;
+    const fs::path program = program_that(folder, "exit 0");
+    const auto before = signal(SIGCHLD, SIG_IGN);
+    std::string said;
+    try {
+        static_cast<void>(import_file(folder.file("a.fbx", "x"), program, kSmall));
+    } catch (const std::runtime_error& error) {
+        said = error.what();
+    }
+    signal(SIGCHLD, before);
+    EXPECT_TRUE(said.starts_with("another program cannot be waited for")) << said;
 }
 
 TEST(ForeignProgram, NotesAreThoseItMarks)

@@ -334,6 +334,25 @@ TEST(Disks, CorrectionsSettle)
     }
 }
 
+// They settle long before a hundred passes; shares ask for less.
+TEST(Disks, ProgressEndsAtOne)
+{
+    const World world(scenes::nested_shells(2, 0.2, 6));
+    for (const std::uint32_t shares : {1u, 3u}) {
+        DiskOptions options;
+        options.passes = 100;
+        options.share = {0, shares};
+        double last = 0.0;
+        const DiskResult result =
+            solve_disks(world.octree, world.receivers, options, [&](double done) {
+                last = done;
+                return true;
+            });
+        EXPECT_LT(result.residuals.size(), 99u);
+        EXPECT_EQ(last, 1.0) << shares;
+    }
+}
+
 TEST(Disks, StrengthScalesAndStaysInRange)
 {
     const World world(scenes::bumpy_sphere(12));

@@ -95,6 +95,8 @@ struct DiskMemory::Impl {
 
     /// Forms what is missing and moves what is there. Returns the leaves that will be asked.
     std::uint64_t prepare(const DiskForest& forest);
+    /// Of a pass of the correction, leaves.
+    std::uint64_t work_of_pass(const DiskForest& forest) const;
     bool is_own_found(const DiskForest::Body& body, const BodyMemory& memory) const;
     void find_own(const DiskForest::Body& body, BodyMemory& memory, ProgressMeter& meter) const;
     double correct(const DiskForest& forest, int pass, ProgressMeter& meter);
@@ -133,6 +135,18 @@ std::uint64_t DiskMemory::Impl::prepare(const DiskForest& forest)
             move_groups(side.groups.at_rest, body.placement, side.groups.now);
             work += side.groups.at_rest.leaves.size() * static_cast<unsigned>(times);
         }
+    }
+    return work;
+}
+
+std::uint64_t DiskMemory::Impl::work_of_pass(const DiskForest& forest) const
+{
+    std::uint64_t work = 0;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        if (!forest.bodies()[b].shown)
+            continue;
+        for (const Emitters& side : bodies[b].sides)
+            work += side.groups.at_rest.leaves.size();
     }
     return work;
 }
@@ -289,8 +303,11 @@ DiskFrame DiskMemory::solve(const DiskForest& forest, std::span<Occlusion> answe
     DiskFrame frame;
     for (int pass = 1; pass < impl_->options.passes; ++pass) {
         frame.residuals.push_back(impl_->correct(forest, pass, meter));
-        if (frame.residuals.back() <= kSettled)
+        if (frame.residuals.back() <= kSettled) {
+            const auto passes_left = static_cast<unsigned>(impl_->options.passes - 1 - pass);
+            meter.add(passes_left * impl_->work_of_pass(forest));
             break;
+        }
     }
     frame.solved = impl_->answer(forest, answers, meter);
     return frame;

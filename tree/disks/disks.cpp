@@ -93,11 +93,15 @@ std::vector<DiskResult> solve_disk_lists(const Octree& octree,
     if (options.passes > 1 && two_sided)
         sides.emplace_back(octree, -1.0f);
     std::vector<ReceiverGroups> groups;
-    std::uint64_t work = 0;
-    for (const std::span<const Receiver> receivers : lists)
-        work += groups.emplace_back(group_receivers(receivers)).leaves.size();
+    std::uint64_t work = 0, work_of_pass = 0;
+    for (const std::span<const Receiver> receivers : lists) {
+        groups.push_back(group_receivers(receivers));
+        const ShareRange leaves = range_of(options.share, groups.back().leaves.size());
+        work += leaves.end - leaves.begin;
+    }
     for (const FarSide& side : sides)
-        work += side.groups.leaves.size() * (options.passes - 1);
+        work_of_pass += side.groups.leaves.size();
+    work += work_of_pass * static_cast<unsigned>(options.passes - 1);
     ProgressMeter meter(progress, work);
 
     EmitterVisibility visibility;
@@ -127,8 +131,10 @@ std::vector<DiskResult> solve_disk_lists(const Octree& octree,
                                visibility.node_back);
         const double count = static_cast<double>(sides.size() * octree.surfels.size());
         residuals.push_back(count > 0.0 ? std::sqrt(change / count) : 0.0);
-        if (residuals.back() <= kSettled)
+        if (residuals.back() <= kSettled) {
+            meter.add(work_of_pass * static_cast<unsigned>(options.passes - 1 - pass));
             break;
+        }
     }
 
     std::vector<DiskResult> results;
