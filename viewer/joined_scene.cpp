@@ -114,6 +114,8 @@ Scene joined_scene(std::span<const Scene> scenes)
         uv_sets = std::max(uv_sets, scene.uvs.size());
     }
     Scene all = join(scenes);
+    for (Part& part : all.parts)
+        part.node = part.mesh = part.primitive = -1;  // numbers within one file
     for (std::size_t number = 0; number < uv_sets; ++number)
         all.uvs.push_back(joined_uvs(scenes, number));
     all.labels = joined_labels(scenes);

@@ -407,7 +407,7 @@ private:
         if (input.add_map)
             add_map();
         if (input.place_maps)
-            left_.place_maps();
+            place_maps();
         move_camera(input);
         if (input.view_changed)
             panes_.restart();
@@ -444,6 +444,14 @@ private:
         } catch (const std::exception& error) {
             note_ = error.what();
         }
+    }
+
+    void place_maps()
+    {
+        if (panel_state_.left.from_maps)
+            left_.place_maps();
+        if (right_ && right_cell(panel_state_).from_maps)
+            right_->place_maps();
     }
 
     /// What each side of the line shows.
