@@ -2,11 +2,13 @@
 //
 // Host side  viewer/pixel_values.h
 //   u_has_pixels       0: there are none; 1: u_own_pixels is bent normal.xyz, occlusion; 2: it is the
-//                      occlusion alone; 3: occlusion and, as green, how far that counts
+//                      occlusion alone; 3: occlusion and, as green, how far that counts; 4: 1 - it
+//   u_pixel_guard      u_own_pixels is so many pixels larger than the target on each side
 //   u_has_pixel_rays   0: what was found stands in for the reference
 //   u_own_pixels u_pixel_rays  as large as the target: what was found, and by rays
 //   u_pixel_surface    GBuffer::surface(): normal, distance forward; the same size
 uniform int u_has_pixels;
+uniform int u_pixel_guard;
 uniform int u_has_pixel_rays;
 uniform sampler2D u_own_pixels;
 uniform sampler2D u_pixel_rays;
@@ -53,12 +55,14 @@ void read_pixels(inout vec4 own, inout vec4 reference, vec3 normal)
         return;
     ivec2 pixel = nearest_pixel();
     vec4 stand_in = own;
-    own = texelFetch(u_own_pixels, pixel, 0);
+    own = texelFetch(u_own_pixels, pixel + u_pixel_guard, 0);
     if (u_has_pixels == 2)
         own = vec4(normal, own.r);
     if (u_has_pixels == 3) {
         pixel_coverage = own.g;
         own = mix(stand_in, vec4(normal, own.r), pixel_coverage);
     }
+    if (u_has_pixels == 4)
+        own = vec4(normal, 1.0 - own.r);
     reference = u_has_pixel_rays == 1 ? texelFetch(u_pixel_rays, pixel, 0) : own;
 }

@@ -7,7 +7,8 @@
 //            u_texel
 //            u_corner  lower left corner of the viewport
 //            u_factor
-//            u_encode  1: the result is encoded as sRGB (IEC 61966-2-1); 0: it stays linear
+//            u_encode  1: for a screen: encoded as sRGB (IEC 61966-2-1), before checks where it is
+//                      transparent; 0: it stays linear
 // Writes     out_color
 
 uniform sampler2D u_image;
@@ -32,9 +33,19 @@ vec4 image_at(ivec2 pixel)
                share.y);
 }
 
+vec3 checks(ivec2 pixel)
+{
+    const int kCheck = 12;
+    ivec2 check = pixel / kCheck;
+    return vec3((check.x + check.y) % 2 == 0 ? 0.10 : 0.14);
+}
+
 void main()
 {
-    vec4 value = u_factor * image_at(ivec2(gl_FragCoord.xy) - u_corner);
+    ivec2 pixel = ivec2(gl_FragCoord.xy) - u_corner;
+    vec4 value = u_factor * image_at(pixel);
+    if (u_encode == 1)
+        value = vec4(value.rgb + (1.0 - value.a) * checks(pixel), 1.0);
     vec3 shown = mix(1.055 * pow(max(value.rgb, 0.0), vec3(1.0 / 2.4)) - 0.055, 12.92 * value.rgb,
                      lessThanEqual(value.rgb, vec3(0.0031308)));
     out_color = u_encode == 1 ? vec4(shown, value.a) : value;

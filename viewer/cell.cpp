@@ -4,18 +4,23 @@ namespace surfelao {
 
 Where where_of(const Cell& cell)
 {
+    if (cell.from_maps)
+        return Where::cube_maps;
+    if (cell.grid)
+        return Where::grid;
     if (cell.at_pixels)
-        return cell.from_maps ? Where::cube_maps : Where::pixels;
+        return Where::pixels;
     return cell.settings.texels ? Where::texels : Where::vertices;
 }
 
-void set_where(Cell& cell, Where where, const TexelSettings& texels)
+void set_where(Cell& cell, Where where, const WhereSettings& settings)
 {
-    cell.from_maps = where == Where::cube_maps;
-    cell.at_pixels = where == Where::pixels || cell.from_maps;
-    cell.settings.texels = where == Where::texels ? std::optional(texels) : std::nullopt;
-    if (where != Where::pixels)
+    if (where != where_of(cell))
         cell.screen.reset();
+    cell.from_maps = where == Where::cube_maps;
+    cell.grid = where == Where::grid ? std::optional(settings.grid) : std::nullopt;
+    cell.at_pixels = where == Where::pixels || cell.from_maps || cell.grid;
+    cell.settings.texels = where == Where::texels ? std::optional(settings.texels) : std::nullopt;
 }
 
 void choose_engine(Cell& cell, Engine engine, Device device, std::map<Engine, float>& qualities)
@@ -53,13 +58,17 @@ std::string name_of(Where where, bool is_cloud)
             return "pixels";
         case Where::cube_maps:
             return "cube maps";
+        case Where::grid:
+            return "AO grid";
     }
     return {};
 }
 
 std::string how_of(const Cell& cell)
 {
-    return cell.screen ? name_of(cell.screen->method) : name_of(cell.settings.engine);
+    if (!cell.screen)
+        return name_of(cell.settings.engine);
+    return cell.from_maps ? "horizon" : name_of(cell.screen->method);
 }
 
 std::string name_of(const EngineChoice& choice)

@@ -1,6 +1,7 @@
 /// cell.h: what a picture shows, as a cell of a table: where values lie, and how they are found.
 #pragma once
 
+#include "bake/grid_target.h"
 #include "gpu/screen_space.h"
 #include "viewer/session.h"
 #include "viewer/view_options.h"
@@ -16,6 +17,7 @@ enum class Where {
     texels,
     pixels,
     cube_maps,  ///< texels of cube maps, which pixels read
+    grid,       ///< cells of an AO grid round the model, likewise
 };
 
 struct Cell {
@@ -23,14 +25,24 @@ struct Cell {
     /// on the ground.
     SessionSettings settings;
     bool at_pixels = false;
-    bool from_maps = false;                ///< at pixels: read from cube maps
-    std::optional<ScreenSettings> screen;  ///< at pixels: who answers in the engine's place
+    bool from_maps = false;            ///< at pixels: read from cube maps
+    std::optional<GridSettings> grid;  ///< at pixels: read from an AO grid
+    std::optional<ScreenSettings>
+        screen;  ///< at pixels or in maps: who answers in the engine's place
+    /// Such methods see that much more beyond each edge of the picture, as a share of its height.
+    float guard = 0.0f;
     bool operator==(const Cell&) const = default;
 };
 
+/// Of a map and of a grid, where values lie there.
+struct WhereSettings {
+    TexelSettings texels;
+    GridSettings grid;
+};
+
 [[nodiscard]] Where where_of(const Cell& cell);
-/// texels: of a map. How stays what it is where that can be.
-void set_where(Cell& cell, Where where, const TexelSettings& texels);
+/// How stays what it is where that can be.
+void set_where(Cell& cell, Where where, const WhereSettings& settings);
 
 /// Sets who solves. Each engine keeps its own quality, and is `good` at first. qualities: of the
 /// engines that are not chosen.
@@ -41,9 +53,9 @@ void choose_engine(Cell& cell, Engine engine, Device device, std::map<Engine, fl
 /// The same, but visibility where the cell has nothing of these colours.
 [[nodiscard]] ViewOptions options_for(const Cell& cell, ViewOptions options);
 
-/// "vertices", "texels", "points", "pixels", "cube maps"
+/// "vertices", "texels", "points", "pixels", "cube maps", "AO grid"
 [[nodiscard]] std::string name_of(Where where, bool is_cloud);
-/// "masks", "masks on GPU", "gtao"
+/// "masks", "masks on GPU", "gtao", "horizon"
 [[nodiscard]] std::string how_of(const Cell& cell);
 
 /// "masks", "masks on GPU"

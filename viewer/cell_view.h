@@ -3,16 +3,17 @@
 #pragma once
 
 #include "bake/statistics.h"
-#include "gpu/g_buffer.h"
-#include "pixels/cube_projector.h"
+#include "gpu/screen_space.h"
 #include "pixels/pixel_engine.h"
 #include "viewer/base_paint.h"
 #include "viewer/cell.h"
-#include "viewer/cube_session.h"
+#include "viewer/cube_layer.h"
+#include "viewer/grid_layer.h"
 #include "viewer/moving_session.h"
 #include "viewer/pixel_session.h"
 #include "viewer/renderer.h"
 #include "viewer/session.h"
+#include "viewer/shot.h"
 
 #include <cstdint>
 #include <memory>
@@ -79,14 +80,13 @@ public:
     [[nodiscard]] bool look(const Cell& cell, const Camera& camera, PictureSize size,
                             const PixelRays& rays, const ViewOptions& view = {});
     /// Of the last look().
-    PictureSize picture_size() const { return shot_.size; }
+    PictureSize picture_size() const { return shot_.size(); }
 
-    /// Puts a cube map where the camera of the last look() is. It must not be in a body: what is
-    /// wrong with the place, or an empty text.
-    [[nodiscard]] std::string add_map();
-    std::size_t map_count() const { return cubes_.count(); }
-    /// Of the pixels that see something, the share that maps answer; while the camera rests.
-    const std::optional<double>& coverage() const { return coverage_; }
+    /// CubeLayer::add() and place(), of the last look().
+    [[nodiscard]] std::string add_map() { return cubes_.add(shot_); }
+    void place_maps() { cubes_.place(shot_.model()); }
+    const CubeLayer& cubes() const { return cubes_; }
+    const GridLayer& grid() const { return grid_; }
 
     /// Read when it is first wanted. Its notes.
     std::span<const std::string> take_paint();
@@ -106,11 +106,14 @@ public:
     const std::optional<ShownError>& pixel_error() const { return error_; }
     const PixelAnswers& pixels() const { return pixels_.answers(); }
     const PixelAnswers& ray_pixels() const { return rays_.answers(); }
-    /// The occlusion at a pixel of the last look() where a method of the picture or cube maps tell
-    /// it alone. Waits for the device.
+    /// The occlusion at a pixel of the last look() where a method of the picture, cube maps or a
+    /// grid tell it alone. Waits for the device.
     [[nodiscard]] std::optional<float> told_by_picture(glm::ivec2 pixel) const;
     bool is_busy() const;
-    bool was_cancelled() const { return session_.was_cancelled() || was_cancelled_; }
+    bool was_cancelled() const
+    {
+        return session_.was_cancelled() || was_cancelled_ || grid_.was_cancelled();
+    }
     /// 0 to 1 where pixels are solved, or rays traced at them.
     std::optional<double> pixel_progress() const;
     std::optional<double> ray_progress() const;
@@ -123,31 +126,13 @@ public:
     void solve_again();
 
 private:
-    /// What the pixels are of.
-    struct Shot {
-        std::shared_ptr<const Model> model;
-        Camera camera;
-        PictureSize size;
-        bool is_culled = false;
-        bool operator==(const Shot&) const = default;
-    };
-    const GBuffer& drawn();
     [[nodiscard]] PixelValues pixel_values() const;
-    [[nodiscard]] PixelQuestion question_for(const EngineSettings& engine);
     void take_model(const Session::Changes& changes);
     void forget_shot();
+    void forget_answers();
     bool forget_picture();
     bool forget_screen();
-    bool forget_projection();
-    void forget_coverage();
-    [[nodiscard]] bool project(bool rests);
-    void ask_maps(EngineSettings engine);
-    [[nodiscard]] std::shared_ptr<const Prepared> prepared_for(const EngineSettings& engine) const;
-    [[nodiscard]] bool is_prepared(const EngineSettings& engine) const;
-    void measure_coverage();
-    void ask_holes(EngineSettings engine);
-    void fill_holes();
-    [[nodiscard]] bool draw_screen(const ScreenSettings& settings, bool shows_radius);
+    [[nodiscard]] bool draw_screen(const Cell& cell, bool shows_radius);
     void ask_pixels(EngineSettings engine);
     void ask_rays(const PixelRays& rays);
     [[nodiscard]] Texture2D upload(const PixelAnswers& found) const;
@@ -166,15 +151,12 @@ private:
     bool has_coarse_ = false;             ///< the renderer has its coarse triangles, too
 
     Shot shot_;
-    std::optional<DrawnMesh> mesh_;  ///< of the model; empty until it is wanted
-    std::optional<GBuffer> g_buffer_;
-    bool is_drawn_ = false;                 ///< it shows the shot
-    std::vector<std::uint32_t> triangles_;  ///< of it; empty until they were read
     std::optional<ScreenSpace> screen_;
     std::optional<Framebuffer> screen_picture_;
     struct ScreenQuestion {
         ScreenSettings settings;
         Definition definition;
+        int guard = 0;
         bool radius = false;  ///< in place of occlusion
         bool operator==(const ScreenQuestion&) const = default;
     };
@@ -182,21 +164,12 @@ private:
     std::optional<EngineSettings> asked_;
     std::optional<std::pair<PixelRays, Definition>> rays_asked_;
     std::optional<Texture2D> picture_, rays_picture_;
-    std::optional<EngineSettings> maps_asked_;
-    std::optional<CubeProjector> projector_;
-    std::vector<float> map_weights_;  ///< a map fades in
-    std::optional<Framebuffer> map_picture_;
-    bool is_projected_ = false;  ///< it shows the shot
-    std::optional<double> coverage_;
-    std::vector<glm::vec4> projected_;  ///< CubeProjector::project() of the shot, with coverage_
-    std::optional<EngineSettings> holes_asked_;
-    std::optional<Texture2D> filled_;  ///< map_picture_ with its holes solved
-    bool shows_holes_ = false;
     bool is_measured_ = false;  ///< error_ is of what is shown
     std::optional<ShownError> error_;
     bool was_cancelled_ = false;  ///< the pixels, before their end
-    PixelSession pixels_, holes_, rays_;
-    CubeSession cubes_;
+    PixelSession pixels_, rays_;
+    CubeLayer cubes_;
+    GridLayer grid_;
 };
 
 }  // namespace surfelao

@@ -1,5 +1,6 @@
 #include "viewer/cell_widgets.h"
 
+#include "pixels/cube_map.h"
 #include "viewer/tip.h"
 
 #include <imgui.h>
@@ -166,20 +167,55 @@ bool edit_screen(ScreenSettings& screen)
     return apply;
 }
 
+bool edit_guard(float& guard)
+{
+    float percent = 100.0f * guard;
+    ImGui::SliderFloat("guard", &percent, 0.0f, 50.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp);
+    guard = 0.01f * percent;
+    const bool apply = was_let_go();
+    tip("so much beyond each edge of the picture is drawn for them too, in % of its height: 0 to "
+        "50");
+    return apply;
+}
+
+bool edit_grid(GridSettings& grid)
+{
+    static const std::vector<std::string> kStores = {"cone", "sh"};
+    static const std::vector<std::string> kBorders = {"fade", "rescale"};
+    bool apply = choose_number("cells", std::vector<int>{8, 16, 32, 64, 128}, grid.resolution);
+    tip("along each axis");
+    auto extent = static_cast<float>(grid.extent);
+    ImGui::SliderFloat("extent", &extent, 0.001f, static_cast<float>(kMostExtent), "%.3f",
+                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    if (was_let_go()) {
+        grid.extent = double{extent};
+        apply = true;
+    }
+    tip("the box ends where the model hides about this share of the whole sphere: less is farther");
+    apply |= choose_word("store", kStores, grid.store);
+    tip("what a cell holds: a cone, or nine spherical harmonics, which tell more");
+    apply |= choose_word("border", kBorders, grid.border);
+    tip("how values end at the box: faded, or rescaled so that its largest value is 0");
+    apply |= ImGui::Checkbox("cells evenly spaced", &grid.uniform);
+    tip("else they stand closer about the model");
+    return apply;
+}
+
 }  // namespace
 
-bool choose_where(Cell& cell, const Model* model, const TexelSettings& texels)
+bool choose_where(Cell& cell, const Model* model, const WhereSettings& settings)
 {
     const bool is_cloud = model && model->cloud;
     const Where now = where_of(cell);
     bool apply = false;
     if (!ImGui::BeginCombo("where", name_of(now, is_cloud).c_str()))
         return false;
-    for (const Where where : {Where::vertices, Where::texels, Where::pixels, Where::cube_maps}) {
+    for (const Where where :
+         {Where::vertices, Where::texels, Where::pixels, Where::cube_maps, Where::grid}) {
         if (is_cloud && where != Where::vertices)
             continue;
         if (ImGui::Selectable(name_of(where, is_cloud).c_str(), where == now)) {
-            set_where(cell, where, texels);
+            set_where(cell, where, settings);
             apply = true;
         }
     }
@@ -205,6 +241,11 @@ bool choose_how(Cell& cell, std::map<Engine, float>& qualities)
             }
         }
     }
+    if (where_of(cell) == Where::cube_maps &&
+        ImGui::Selectable("horizon", cell.screen.has_value())) {
+        cell.screen = cube_horizon();
+        apply = true;
+    }
     for (const ScreenMethod method : screen_methods()) {
         if (where_of(cell) != Where::pixels)
             break;
@@ -221,7 +262,12 @@ bool choose_how(Cell& cell, std::map<Engine, float>& qualities)
 
 bool edit_how(Cell& cell)
 {
-    return cell.screen ? edit_screen(*cell.screen) : edit_engine(cell.settings.engine);
+    bool apply = false;
+    if (!cell.screen)
+        apply = edit_engine(cell.settings.engine);
+    else if (!cell.from_maps)  // horizons are those of the thesis
+        apply = edit_screen(*cell.screen) | edit_guard(cell.guard);
+    return apply | (cell.grid && edit_grid(*cell.grid));
 }
 
 }  // namespace surfelao

@@ -8,8 +8,8 @@
 
 namespace surfelao {
 
-/// The list of places that the model has. texels: what a map has, once there is one.
-bool choose_where(Cell& cell, const Model* model, const TexelSettings& texels);
+/// The list of places that the model has. settings: what a map or a grid has, once there is one.
+bool choose_where(Cell& cell, const Model* model, const WhereSettings& settings);
 
 /// The list of those who can answer there. qualities: of the engines that are not chosen.
 bool choose_how(Cell& cell, std::map<Engine, float>& qualities);

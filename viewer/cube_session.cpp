@@ -1,87 +1,70 @@
 #include "viewer/cube_session.h"
 
 #include <exception>
+#include <functional>
 #include <utility>
 
 namespace surfelao {
 
-void CubeSession::ask(CubeQuestion question)
+void CubeSession::start(std::function<void(News&, const Progress&)> work)
 {
-    question_ = std::move(question);
-    next_ = 0;
-    is_running_ = false;
-    ++number_;
-    message_.clear();
-    start_next();
+    is_running_ = true;
+    worker_.start([this, number = ++number_, work = std::move(work)](const Progress& progress) {
+        auto news = std::make_unique<News>();
+        try {
+            work(*news, progress);
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const std::exception& error) {
+            news->failure = error.what();
+        }
+        const std::lock_guard lock(mailbox_);
+        news_ = std::move(news);
+        news_number_ = number;
+    });
 }
 
-void CubeSession::add(std::shared_ptr<const CubeSight> sight)
+void CubeSession::solve(CubeQuestion question)
 {
-    message_.clear();
-    sights_.push_back(std::move(sight));
-    start_next();
+    is_placing_ = false;
+    start([this, question = std::move(question)](News& news, const Progress& progress) {
+        const Prepared& prepared = question.prepared
+                                       ? *question.prepared
+                                       : own_.prepared_for(question.model, question.engine);
+        const CubeSight& sight = *question.sight;
+        news.map = cube_map_of(
+            sight, surfelao::solve(prepared, sight.receivers, question.engine, progress).occlusion);
+    });
 }
 
-void CubeSession::forget()
+void CubeSession::place(std::shared_ptr<const Model> model)
 {
-    sights_.clear();
-    next_ = 0;
-    cancel();
+    is_placing_ = true;
+    start([model = std::move(model)](News& news, const Progress& progress) {
+        news.placement = place_cube_maps(*model->mesh, kMostPlacedMaps, progress);
+    });
 }
 
 void CubeSession::cancel()
 {
-    sights_.resize(next_);
     is_running_ = false;
     ++number_;
     worker_.cancel();
 }
 
-void CubeSession::start_next()
+CubeSession::News CubeSession::update()
 {
-    if (is_running_ || next_ >= sights_.size() || !question_.model)
-        return;
-    is_running_ = true;
-    worker_.start([this, number = ++number_, question = question_,
-                   sight = sights_[next_]](const Progress& progress) {
-        auto found = std::make_unique<Found>();
-        found->number = number;
-        try {
-            const Prepared& prepared = question.prepared
-                                           ? *question.prepared
-                                           : own_.prepared_for(question.model, question.engine);
-            found->map = cube_map_of(
-                *sight, solve(prepared, sight->receivers, question.engine, progress).occlusion);
-        } catch (const Cancelled&) {
-            throw;
-        } catch (const std::exception& error) {
-            found->failure = error.what();
-        }
-        const std::lock_guard lock(mailbox_);
-        found_ = std::move(found);
-    });
-}
-
-std::vector<CubeMap> CubeSession::update()
-{
-    std::unique_ptr<Found> found;
+    std::unique_ptr<News> news;
+    std::uint64_t number = 0;
     {
         const std::lock_guard lock(mailbox_);
-        found = std::move(found_);
+        news = std::move(news_);
+        number = news_number_;
     }
-    if (!found || found->number != number_)
+    if (!news || number != number_ || !is_running_)
         return {};
     is_running_ = false;
-    if (!found->failure.empty()) {
-        message_ = found->failure;
-        sights_.resize(next_);
-        return {};
-    }
-    ++next_;
-    start_next();
-    std::vector<CubeMap> maps;
-    maps.push_back(std::move(found->map));
-    return maps;
+    return std::move(*news);
 }
 
 }  // namespace surfelao

@@ -81,10 +81,24 @@ void FilePanel::open_list(const FileLists& files, FileWishes& wishes)
 {
     constexpr float kRows = 5.5f;
     const float rows = std::min(kRows, static_cast<float>(files.open.size()) + 0.5f);
-    if (!ImGui::BeginListBox("##open", ImVec2(-1.0f, rows * ImGui::GetTextLineHeightWithSpacing())))
+    const float row = files.switches->are_together ? ImGui::GetFrameHeightWithSpacing()
+                                                   : ImGui::GetTextLineHeightWithSpacing();
+    if (!ImGui::BeginListBox("##open", ImVec2(-1.0f, rows * row)))
         return;
+    const bool together = files.switches->are_together;
+    const auto is_on = [&](const fs::path& file) { return files.switches->is_on(file); };
+    const bool is_last = std::ranges::count_if(files.open, is_on) < 2;
     for (const fs::path& file : files.open) {
         ImGui::PushID(file.c_str());
+        if (together) {
+            bool on = is_on(file);
+            ImGui::BeginDisabled(on && is_last);
+            if (ImGui::Checkbox("##on", &on))
+                wishes.turn = file;
+            ImGui::EndDisabled();
+            tip("whether it is in the world; one file is");
+            ImGui::SameLine();
+        }
         const ImGuiStyle& style = ImGui::GetStyle();
         const float cross =
             ImGui::CalcTextSize("x").x + 2.0f * style.FramePadding.x + style.ItemSpacing.x;
@@ -101,10 +115,12 @@ void FilePanel::open_list(const FileLists& files, FileWishes& wishes)
         ImGui::PopID();
     }
     ImGui::EndListBox();
-    bool together = files.are_together;
-    if (ImGui::Checkbox("in one world", &together))
-        wishes.together = together;
-    tip("all files of the list occlude the one that is shown, each in its own coordinates");
+    bool wanted = together;
+    if (ImGui::Checkbox("in one world", &wanted))
+        wishes.together = wanted;
+    tip("all files of the list that are ticked are shown together and occlude each other, each in "
+        "its "
+        "own coordinates");
 }
 
 void FilePanel::open_widgets(const FileLists& files, FileWishes& wishes)

@@ -3,6 +3,7 @@
 
 #include "pixels/camera.h"
 #include "viewer/file_dialog.h"
+#include "viewer/open_files.h"
 #include "viewer/saver.h"
 
 #include <filesystem>
@@ -18,7 +19,7 @@ struct FileLists {
     std::span<const std::filesystem::path> recent;  ///< of any, the last first
     std::filesystem::path shown;                    ///< of `open`; empty where nothing is shown
     UpAxis up = UpAxis::y;                          ///< of what is shown and opened
-    bool are_together = false;                      ///< OpenFiles::are_together
+    const OpenFiles* switches = nullptr;            ///< which of `open` are on, and together
 };
 
 /// What the user wants of files in a frame.
@@ -28,7 +29,8 @@ struct FileWishes {
     std::filesystem::path environment;  ///< a panorama
     std::optional<UpAxis> up;
     std::optional<bool> together;
-    std::optional<Saved> save;  ///< to the path of its kind
+    std::filesystem::path turn;  ///< of those that are open: switched on or off
+    std::optional<Saved> save;   ///< to the path of its kind
 };
 
 /// Where results go.

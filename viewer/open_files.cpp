@@ -1,7 +1,6 @@
 #include "viewer/open_files.h"
 
 #include <algorithm>
-#include <iterator>
 
 namespace surfelao {
 
@@ -14,13 +13,24 @@ void OpenFiles::add(const std::filesystem::path& file)
 void OpenFiles::forget(const std::filesystem::path& file)
 {
     std::erase(files_, file);
+    off_.erase(file);
 }
 
-OpenFiles::Paths OpenFiles::occluders_of(const std::filesystem::path& file) const
+void OpenFiles::turn(const std::filesystem::path& file, bool on)
 {
-    Paths others = occluders_;
-    if (are_together)
-        std::ranges::remove_copy(files_, std::back_inserter(others), file);
+    if (on)
+        off_.erase(file);
+    else
+        off_.insert(file);
+}
+
+OpenFiles::Paths OpenFiles::beside(const std::filesystem::path& file) const
+{
+    Paths others;
+    for (const std::filesystem::path& other : files_) {
+        if (are_together && other != file && is_on(other))
+            others.push_back(other);
+    }
     return others;
 }
 

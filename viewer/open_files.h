@@ -1,8 +1,8 @@
-/// open_files.h: the files of a window, of which one is shown.
+/// open_files.h: the files of a window: one is shown, or several together.
 #pragma once
 
 #include <filesystem>
-#include <utility>
+#include <set>
 #include <vector>
 
 namespace surfelao {
@@ -12,22 +12,27 @@ class OpenFiles {
 public:
     using Paths = std::vector<std::filesystem::path>;
 
-    /// occluders: they occlude whatever is shown (PartChoice::occluders).
-    explicit OpenFiles(Paths occluders) : occluders_(std::move(occluders)) {}
-
     /// In the order in which they came, each once.
     const Paths& all() const { return files_; }
     void add(const std::filesystem::path& file);
     void forget(const std::filesystem::path& file);
 
-    /// Whether they stand in one world, in which all occlude each other.
+    /// Whether they stand in one world, in which all that are switched on are shown and occlude
+    /// each other.
     bool are_together = false;
+    /// At first all are on.
+    [[nodiscard]] bool is_on(const std::filesystem::path& file) const
+    {
+        return !off_.contains(file);
+    }
+    void turn(const std::filesystem::path& file, bool on);
 
-    /// What occludes one of them besides its own parts.
-    [[nodiscard]] Paths occluders_of(const std::filesystem::path& file) const;
+    /// What is shown with one of them.
+    [[nodiscard]] Paths beside(const std::filesystem::path& file) const;
 
 private:
-    Paths occluders_, files_;
+    Paths files_;
+    std::set<std::filesystem::path> off_;
 };
 
 }  // namespace surfelao

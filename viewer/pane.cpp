@@ -5,7 +5,9 @@
 #include "viewer/atlas_picture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace surfelao {
@@ -80,14 +82,19 @@ Image picture_of(const GlContext& context, const Framebuffer& window)
     Framebuffer copy(context, {.width = window.width(), .height = window.height()});
     window.copy_to(copy);
     const std::vector<glm::vec4> texels = copy.read_color(copy.rect());
+    std::array<float, 256> linear{};
+    for (std::size_t i = 0; i < linear.size(); ++i)
+        linear[i] = srgb_decode(static_cast<float>(i) / 255.0f);
+    const auto decoded = [&](float shown) {
+        return linear[static_cast<std::size_t>(std::lround(255.0f * shown))];
+    };
     Image image(window.width(), window.height());
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
             const std::size_t row = static_cast<std::size_t>(image.height - 1 - y);
             const glm::vec4 texel =
                 texels[row * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)];
-            image.at(x, y) =
-                glm::vec4(srgb_decode(texel.r), srgb_decode(texel.g), srgb_decode(texel.b), 1.0f);
+            image.at(x, y) = glm::vec4(decoded(texel.r), decoded(texel.g), decoded(texel.b), 1.0f);
         }
     }
     return image;

@@ -3,6 +3,7 @@
 #include "viewer/cell_widgets.h"
 #include "viewer/native_window.h"
 #include "viewer/panel_widgets.h"
+#include "viewer/panel_windows.h"
 #include "viewer/probe_box.h"
 #include "viewer/render.h"
 #include "viewer/tip.h"
@@ -25,10 +26,11 @@ namespace {
 constexpr float kLabels = 116.0f;  // right of widgets, unscaled pixels
 constexpr float kGrip = 6.0f;      // how near to the wipe's line a press takes it, unscaled pixels
 constexpr const char* kWhereTip =
-    "where values lie: at vertices, in a map, at each pixel, or in cube maps that pixels read";
+    "where values lie: at vertices, in a map, at each pixel, or in cube maps or an AO grid that "
+    "pixels read";
 constexpr const char* kHowTip =
-    "who answers: masks (near to rays), disks (rough), rays (the witness); at "
-    "pixels also methods that know the picture alone";
+    "who answers: masks (near to rays), disks (rough), rays (the witness); at pixels also methods "
+    "that know the picture alone, in cube maps the horizons of what a face sees";
 constexpr float kDegreesPerPixel = 0.35f;
 constexpr float kZoomPerNotch = 0.88f;
 
@@ -107,7 +109,8 @@ void press(char key, PanelState& state, MotionPanel& motion, PanelInput& input)
             input.close = true;
             break;
         case Panel::kEscape:
-            if (!std::exchange(state.flight.is_on, false))
+            if (!std::exchange(state.shows_help, false) &&
+                !std::exchange(state.flight.is_on, false))
                 input.cancel = !motion.deselect();
             break;
         case Panel::kSpace:
@@ -206,7 +209,9 @@ Cell right_cell(const PanelState& state)
     }
     cell.at_pixels = state.right->at_pixels;
     cell.from_maps = state.right->from_maps;
+    cell.grid = state.right->grid;
     cell.screen = state.right->screen;
+    cell.guard = state.right->guard;
     cell.settings.engine = state.right->settings.engine;
     cell.settings.texels = state.right->settings.texels;
     return cell;
@@ -298,8 +303,10 @@ void Panel::solver_widgets(PanelState& state, const Model* model)
     if (!ImGui::IsAnyItemActive())
         edited_ = state.left;
     if (edited_.settings.texels)
-        texels_ = *edited_.settings.texels;
-    bool apply = choose_where(edited_, model, texels_);
+        where_.texels = *edited_.settings.texels;
+    if (edited_.grid)
+        where_.grid = *edited_.grid;
+    bool apply = choose_where(edited_, model, where_);
     tip(kWhereTip);
     apply |= choose_how(edited_, state.qualities);
     tip(kHowTip);
@@ -327,7 +334,7 @@ void Panel::compare_widgets(PanelState& state, const CellView& left, const CellV
         ImGui::PushID("right");
         if (!ImGui::IsAnyItemActive())
             edited_right_ = right_cell(state);
-        bool apply = choose_where(edited_right_, left.session().state().model.get(), texels_);
+        bool apply = choose_where(edited_right_, left.session().state().model.get(), where_);
         tip(kWhereTip);
         apply |= choose_how(edited_right_, state.qualities);
         tip(kHowTip);
@@ -398,9 +405,11 @@ namespace {
 void name_model(const SessionState& state)
 {
     const Geometry& geometry = state.model->geometry();
+    std::string name = state.path.filename().string();
+    if (!state.beside.empty())
+        name += " and " + std::to_string(state.beside.size()) + " more";
     ImGui::Text(state.model->cloud ? "%s\n%zu points" : "%s\n%zu vertices, %zu triangles",
-                state.path.filename().c_str(), geometry.positions.size(),
-                geometry.triangles.size());
+                name.c_str(), geometry.positions.size(), geometry.triangles.size());
 }
 
 /// What was drawn, and what is to be told. views: one may be null.
@@ -437,7 +446,8 @@ void Panel::widgets(PanelState& state, const CellView& left, const CellView* rig
     const Session& session = left.session();
     const SessionState& shown_state = session.state();
     ImGui::Begin("surfelao", nullptr,
-                 ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse);
+                 ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus);  // the keys stay over it
     ImGui::PushItemWidth(-kLabels * ImGui::GetIO().FontGlobalScale);
     files_.open_widgets(figures.files, input.files);
     if (shown_state.model)
@@ -461,7 +471,9 @@ void Panel::widgets(PanelState& state, const CellView& left, const CellView* rig
         }
         stage_lines(shown_state);
         if (state.left.from_maps)
-            map_lines(left);
+            input.place_maps |= map_lines(left);
+        else if (state.left.grid)
+            grid_lines(left);
         else if (state.left.at_pixels)
             pixel_lines(left);
         else

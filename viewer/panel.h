@@ -65,7 +65,8 @@ struct PanelFigures {
 struct PanelInput {
     bool view_changed = false;  ///< PanelState::view and what is beside
     bool frame_all = false;
-    bool add_map = false;  ///< a cube map where the eye is
+    bool add_map = false;     ///< a cube map where the eye is
+    bool place_maps = false;  ///< cube maps where they see most
     FileWishes files;
     bool cancel = false;
     bool solve_again = false;  ///< after it was cancelled
@@ -119,7 +120,7 @@ private:
     FilePanel files_;
     Cell edited_, edited_right_;       ///< what the widgets show while they are dragged
     Falloff falloff_ = Falloff::none;  ///< kept while the distance is unlimited
-    TexelSettings texels_;             ///< kept while the values lie elsewhere
+    WhereSettings where_;              ///< kept while the values lie elsewhere
     bool drags_wipe_ = false;
 };
 

@@ -1,5 +1,6 @@
 #include "viewer/panel_widgets.h"
 
+#include "surfels/srgb.h"
 #include "viewer/part_list.h"
 #include "viewer/pixel_fill.h"
 #include "viewer/tip.h"
@@ -16,7 +17,6 @@ namespace surfelao {
 namespace {
 
 constexpr int kBins = 48;
-constexpr float kQuestionWide = 32.0f;  // letters
 
 constexpr const char* kColorNames[] = {
     "visibility", "rays",    "difference", "bent normals", "normals", "levels",   "environment",
@@ -37,44 +37,6 @@ constexpr const char* kColorTips[] = {
     "a lamp at the eye, times visibility"};
 static_assert(std::size(kColorTips) == std::size(kColorNames));
 constexpr const char* kSurfaceNames[] = {"triangles", "splats", "affine", "points"};
-
-constexpr const char* kHelp[][2] = {
-    {"left drag", "orbit"},
-    {"right or middle drag", "pan"},
-    {"wheel, + and -", "zoom"},
-    {"F", "frame all"},
-    {"1 .. 9, 0", "colours, in the panel's order"},
-    {"A", "the map flat or on the model, where there is one"},
-    {"T", "next surface: triangles, splats, affine, points"},
-    {"R", "rays on or off"},
-    {"W", "wipe to the right cell on or off; drag the line"},
-    {"S", "the right cell side by side on or off"},
-    {"L", "a light at the eye"},
-    {"X", "wireframe on or off"},
-    {"K", "cull backs on or off: look into a room"},
-    {"I", "values under the mouse on or off"},
-    {"V", "fly: W S forward and back, A D aside, E Q up and down"},
-    {"  in flight", "left drag looks, wheel changes the speed, V or Esc ends it"},
-    {"C", "with cube maps: one where the eye is"},
-    {"G", "shadow on the ground on or off"},
-    {"click", "select the part under the mouse"},
-    {"drag its gizmo", "move it: arrows, rings, square"},
-    {"Z", "undo the last move"},
-    {"space", "play or pause the animation"},
-    {"Esc", "deselect; else cancel what runs in the background"},
-    {"Tab", "hide or show the panel"},
-    {"P", "save the picture"},
-    {"B", "save the baked file"},
-    {"H", "this help"},
-    {"Q", "quit"},
-    {"O", "open a file"},
-    {"drop files", "open them: the first is shown"},
-};
-
-ImVec4 as_shown(glm::vec3 linear)
-{
-    return {srgb_encode(linear.r), srgb_encode(linear.g), srgb_encode(linear.b), 1.0f};
-}
 
 /// True when the value is final: dragging a slider asks for nothing until it is let go.
 bool was_set()
@@ -264,6 +226,29 @@ std::optional<std::uint32_t> edit_parts(const Scene& scene, PartChoice& parts)
 
 namespace {
 
+bool background_widget(std::optional<glm::vec4>& background)
+{
+    int kind = !background ? 0 : background->a == 0.0f ? 1 : 2;
+    bool changed = ImGui::Combo("background", &kind, "gradient\0transparent\0one colour\0");
+    if (changed && kind == 0)
+        background.reset();
+    else if (changed)
+        background = kind == 1 ? glm::vec4(0.0f) : glm::vec4(1.0f);
+    tip("behind the model, also in the picture that is saved; with the colours environment the "
+        "gradient is the panorama; what is transparent is shown as checks");
+    if (kind != 2)
+        return changed;
+    glm::vec3 shown(srgb_encode(background->r), srgb_encode(background->g),
+                    srgb_encode(background->b));
+    if (ImGui::ColorEdit3("##background", &shown.x, ImGuiColorEditFlags_NoOptions)) {
+        background =
+            glm::vec4(srgb_decode(shown.x), srgb_decode(shown.y), srgb_decode(shown.z), 1.0f);
+        changed = true;
+    }
+    tip("red, green, blue as a screen shows them, 0 to 255");
+    return changed;
+}
+
 bool surface_ticks(PanelState& state)
 {
     ViewOptions& view = state.view;
@@ -346,6 +331,7 @@ bool view_widgets(PanelState& state)
         changed |= color_map_combo(view.color_map);
     changed |= surface_ticks(state);
     flight_widgets(state);
+    changed |= background_widget(view.background);
     changed |= ImGui::Checkbox("shadow on the ground", &view.ground);
     tip("G: what the model takes from the ground below it; for the picture alone");
     return changed;
@@ -378,15 +364,32 @@ void error_lines(const ShownError& error)
         "95 % of the pixels are off by less");
 }
 
-void map_lines(const CellView& view)
+bool map_lines(const CellView& view)
 {
-    if (view.map_count() == 0)
+    const CubeLayer& cubes = view.cubes();
+    if (cubes.is_placing())
+        ImGui::TextUnformatted("looking for places of cube maps");
+    else if (cubes.count() == 0)
         ImGui::TextWrapped("no cube map yet: C puts one where the eye is");
-    else if (view.coverage())
-        ImGui::Text("cube maps: %zu, %.1f %% of the pixels", view.map_count(),
-                    100.0 * *view.coverage());
+    else if (cubes.coverage())
+        ImGui::Text("cube maps: %zu, %.1f %% of the pixels", cubes.count(),
+                    100.0 * *cubes.coverage());
     else
-        ImGui::Text("cube maps: %zu", view.map_count());
+        ImGui::Text("cube maps: %zu", cubes.count());
+    const bool is_wanted = ImGui::Button("place cube maps");
+    tip("where few of them see most of the surface, 16 at most, in place of those that are there");
+    return is_wanted;
+}
+
+void grid_lines(const CellView& view)
+{
+    const GridBake* found = view.grid().grid();
+    if (!found)
+        return;
+    const glm::ivec3 cells = found->grid.cells;
+    ImGui::Text("%d x %d x %d cells %.3f s", cells.x, cells.y, cells.z,
+                found->seconds.solve + found->seconds.repair);
+    tip("of the grid, and what it took to solve them; what the engine has built not counted");
 }
 
 void pixel_lines(const CellView& view)
@@ -474,93 +477,6 @@ void histogram(const Session& session)
         ImGui::SetTooltip("%zu vertices from %.2f to %.2f", bins[bin],
                           static_cast<double>(bin) / kBins, static_cast<double>(bin + 1) / kBins);
     }
-}
-
-void legend(const Legend& shown)
-{
-    const ImVec2 display = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos(ImVec2(display.x - 10.0f, display.y - 10.0f), ImGuiCond_Always,
-                            ImVec2(1.0f, 1.0f));
-    ImGui::Begin("##legend", nullptr,
-                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
-                     ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoSavedSettings);
-    ImGui::TextUnformatted(shown.title.c_str());
-    const float scale = ImGui::GetIO().FontGlobalScale;
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const ImVec2 size(220.0f * scale, 14.0f * scale);
-    constexpr int kBars = 32;
-    for (int i = 0; i < kBars; ++i) {
-        const auto at = [&](int step) {
-            return corner.x + size.x * static_cast<float>(step) / kBars;
-        };
-        const auto color = [&](int step) {
-            return ImGui::GetColorU32(
-                as_shown(map_color(shown.colors, static_cast<float>(step) / kBars)));
-        };
-        ImGui::GetWindowDrawList()->AddRectFilledMultiColor(
-            ImVec2(at(i), corner.y), ImVec2(at(i + 1), corner.y + size.y), color(i), color(i + 1),
-            color(i + 1), color(i));
-    }
-    ImGui::Dummy(size);
-    ImGui::TextUnformatted(legend_number(shown.low).c_str());
-    ImGui::SameLine(size.x - 30.0f * scale);
-    ImGui::TextUnformatted(legend_number(shown.high).c_str());
-    ImGui::End();
-}
-
-void help_window(bool& open)
-{
-    ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - 10.0f, 10.0f), ImGuiCond_Always,
-                            ImVec2(1.0f, 0.0f));
-    if (ImGui::Begin("Keys", &open,
-                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse |
-                         ImGuiWindowFlags_NoSavedSettings) &&
-        ImGui::BeginTable("keys", 2)) {
-        for (const auto& line : kHelp) {
-            ImGui::TableNextColumn();
-            ImGui::TextColored(ImVec4(1.0f, 0.8f, 0.5f, 1.0f), "%s", line[0]);
-            ImGui::TableNextColumn();
-            ImGui::TextUnformatted(line[1]);
-        }
-        ImGui::EndTable();
-    }
-    ImGui::End();
-}
-
-void question_window(const SaveQuestion& question, SaveReply& reply)
-{
-    constexpr const char* kTitle = "Save";
-    if (!ImGui::IsPopupOpen(kTitle))
-        ImGui::OpenPopup(kTitle);
-    const ImVec2 display = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos(ImVec2(0.5f * display.x, 0.5f * display.y), ImGuiCond_Always,
-                            ImVec2(0.5f, 0.5f));
-    if (!ImGui::BeginPopupModal(kTitle, nullptr,
-                                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
-                                    ImGuiWindowFlags_NoSavedSettings))
-        return;
-    ImGui::PushTextWrapPos(kQuestionWide * ImGui::GetFontSize());
-    for (const std::filesystem::path& file : question.there)
-        ImGui::TextUnformatted(file.c_str());
-    ImGui::PopTextWrapPos();
-    const bool is_one = question.there.size() == 1;
-    if (question.is_input)
-        ImGui::TextUnformatted(is_one ? "was read and is never replaced."
-                                      : "exist; what was read is never replaced.");
-    else
-        ImGui::TextUnformatted(is_one ? "exists. Replace it?" : "exist. Replace them?");
-    const auto button = [&](const char* label, SaveReply meaning) {
-        if (ImGui::Button(label))
-            reply = meaning;
-        ImGui::SameLine();
-    };
-    if (!question.is_input)
-        button("Replace (R)", SaveReply::replace);
-    button("Keep both (K)", SaveReply::keep_both);
-    button("Cancel (Esc)", SaveReply::cancel);
-    if (reply != SaveReply::none)
-        ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
 }
 
 }  // namespace surfelao

@@ -2,7 +2,6 @@
 /// alone. All are called between ImGui's NewFrame and Render.
 #pragma once
 
-#include "image/legend.h"
 #include "viewer/panel.h"
 
 #include <cstdint>
@@ -39,8 +38,11 @@ void cell_progress(const CellView& view);
 /// What a picture shows against rays at its pixels.
 void error_lines(const ShownError& error);
 
-/// How many cube maps there are, and how much they show.
-void map_lines(const CellView& view);
+/// How many cube maps there are, and how much they show. True when they are to be placed.
+bool map_lines(const CellView& view);
+
+/// What an AO grid is.
+void grid_lines(const CellView& view);
 
 /// What a picture's pixels took.
 void pixel_lines(const CellView& view);
@@ -50,14 +52,5 @@ void stage_lines(const SessionState& s);
 
 /// How many vertices are how closed.
 void histogram(const Session& session);
-
-/// The twin of draw_legend, in the lower right corner of the window.
-void legend(const Legend& shown);
-
-/// The keys. open: false when it was closed.
-void help_window(bool& open);
-
-/// Nothing else can be used while it is shown. Sets the reply when there is one.
-void question_window(const SaveQuestion& question, SaveReply& reply);
 
 }  // namespace surfelao

@@ -8,6 +8,7 @@
 #include "image/image_file.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
+#include "viewer/joined_scene.h"
 
 #include <algorithm>
 #include <exception>
@@ -15,6 +16,24 @@
 #include <utility>
 
 namespace surfelao {
+
+namespace {
+
+/// The scene and those of the files beside it as one.
+Scene with_files(Scene scene, std::span<const std::filesystem::path> beside,
+                 const Progress& progress)
+{
+    std::vector<Scene> scenes;
+    scenes.push_back(std::move(scene));
+    for (const std::filesystem::path& path : beside) {
+        ReadOptions reading;
+        reading.progress = progress;
+        scenes.push_back(read_scene(path, reading));
+    }
+    return joined_scene(scenes);
+}
+
+}  // namespace
 
 struct Session::Made {
     std::uint64_t number = 0;
@@ -100,7 +119,8 @@ Session::~Session() = default;
 void Session::open(const std::filesystem::path& path, UpAxis up, const ReadOptions& reading)
 {
     state_.message.clear();
-    start_making({path, up, nullptr, settings_.target, settings_.parts, settings_.ground, reading});
+    start_making({path, up, nullptr, settings_.target, settings_.parts, settings_.ground,
+                  settings_.beside, reading});
 }
 
 void Session::open(const std::filesystem::path& path, UpAxis up, const SessionSettings& settings,
@@ -120,7 +140,8 @@ void Session::set_up(UpAxis up)
                                           .scene = scene_,
                                           .target = {},
                                           .parts = settings_.parts,
-                                          .ground = {}});
+                                          .ground = {},
+                                          .beside = settings_.beside});
     anew.up = up;
     anew.target = settings_.target;
     anew.ground = settings_.ground;
@@ -135,6 +156,7 @@ void Session::open(const Session& other, const SessionSettings& settings)
     settings_ = settings;
     settings_.target = shown.model->settings;
     settings_.parts = shown.parts;
+    settings_.beside = shown.beside;
     settings_.ground = shown.model->ground_plane;
     state_.message.clear();
     making_ = Making{.path = shown.path,
@@ -142,7 +164,8 @@ void Session::open(const Session& other, const SessionSettings& settings)
                      .scene = nullptr,
                      .target = settings_.target,
                      .parts = settings_.parts,
-                     .ground = settings_.ground};
+                     .ground = settings_.ground,
+                     .beside = settings_.beside};
     auto made = std::make_unique<Made>();
     made->number = ++solve_number_;
     made->scene = other.scene_;
@@ -165,8 +188,11 @@ void Session::start_making(Making making)
         made->number = number;
         try {
             Scene scene = making.scene ? *making.scene : read_scene(making.path, reading);
-            if (scene.free_vertices)  // make_mesh splits them, for these normals alone
+            // make_mesh splits free vertices, for these normals alone
+            if (scene.free_vertices || !making.beside.empty())
                 made->scene = making.scene ? making.scene : std::make_shared<const Scene>(scene);
+            if (!making.beside.empty())
+                scene = with_files(std::move(scene), making.beside, progress);
             made->model = std::make_shared<const Model>(
                 model_of(std::move(scene), making.up, making.target,
                          {.parts = making.parts, .ground = making.ground}));
@@ -193,11 +219,12 @@ void Session::solve(const SessionSettings& settings)
     settings_ = settings;
     if (making_) {  // its model is solved with them
         if (making_->target != settings_.target || making_->parts != settings_.parts ||
-            making_->ground != settings_.ground) {
+            making_->ground != settings_.ground || making_->beside != settings_.beside) {
             Making anew = *making_;
             anew.target = settings_.target;
             anew.parts = settings_.parts;
             anew.ground = settings_.ground;
+            anew.beside = settings_.beside;
             start_making(std::move(anew));
         }
         return;
@@ -214,11 +241,11 @@ void Session::solve_or_make()
 {
     was_cancelled_ = false;
     if (state_.model->settings == settings_.target && state_.parts == settings_.parts &&
-        state_.model->ground_plane == settings_.ground)
+        state_.beside == settings_.beside && state_.model->ground_plane == settings_.ground)
         start_solve();
     else
         start_making({state_.path, state_.model->up, scene_, settings_.target, settings_.parts,
-                      settings_.ground});
+                      settings_.ground, settings_.beside});
 }
 
 void Session::solve_as(const SessionSettings& settings)
@@ -236,6 +263,20 @@ Definition Session::definition() const
         definition_of(settings_.max_distance, Kernel::cosine, state_.model->geometry().frame);
     definition.ground = state_.model->occluding_ground;
     return definition;
+}
+
+std::shared_ptr<const Prepared> Session::shared_engine(const EngineChoice& choice) const
+{
+    const std::shared_ptr<const Prepared>& prepared = state_.prepared;
+    const bool is_shared = choice.device != Device::gpu && prepared && prepared->choice() == choice;
+    return is_shared ? prepared : nullptr;
+}
+
+bool Session::can_be_asked(const EngineChoice& choice) const
+{
+    if (choice.device == Device::gpu || !state_.pose.is_rest())
+        return state_.is_solved && !state_.is_draft;
+    return shared_engine(choice) != nullptr;
 }
 
 void Session::start_solve()
@@ -259,8 +300,8 @@ void Session::start_solve()
                 answer->build_s = engines_->untold_s;
                 if (choice.device == Device::cpu)
                     answer->prepared = engines_->prepared;
-                answer->settings = {steps[i], limit, model->settings,
-                                    texels,   parts, model->ground_plane};
+                answer->settings = {steps[i], limit, model->settings,    texels,
+                                    parts,    {},    model->ground_plane};
                 answer->found =
                     solve_model(*engines_->prepared, *model, steps[i],
                                 {.vertices = !texels, .ground = true, .points = !texels},
@@ -418,6 +459,7 @@ Session::Changes Session::update()
             state_.path = making.path;
             state_.model = made->model;
             state_.parts = making.parts;
+            state_.beside = making.beside;
             state_.pose = made->pose;
             state_.read_s = made->seconds;
             state_.is_solved = false;
@@ -477,6 +519,7 @@ void Session::save(const std::filesystem::path& path) const
     made.target = solved_with_.target;
     made.texels = solved_with_.texels;
     made.parts = solved_with_.parts;
+    made.beside = state_.beside;
     if (!state_.pose.is_rest()) {
         made.reading.moment = state_.pose.moment;
         made.frame = state_.model->geometry().frame;
@@ -491,11 +534,11 @@ void Session::save(const std::filesystem::path& path) const
 }
 
 /// What the file itself holds has the places that it was read with: of another pose it is written
-/// anew, but for glTF, which keeps them.
+/// anew, but for glTF, which keeps them. So are several files.
 Scene Session::scene_to_write(const std::filesystem::path& path) const
 {
     Scene scene = state_.model->mesh->scene;
-    if (!state_.pose.is_rest() && !is_gltf(type_of(path)))
+    if (!state_.beside.empty() || (!state_.pose.is_rest() && !is_gltf(type_of(path))))
         scene.asset.reset();
     return scene;
 }

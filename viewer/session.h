@@ -33,6 +33,8 @@ struct SessionSettings {
     /// A map in place of values at vertices: its charts, size and padding count.
     std::optional<TexelSettings> texels = {};
     PartChoice parts = {};  ///< who occludes, who is baked and shown
+    /// Files of the same coordinates that are the model with the one that is open (joined_scene.h).
+    std::vector<std::filesystem::path> beside = {};
     /// That occludes; its up is the model's.
     std::optional<GroundPlane> ground = {};
     bool operator==(const SessionSettings&) const = default;
@@ -47,13 +49,14 @@ struct PoseName {
 
 /// A picture of the session for one frame.
 struct SessionState {
-    std::filesystem::path path;          ///< of the model shown
-    std::shared_ptr<const Model> model;  ///< null until a file was read
-    PartChoice parts;                    ///< that it was made with
-    PoseName pose;                       ///< that it is in
-    bool is_solved = false;              ///< there is an answer: Session::occlusion()
-    bool is_draft = false;               ///< it is the rough one
-    std::vector<Occlusion> reference;    ///< empty until it was traced for the same definition
+    std::filesystem::path path;                 ///< of the model shown
+    std::shared_ptr<const Model> model;         ///< null until a file was read
+    PartChoice parts;                           ///< that it was made with
+    std::vector<std::filesystem::path> beside;  ///< likewise
+    PoseName pose;                              ///< that it is in
+    bool is_solved = false;                     ///< there is an answer: Session::occlusion()
+    bool is_draft = false;                      ///< it is the rough one
+    std::vector<Occlusion> reference;  ///< empty until it was traced for the same definition
     /// The answer's, where it is a map; null where it is at vertices.
     std::shared_ptr<const ModelLayout> layout;
     std::shared_ptr<const ModelMap> map;
@@ -100,9 +103,9 @@ public:
     void open(const Session& other, const SessionSettings& settings);
 
     /// Solves the model with these settings: a draft first where the engine has one, then the
-    /// whole. What is running is given up. Other targets, parts or another ground need another
-    /// model: it is made first, of the scene that was read. Does nothing when they are the last
-    /// settings.
+    /// whole. What is running is given up. Other targets, parts, files beside or another ground
+    /// need another model: it is made first, of the scene that was read. Does nothing when they are
+    /// the last settings.
     void solve(const SessionSettings& settings);
 
     /// The same of the model at hand, or that is being made: as open() of another session.
@@ -142,17 +145,22 @@ public:
     const std::vector<Occlusion>& occlusion() const { return occlusion_; }
 
     /// Writes the model with the answer at its vertices, the draft where there is no other: the
-    /// bytes that bake() writes for these settings. Of another pose the mark tells so, and the file
-    /// is written anew, but for glTF, which keeps the places that it was read with. With a map, the
-    /// model with it, or the picture alone (.png, .tif). Something must be solved. Replaces what
-    /// stands there. Throws as check_output() and write_scene(), and InputError for a map of
-    /// several pages.
+    /// bytes that bake() writes for these settings; several files as one. Of another pose the mark
+    /// tells so, and the file is written anew, but for glTF, which keeps the places that it was
+    /// read with. With a map, the model with it, or the picture alone (.png, .tif). Something must
+    /// be solved. Replaces what stands there. Throws as check_output() and write_scene(), and
+    /// InputError for a map of several pages.
     void save(const std::filesystem::path& path) const;
 
     const SessionState& state() const { return state_; }
     const SessionSettings& settings() const { return settings_; }
     /// What the settings ask of the model, which must be there.
     [[nodiscard]] Definition definition() const;
+    /// Who has answered, for whoever asks more of the same model; null where whoever asks prepares
+    /// an engine of its own: the GPU's, and that of a pose that the session has not solved itself.
+    [[nodiscard]] std::shared_ptr<const Prepared> shared_engine(const EngineChoice& choice) const;
+    /// Whether it is time to: there is the session's engine, or nothing to wait for.
+    [[nodiscard]] bool can_be_asked(const EngineChoice& choice) const;
     bool making() const { return making_.has_value(); }  ///< another model
     bool opening() const { return making_.has_value() && !making_->scene; }
     bool was_cancelled() const { return was_cancelled_; }  ///< the last solving, before its end
@@ -170,6 +178,7 @@ private:
         TargetSettings target;
         PartChoice parts;
         std::optional<GroundPlane> ground;
+        std::vector<std::filesystem::path> beside;
         ReadOptions reading = {};
     };
     struct Made;
@@ -190,7 +199,7 @@ private:
     bool was_cancelled_ = false;
     bool has_other_pose_ = false;  ///< since the last update()
     SessionState state_;
-    std::shared_ptr<const Scene> scene_;  ///< of the model, as it was read
+    std::shared_ptr<const Scene> scene_;  ///< of the file that is open, as it was read
     ModelTruth truth_;                    ///< but its reference, which is in state_
     SessionSettings solved_with_;         ///< the answer, a draft's where it is one
     std::vector<Occlusion> occlusion_, at_points_;

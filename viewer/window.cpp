@@ -13,6 +13,7 @@
 #include "viewer/pane.h"
 #include "viewer/pane_labels.h"
 #include "viewer/pane_layout.h"
+#include "viewer/pane_set.h"
 #include "viewer/recent_files.h"
 #include "viewer/render.h"
 #include "viewer/renderer.h"
@@ -44,13 +45,13 @@ public:
           inbox_(window),
           context_(adopt_context(window)),
           left_(context_),
+          panes_(context_, left_.renderer()),
           motion_panel_(mover_),
           panel_state_(options.panel),
           panel_(window),
           environment_(options.environment),
           recent_(options.recent_list),
-          up_(options.up),
-          open_files_(options.panel.left.settings.parts.occluders)
+          up_(options.up)
     {
         if (environment_)
             left_.renderer().set_environment(*environment_);
@@ -87,12 +88,12 @@ public:
 private:
     void wait_for_events()
     {
-        const bool drawing = has_view() && (panes_.empty() || samples() < most_samples());
+        const bool drawing = has_view() && (panes_.empty() || panes_.samples() < most_samples());
         if (drawing || options_.on_frame || echo_frames_ > 0) {
             glfwPollEvents();
             echo_frames_ = std::max(0, echo_frames_ - 1);
         } else {
-            const bool will_rest = level_ != 0;  // and be drawn whole then
+            const bool will_rest = panes_.is_coarse();  // and be drawn whole then
             const bool is_busy =
                 left_.is_busy() || (right_ && right_->is_busy()) || mover_.is_busy();
             const bool moves = left_.is_moved() || mover_.player().is_playing;
@@ -120,13 +121,20 @@ private:
 
     void open(const std::filesystem::path& path)
     {
-        PartChoice& parts = panel_state_.left.settings.parts;
-        parts.occluders = open_files_.occluders_of(whole_path(path));
-        parts.exclude = parts.receivers = {};  // names of the file that was shown
+        open_files_.turn(whole_path(path), true);
+        panel_state_.left.settings.beside = open_files_.beside(whole_path(path));
+        forget_names();
         const bool is_input = whole_path(path) == whole_path(options_.input);
         const ReadOptions reading = is_input ? options_.reading : ReadOptions{};
         mover_.begin_at(reading.moment);
         left_.session().open(path, up_, panel_state_.left.settings, reading);
+    }
+
+    /// Of the parts that were shown.
+    void forget_names()
+    {
+        PartChoice& parts = panel_state_.left.settings.parts;
+        parts.exclude = parts.receivers = {};
     }
 
     void add_open(const std::filesystem::path& path)
@@ -149,7 +157,7 @@ private:
             if (changes.model && camera_.up != up_direction(state().model->up))
                 frame_all();
             if (changes.file) {
-                times_ = {};
+                panes_.forget_times();
                 note_.clear();
                 saver_.add_input(state().path);
                 add_open(state().path);
@@ -162,7 +170,7 @@ private:
             take_moved(changes.file);
             if (changes.model || changes.pose || changes.occlusion || changes.reference ||
                 changes.pixels)
-                restart();
+                panes_.restart();
         } catch (const std::exception& error) {
             note_ = error.what();
         }
@@ -177,7 +185,7 @@ private:
         left_.show_moved(mover_.base(), mover_.shown(), true);
         if (right_ && right_->session().state().model)
             right_->show_moved(mover_.base(), mover_.shown(), false);
-        follow_motion();
+        panes_.move(glfwGetTime());
     }
 
     /// The right cell is there where it is wanted, with the left one's model.
@@ -202,7 +210,7 @@ private:
         }
         const CellView::Changes changes = right_->update();
         if (changes.model || changes.occlusion || changes.pixels)
-            restart();
+            panes_.restart();
     }
 
     /// Other parts of a file have another frame: what is seen stays where it is.
@@ -219,35 +227,13 @@ private:
     /// What moves leaves its time to the engine.
     int most_samples() const
     {
-        return shows_atlas() || left_.is_moved() || is_moving() ? 1 : kMostSamples;
+        return shows_atlas() || left_.is_moved() || panes_.is_moving(glfwGetTime()) ? 1
+                                                                                    : kMostSamples;
     }
-
-    bool is_moving() const { return glfwGetTime() - moved_at_ < kRestSeconds; }
-
-    /// The camera or the model is elsewhere.
-    void follow_motion()
-    {
-        moved_at_ = glfwGetTime();
-        restart();
-    }
-
-    /// What is drawn of the pictures is as fine as there is time for.
-    void choose_detail()
-    {
-        if (!is_moving())
-            std::fill(times_.begin() + 1, times_.end(), std::nullopt);
-        const std::size_t level = is_moving() ? moving_detail(times_) : 0;
-        if (std::exchange(level_, level) == level)
-            return;
-        restart();
-        for (Pane& pane : panes_)
-            fit_target(pane, left_.renderer(), detail());
-    }
-    const Detail& detail() const { return kDetails[level_]; }
 
     void frame_all()
     {
-        const PictureSize seen = panes_.empty() ? PictureSize{1, 1} : panes_.front().size();
+        const PictureSize seen = panes_.empty() ? PictureSize{1, 1} : panes_.all().front().size();
         const Model& model = *state().model;
         try {
             camera_ = parse_camera(
@@ -261,33 +247,7 @@ private:
             note_ = error.what();
             camera_ = frame_points(model.seen, model.up, 1.0f);
         }
-        restart();
-    }
-
-    /// The picture begins anew.
-    void restart()
-    {
-        for (Pane& pane : panes_)
-            pane.sum.clear();
-    }
-
-    int samples() const { return panes_.empty() ? 0 : panes_.front().sum.count(); }
-
-    /// The pictures in this part of the window; they begin anew where anything has changed.
-    void lay_out(const Rect& part)
-    {
-        const std::vector<PaneWish> wanted =
-            wanted_panes(part, panel_state_.beside, panel_state_.wipe, left_.has_reference(),
-                         right_.has_value());
-        if (!std::ranges::equal(panes_, wanted, is_in_place)) {
-            panes_.clear();
-            level_ = 0;
-            for (const PaneWish& wish : wanted)
-                panes_.emplace_back(left_.renderer(), context_, wish);
-        }
-        for (std::size_t i = 0; i < wanted.size(); ++i)
-            if (std::exchange(panes_[i].as, wanted[i]).wipe != wanted[i].wipe)
-                restart();
+        panes_.restart();
     }
 
     /// What lies on the pixels of the pictures.
@@ -299,14 +259,14 @@ private:
                                     : 0,
                                 is_whole};
         try {
-            const PictureSize size = drawn_size(panes_.front(), detail());
+            const PictureSize size = panes_.drawn_size();
             ViewOptions view = panel_state_.view;
-            view.coarse = level_ != 0;
+            view.coarse = panes_.is_coarse();
             bool has_changed = left_.look(panel_state_.left, camera_, size, rays, view);
             if (right_ && right_->session().state().model)
                 has_changed |= right_->look(right_cell(panel_state_), camera_, size, {}, view);
             if (has_changed)
-                restart();
+                panes_.restart();
         } catch (const std::exception& error) {
             note_ = error.what();
         }
@@ -321,13 +281,14 @@ private:
                          motion_view(), std::exchange(inbox_.keys, {}));
         const int covered = static_cast<int>(input.covered * static_cast<float>(width));
         const bool is_first = panes_.empty();
-        lay_out({covered, 0, width - covered, height});
+        panes_.lay_out(wanted_panes({covered, 0, width - covered, height}, panel_state_.beside,
+                                    panel_state_.wipe, left_.has_reference(), right_.has_value()));
         if (is_first && has_view())
             frame_all();
         apply(input);
         if (input.files.save == Saved::picture || input.reply != SaveReply::none)
-            moved_at_ = -kRestSeconds;  // whole, at once
-        choose_detail();
+            panes_.rest();
+        panes_.choose_detail(glfwGetTime());
 
         const Framebuffer shown = Framebuffer::window(context_, width, height);
         shown.clear_color(glm::vec4(0.16f, 0.17f, 0.18f, 1.0f));
@@ -358,7 +319,7 @@ private:
             view.colors = Colors::visibility;
         if (!cell.can_show(view.colors))
             view.colors = Colors::normals;
-        view.coarse = !detail().is_whole;
+        view.coarse = !panes_.detail().is_whole;
         return view;
     }
 
@@ -367,7 +328,7 @@ private:
         MotionView view{.camera = camera_, .pictures = {}, .positions = {}, .triangles = {}};
         if (!has_view() || shows_atlas())
             return view;
-        view.pictures = places_of(panes_);
+        view.pictures = places_of(panes_.all());
         view.positions = left_.positions();
         view.triangles = left_.model()->geometry().triangles;
         view.is_culled = panel_state_.view.cull;
@@ -376,14 +337,14 @@ private:
 
     void draw_model(const Framebuffer& shown)
     {
-        if (samples() < most_samples()) {
-            for (Pane& pane : panes_)
+        if (panes_.samples() < most_samples()) {
+            for (Pane& pane : panes_.all())
                 add_sample(pane);
             context_.finish("drawing the model");
             frame_ms_ = 1000.0 * drawing_.lap();
-            times_[level_] = frame_ms_;
+            panes_.tell_time(frame_ms_);
         }
-        for (const Pane& pane : panes_)
+        for (const Pane& pane : panes_.all())
             pane.sum.show(shown, {pane.as.place.x, pane.as.place.y}, pane.as.shown);
     }
 
@@ -405,20 +366,20 @@ private:
             return;
         }
         cell.draw_frame(pane.target, camera_, view, sample_shift(pane.sum.count()));
-        pane.sum.add(pane.target, detail().pixel);
+        pane.sum.add(pane.target, panes_.detail().pixel);
     }
 
     PanelFigures figures() const
     {
         const GlInfo& info = context_.info();
         return {.frame_ms = frame_ms_,
-                .samples = samples(),
+                .samples = panes_.samples(),
                 .note = note_,
                 .device = info.renderer,
                 .written = saver_.written(),
                 .files = {open_files_.all(), recent_.files(),
                           has_view() ? whole_path(state().path) : std::filesystem::path(), up_,
-                          open_files_.are_together},
+                          &open_files_},
                 .labels = labels(),
                 .question = saver_.question() ? &*saver_.question() : nullptr};
     }
@@ -426,8 +387,7 @@ private:
     void apply(const PanelInput& input)
     {
         if (has_view() && !left_.session().making())  // what fails to open leaves the last one
-            panel_state_.left.settings.parts.occluders =
-                open_files_.occluders_of(whole_path(state().path));
+            panel_state_.left.settings.beside = open_files_.beside(whole_path(state().path));
         left_.session().solve(panel_state_.left.settings);
         // at pixels they are traced there
         left_.session().want_reference(panel_state_.wants_reference && !panel_state_.left.at_pixels
@@ -446,9 +406,11 @@ private:
             frame_all();
         if (input.add_map)
             add_map();
+        if (input.place_maps)
+            place_maps();
         move_camera(input);
         if (input.view_changed)
-            restart();
+            panes_.restart();
     }
 
     void move_camera(const PanelInput& input)
@@ -468,7 +430,7 @@ private:
         if (input.flies)
             fly(camera_, flight_step(inbox_.held, panel_state_.flight.speed, elapsed));
         if (camera_ != before)
-            follow_motion();
+            panes_.move(glfwGetTime());
     }
 
     /// For each cell that shows some.
@@ -482,6 +444,14 @@ private:
         } catch (const std::exception& error) {
             note_ = error.what();
         }
+    }
+
+    void place_maps()
+    {
+        if (panel_state_.left.from_maps)
+            left_.place_maps();
+        if (right_ && right_cell(panel_state_).from_maps)
+            right_->place_maps();
     }
 
     /// What each side of the line shows.
@@ -500,7 +470,7 @@ private:
     void save_wanted(const PanelInput& input)
     {
         Savable content{.session = left_.session(), .is_moving = left_.is_moved(), .picture = {}};
-        if (has_view() && samples() > 0)
+        if (has_view() && panes_.samples() > 0)
             content.picture = [&] { return picture(); };
         if (input.files.save) {
             const SavePaths& paths = panel_state_.paths;
@@ -515,7 +485,7 @@ private:
     Image picture() const
     {
         const bool is_split = panel_state_.beside == Beside::side_by_side;
-        Image image = picture_of(panes_, labels(), is_split ? 0.5f : panel_state_.wipe);
+        Image image = picture_of(panes_.all(), labels(), is_split ? 0.5f : panel_state_.wipe);
         if (const auto legend = legend_of(*state().model, state().layout.get(), shown_view(false)))
             draw_legend(image, *legend);
         return image;
@@ -527,12 +497,7 @@ private:
             add_open(wishes.open);
             open(wishes.open);
         }
-        open_files_.forget(wishes.forget);
-        if (wishes.together) {
-            open_files_.are_together = *wishes.together;
-            for (const std::filesystem::path& path : open_files_.all())
-                saver_.add_input(path);
-        }
+        switch_files(wishes);
         if (!wishes.environment.empty())
             set_environment(wishes.environment);
         if (wishes.up) {
@@ -544,6 +509,27 @@ private:
         }
     }
 
+    void switch_files(const FileWishes& wishes)
+    {
+        const bool is_changed = !wishes.turn.empty() || !wishes.forget.empty();
+        if (wishes.together || (is_changed && open_files_.are_together))
+            forget_names();
+        open_files_.forget(wishes.forget);
+        if (wishes.together) {
+            open_files_.are_together = *wishes.together;
+            for (const std::filesystem::path& path : open_files_.all())
+                saver_.add_input(path);
+        }
+        if (wishes.turn.empty())
+            return;
+        const bool on = !open_files_.is_on(wishes.turn);
+        open_files_.turn(wishes.turn, on);
+        const auto next = std::ranges::find_if(
+            open_files_.all(), [&](const auto& file) { return open_files_.is_on(file); });
+        if (!on && has_view() && wishes.turn == whole_path(state().path))
+            open(*next);
+    }
+
     void set_environment(const std::filesystem::path& path)
     {
         try {
@@ -553,7 +539,7 @@ private:
                 right_->renderer().set_environment(*environment_);
             saver_.add_input(path);
             note_.clear();
-            restart();
+            panes_.restart();
         } catch (const std::exception& error) {
             note_ = error.what();
         }
@@ -565,13 +551,13 @@ private:
     GlContext context_;
     CellView left_;
     std::optional<CellView> right_;
+    PaneSet panes_;
     Mover mover_;
     MotionPanel motion_panel_;
     PanelState panel_state_;
     Panel panel_;
     Camera camera_;
     Frame frame_;  ///< that the camera is in
-    std::vector<Pane> panes_;
     std::optional<Image> environment_;
     RecentFiles recent_;
     UpAxis up_;
@@ -580,9 +566,7 @@ private:
     std::string note_;
     Stopwatch drawing_;
     double frame_ms_ = 0.0;
-    std::size_t level_ = 0;  ///< of kDetails, that is drawn
-    DetailTimes times_;
-    double moved_at_ = -kRestSeconds, flown_at_ = 0.0;  ///< glfwGetTime()
+    double flown_at_ = 0.0;  ///< glfwGetTime()
     int echo_frames_ = 0;
 };
 

@@ -252,7 +252,7 @@ TEST_F(Probe, ReadsWhatWasSolvedAtVerticesTexelsAndPixels)
     const Reading at_pixel = read_at(view, cell, point, {index % kSide, index / kSide});
     EXPECT_EQ(at_pixel.own, (Occlusion{shaded->w, glm::vec3(*shaded)}));
 
-    set_where(cell, Where::texels, {.size = 64});
+    set_where(cell, Where::texels, {.texels = {.size = 64}, .grid = {}});
     ASSERT_TRUE(is_solved(cell));
     const Reading at_texel = read_at(view, cell, point, {0, 0});
     ASSERT_TRUE(at_texel.own.has_value());

@@ -275,17 +275,17 @@ TEST(CellView, ACubeMapIsPutWhereTheEyeIsAndShown)
     inside.target = glm::vec3(0.0f, 0.0f, -1.0f);
     static_cast<void>(view.look(cell, inside, kSize, {}));
     EXPECT_NE(view.add_map().find("inside of a body"), std::string::npos);
-    EXPECT_EQ(view.map_count(), 0u);
+    EXPECT_EQ(view.cubes().count(), 0u);
     static_cast<void>(view.look(cell, camera, kSize, {}));
     EXPECT_EQ(view.add_map(), "");
-    const auto is_covered = [&] { return view.coverage().has_value(); };
+    const auto is_covered = [&] { return view.cubes().coverage().has_value(); };
     ASSERT_TRUE(look_until(camera, is_covered));
-    const double from_there = *view.coverage();
+    const double from_there = *view.cubes().coverage();
     const Camera behind = camera_of(*model, 210.0f);
     EXPECT_TRUE(view.look(cell, behind, kSize, {}));
     EXPECT_FALSE(is_covered());
     ASSERT_TRUE(look_until(behind, is_covered));
-    EXPECT_GT(from_there, *view.coverage() + 0.3);
+    EXPECT_GT(from_there, *view.cubes().coverage() + 0.3);
     // what no map sees is solved itself, so that all of the picture is right
     rays.rays = 256;
     ASSERT_TRUE(
@@ -297,7 +297,7 @@ TEST(CellView, ACubeMapIsPutWhereTheEyeIsAndShown)
     const auto is_solved_again = [&] { return !view.is_busy() && is_covered(); };
     static_cast<void>(view.look(cell, camera, kSize, {}));
     ASSERT_TRUE(look_until(camera, is_solved_again));
-    EXPECT_EQ(view.map_count(), 1u);
+    EXPECT_EQ(view.cubes().count(), 1u);
     set_where(cell, Where::vertices, {});
     static_cast<void>(view.look(cell, camera, kSize, {}));
     EXPECT_FALSE(view.has_pixels());

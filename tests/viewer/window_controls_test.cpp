@@ -118,12 +118,13 @@ struct Start {
     std::string name;
     PanelState panel;
     fs::path input;
+    std::vector<fs::path> others = {};
 };
 
 std::vector<Start> starts()
 {
     const fs::path data = std::getenv("SURFELAO_DATA");
-    std::vector<Start> all(5);
+    std::vector<Start> all(7);
     all[0] = {"disks-", {}, data / "room.obj"};
     all[0].panel.left.settings.engine.engine = Engine::disks;
     all[0].panel.beside = Beside::side_by_side;
@@ -137,6 +138,16 @@ std::vector<Start> starts()
     all[2].panel.beside = Beside::wipe;
     all[3] = {"animated-", {}, data / "robot.glb"};
     all[4] = {"nothing-", {}, {}};
+    all[5] = {"grid-", {}, data / "bracket.obj"};
+    all[5].panel.left.at_pixels = true;
+    all[5].panel.left.grid.emplace().resolution = 16;
+    all[5].panel.view.background = glm::vec4(0.0f);
+    all[6] = {"maps-", {}, data / "room.obj"};
+    all[6].panel.left.at_pixels = all[6].panel.left.from_maps = true;
+    all[6].panel.left.screen = cube_horizon();
+    all[6].others = {data / "bracket.obj"};
+    for (Start& start : all)  // from outside into the room
+        start.panel.view.cull = true;
     return all;
 }
 
@@ -146,11 +157,15 @@ TEST_F(Window, DISABLED_EveryControlIsClicked)
     ASSERT_TRUE(out != nullptr && std::getenv("SURFELAO_DATA") != nullptr);
     const TemporaryFolder folder;
     fs::current_path(folder.path());
+    const char* only = std::getenv("SURFELAO_START");
     for (const Start& start : starts()) {
+        if (only && start.name != only + std::string("-"))
+            continue;
         Clicker clicker(fs::path(out) / start.name);
         bool is_ready = start.input.empty();
         WindowOptions options;
         options.input = start.input;
+        options.more_inputs = start.others;
         options.up = start.input.filename() == "room.obj" ? UpAxis::z : UpAxis::y;
         options.width = 760;
         options.height = 1000;

@@ -69,17 +69,20 @@ TEST(RecentFiles, StandWhereTheDesktopKeepsStates)
     EXPECT_EQ(RecentFiles("").files().size(), 0u);
 }
 
-TEST(OpenFiles, OccludeEachOtherWhereTheyStandInOneWorld)
+TEST(OpenFiles, ThoseThatAreOnStandInOneWorldWhereTheyAreTogether)
 {
-    OpenFiles files({"/rock"});
+    OpenFiles files;
     for (const char* file : {"/a", "/b", "/a", "/c"})
         files.add(file);
     EXPECT_EQ(files.all(), (OpenFiles::Paths{"/a", "/b", "/c"}));
-    EXPECT_EQ(files.occluders_of("/b"), (OpenFiles::Paths{"/rock"}));
+    EXPECT_EQ(files.beside("/b"), OpenFiles::Paths{});
     files.are_together = true;
-    EXPECT_EQ(files.occluders_of("/b"), (OpenFiles::Paths{"/rock", "/a", "/c"}));
-    files.forget("/a");
-    EXPECT_EQ(files.occluders_of("/b"), (OpenFiles::Paths{"/rock", "/c"}));
+    EXPECT_EQ(files.beside("/b"), (OpenFiles::Paths{"/a", "/c"}));
+    files.turn("/a", false);
+    EXPECT_EQ(files.beside("/b"), (OpenFiles::Paths{"/c"}));
+    files.turn("/a", true);
+    files.forget("/c");
+    EXPECT_EQ(files.beside("/b"), (OpenFiles::Paths{"/a"}));
 }
 
 void hold(int key, int action)
@@ -191,6 +194,65 @@ TEST_F(Window, ASavedPictureKeepsTheLineAndTheLabelsOfBothSides)
     EXPECT_LT(saved.at(160 + 8, 7).r, 0.02f);
 }
 
+// What is behind the box is transparent in the file, and checks on the screen.
+TEST_F(Window, APictureIsSavedWithoutABackground)
+{
+    const TemporaryFolder folder;
+    WindowOptions options;
+    options.input = box_file();
+    options.panel.view.background = glm::vec4(0.0f);
+    options.panel.view.ground = false;
+    options.panel.paths.picture = folder / "x.png";
+    Image last;
+    options.width = 320;
+    options.height = 240;
+    options.panel.is_hidden = true;
+    int frames = 0;
+    options.on_frame = [&](const Image& shown, const Session& session) {
+        last = shown;
+        if (!session.state().is_solved || session.state().is_draft)
+            return true;
+        if (frames == 1)
+            press(GLFW_KEY_P);
+        return ++frames < 4;
+    };
+    (void)show_window(options);
+    const Image saved = read_image(folder / "x.png");
+    EXPECT_EQ(saved.at(2, 2).a, 0.0f);
+    EXPECT_EQ(saved.at(160, 120).a, 1.0f);
+    EXPECT_NE(last.at(2, 2).r, last.at(2 + 12, 2).r);
+    EXPECT_EQ(last.at(2, 2).r, last.at(2 + 24, 2).r);
+}
+
+TEST_F(Window, FilesInOneWorldAreShownTogether)
+{
+    const TemporaryFolder folder;
+    const fs::path box = box_file();
+    const Scene ball = scenes::bumpy_sphere(6);
+    write_obj(folder / "ball.obj", ball);
+    WidgetFinder finder({30.0f}, 60.0f, 160.0f, 8.0f);
+    int step = 0;
+    std::size_t shown = 0;
+    WindowOptions options;
+    options.input = box;
+    options.more_inputs = {folder / "ball.obj"};
+    options.width = 724;
+    options.height = 500;
+    options.on_frame = [&](const Image&, const Session& session) {
+        if (!session.state().is_solved || session.state().is_draft || finder.go_on())
+            return true;
+        const std::optional<ImVec2> tick = finder.place_of("in one world");
+        if (!tick)
+            return false;
+        if (step < 2)
+            click(tick->x, tick->y, step++ == 0 ? GLFW_PRESS : GLFW_RELEASE);
+        shown = session.state().model->geometry().positions.size();
+        return session.state().beside.empty();
+    };
+    (void)show_window(options);
+    EXPECT_EQ(shown, read_scene(box).positions.size() + ball.positions.size());
+}
+
 // Saving reads from the device, where widgets must not be drawn then.
 TEST_F(Window, TheWidgetsStayWhileAPictureIsSaved)
 {
@@ -215,6 +277,38 @@ TEST_F(Window, TheWidgetsStayWhileAPictureIsSaved)
     (void)show_window(options);
     EXPECT_EQ(folder.file_count(), 1);
     EXPECT_GT(least, 0.01);
+}
+
+// Also where a click on the panel has come after the key.
+TEST_F(Window, TheKeysStandOverThePanelAndWithinANarrowWindow)
+{
+    int frames = 0;
+    bool is_shown = false, is_behind = false, is_within = true;
+    WindowOptions options;
+    options.input = box_file();
+    options.width = 420;
+    options.height = 300;
+    options.on_frame = [&](const Image&, const Session&) {
+        ++frames;
+        if (frames == 2)
+            press(GLFW_KEY_H);
+        if (frames == 4 || frames == 6)
+            click(200.0, 5.0, frames == 4 ? GLFW_PRESS : GLFW_RELEASE);
+        if (frames < 8)
+            return true;
+        const ImVector<ImGuiWindow*>& order = ImGui::GetCurrentContext()->Windows;
+        const ImGuiWindow* keys = ImGui::FindWindowByName("Keys");
+        is_shown = keys && keys->Active;
+        is_behind = std::ranges::find(order, keys) <
+                    std::ranges::find(order, ImGui::FindWindowByName("surfelao"));
+        is_within = keys && keys->Pos.x >= 0.0f && keys->Pos.x + keys->Size.x <= 420.0f &&
+                    keys->Pos.y + keys->Size.y <= 300.0f;
+        return false;
+    };
+    (void)show_window(options);
+    EXPECT_TRUE(is_shown);
+    EXPECT_FALSE(is_behind);
+    EXPECT_TRUE(is_within);
 }
 
 // Under the mouse: the panel's left column. Titles of sections say what they do.
