@@ -134,6 +134,19 @@ void close_polygon(Polygons& polygons, std::uint32_t size)
     polygons.sizes.push_back(size);
 }
 
+void append(Polygons& polygons, const Polygons& more)
+{
+    std::vector<std::uint32_t>& sizes = polygons.sizes;
+    if (!sizes.empty() || !more.sizes.empty()) {
+        sizes.resize(polygons.count(), 3);
+        if (more.sizes.empty())
+            sizes.resize(sizes.size() + more.count(), 3);
+        sizes.insert(sizes.end(), more.sizes.begin(), more.sizes.end());
+    }
+    polygons.corners.insert(polygons.corners.end(), more.corners.begin(), more.corners.end());
+    polygons.small_count += more.small_count;
+}
+
 Scene make_mesh_scene(std::string_view file_name, std::vector<glm::dvec3> positions,
                       Polygons polygons, std::shared_ptr<MeshSource> source, PolygonCorners given)
 {
