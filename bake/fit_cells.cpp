@@ -373,9 +373,7 @@ private:
 SurfaceSamples samples_of(const Geometry& geometry, std::span<const std::uint32_t> unknowns)
 {
     const auto count = static_cast<std::uint32_t>(geometry.triangles.size());
-    std::vector<double> areas(count);
-    for (std::uint32_t t = 0; t < count; ++t)
-        areas[t] = area_of(geometry, t);
+    const std::vector<double> areas = triangle_areas(geometry);
     Density density(geometry, areas);
 
     std::vector<std::uint32_t> among;

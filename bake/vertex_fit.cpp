@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 namespace surfelao {
@@ -92,24 +94,21 @@ struct VertexFit::Impl {
     std::size_t unknown_count = 0;        ///< found with the next
     std::vector<std::uint32_t> unknowns;  ///< per vertex
     SurfaceSamples samples;
-    Buckets<std::uint32_t> corners;  ///< 4 * cell + corner, by unknown
-    std::vector<bool> edged;         ///< unknowns of vertices that faces share over a hard edge
-    Matrix matrix;
+    std::vector<bool> edged;  ///< unknowns of vertices that faces share over a hard edge
+
+    /// Made when they are first asked for: the engines that answer before need the memory.
+    struct Equations {
+        Buckets<std::uint32_t> corners;  ///< 4 * cell + corner, by unknown
+        Matrix matrix;
+    };
+    mutable std::once_flag are_made;
+    mutable std::optional<Equations> made;
 
     Impl(const Geometry& g, const Surface& s, const NormalSettings& normals)
         : geometry(g),
           surface(s),
           unknowns(unknowns_of(g, s, normals, unknown_count)),
           samples(samples_of(g, unknowns)),
-          corners(unknown_count,
-                  [this](const auto& put) {
-                      for (std::uint32_t cell = 0; cell + 1 < samples.cells.size(); ++cell) {
-                          const FitCell& own = samples.cells[cell];
-                          for (int corner = 0; corner < corner_count(own); ++corner)
-                              put(own.unknowns[corner],
-                                  4 * cell + static_cast<std::uint32_t>(corner));
-                      }
-                  }),
           edged(unknown_count, false)
     {
         for (std::uint32_t wedge = 0; wedge < s.normals.size(); ++wedge) {
@@ -118,7 +117,27 @@ struct VertexFit::Impl {
                 !are_smooth(s.normals[vertex], s.normals[wedge], normals))
                 edged[unknowns[vertex]] = true;
         }
-        make_matrix();
+    }
+
+    const Equations& equations() const
+    {
+        std::call_once(are_made, [&] {
+            made.emplace(Equations{corners_of_unknowns(), {}});
+            make_matrix(made->corners, made->matrix);
+        });
+        return *made;
+    }
+
+    Buckets<std::uint32_t> corners_of_unknowns() const
+    {
+        return {unknown_count, [this](const auto& put) {
+                    for (std::uint32_t cell = 0; cell + 1 < samples.cells.size(); ++cell) {
+                        const FitCell& own = samples.cells[cell];
+                        for (int corner = 0; corner < corner_count(own); ++corner)
+                            put(own.unknowns[corner],
+                                4 * cell + static_cast<std::uint32_t>(corner));
+                    }
+                }};
     }
 
     /// Of a sample at the corners of its cell.
@@ -140,7 +159,7 @@ struct VertexFit::Impl {
     }
 
     glm::dvec4 row_of(std::uint32_t cell, int corner) const;
-    void make_matrix();
+    void make_matrix(const Buckets<std::uint32_t>& corners, Matrix& matrix) const;
     Channels channels_of(std::span<const Occlusion> answers) const;
     std::vector<Occlusion> values_of(const Channels& channels) const;
 };
@@ -172,7 +191,7 @@ glm::dvec4 VertexFit::Impl::row_of(std::uint32_t cell, int corner) const
     return row;
 }
 
-void VertexFit::Impl::make_matrix()
+void VertexFit::Impl::make_matrix(const Buckets<std::uint32_t>& corners, Matrix& matrix) const
 {
     struct Block {
         std::vector<int> counts, columns;  ///< of rows; of entries
@@ -215,7 +234,7 @@ void VertexFit::Impl::make_matrix()
     int* row_end = matrix.outerIndexPtr();
     *row_end = 0;
     std::ptrdiff_t filled = 0;
-    for (const Block& block : blocks) {
+    for (Block& block : blocks) {
         for (const int count : block.counts) {
             row_end[1] = row_end[0] + count;
             ++row_end;
@@ -223,6 +242,7 @@ void VertexFit::Impl::make_matrix()
         std::ranges::copy(block.columns, matrix.innerIndexPtr() + filled);
         std::ranges::copy(block.values, matrix.valuePtr() + filled);
         filled += static_cast<std::ptrdiff_t>(block.columns.size());
+        block = {};
     }
 }
 
@@ -253,6 +273,7 @@ std::vector<std::uint32_t> VertexFit::unused_vertices() const
 Channels VertexFit::Impl::channels_of(std::span<const Occlusion> answers) const
 {
     const auto count = static_cast<std::ptrdiff_t>(unknown_count);
+    const Buckets<std::uint32_t>& corners = equations().corners;
     Channels channels;
     for (std::size_t channel = 0; channel < kChannels; ++channel) {
         channels.right[channel].resize(count);
@@ -301,11 +322,12 @@ std::vector<Occlusion> VertexFit::Impl::values_of(const Channels& channels) cons
 std::vector<Occlusion> VertexFit::solve(std::span<const Occlusion> answers) const
 {
     Channels channels = impl_->channels_of(answers);
+    const Matrix& matrix = impl_->equations().matrix;
     tbb::parallel_for(std::size_t{0}, channels.right.size(), [&](std::size_t channel) {
         Solver solver;
         solver.setTolerance(kTolerance);
         solver.setMaxIterations(kMostSteps);
-        solver.compute(impl_->matrix);
+        solver.compute(matrix);
         channels.values[channel] =
             solver.solveWithGuess(channels.right[channel], channels.values[channel]).eval();
     });
@@ -315,7 +337,7 @@ std::vector<Occlusion> VertexFit::solve(std::span<const Occlusion> answers) cons
 std::vector<Occlusion> VertexFit::solve_locally(std::span<const Occlusion> answers) const
 {
     Channels channels = impl_->channels_of(answers);
-    const Matrix& matrix = impl_->matrix;
+    const Matrix& matrix = impl_->equations().matrix;
     const Eigen::VectorXd inverse = matrix.diagonal().cwiseInverse();
     // rows over their diagonal: the sums of their entries bound all eigenvalues (Gershgorin)
     double largest = 0.0;

@@ -2,9 +2,11 @@
 
 #include "files/triangulate.h"
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 #include "surfels/number_text.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -45,6 +47,14 @@ bool has_place(const glm::dvec3& position)
 void check_corners(std::string_view file_name, const std::vector<glm::dvec3>& positions,
                    const Polygons& polygons)
 {
+    std::atomic<bool> are_right{true};
+    for_all(polygons.corners.size(), [&](std::size_t i) {
+        const std::uint32_t corner = polygons.corners[i];
+        if (corner >= positions.size() || !has_place(positions[corner]))
+            are_right.store(false, std::memory_order_relaxed);
+    });
+    if (are_right)
+        return;
     std::size_t first = 0;
     for (std::size_t face = 0; face < polygons.count(); ++face) {
         const std::size_t size = polygons.sizes.empty() ? 3 : polygons.sizes[face];
@@ -101,6 +111,16 @@ struct CornerNumbers {
         for (const glm::uvec3& place : places)
             triangles->emplace_back(corners[place.x], corners[place.y], corners[place.z]);
     }
+
+    /// All of them, where every polygon is a triangle.
+    void copy() const
+    {
+        triangles->resize(polygons->size() / 3);
+        for_all(triangles->size(), [&](std::size_t t) {
+            const std::uint32_t* corners = polygons->data() + 3 * t;
+            (*triangles)[t] = {corners[0], corners[1], corners[2]};
+        });
+    }
 };
 
 /// Leaves no numbers that are those of the vertices.
@@ -134,6 +154,19 @@ void close_polygon(Polygons& polygons, std::uint32_t size)
     polygons.sizes.push_back(size);
 }
 
+void append(Polygons& polygons, const Polygons& more)
+{
+    std::vector<std::uint32_t>& sizes = polygons.sizes;
+    if (!sizes.empty() || !more.sizes.empty()) {
+        sizes.resize(polygons.count(), 3);
+        if (more.sizes.empty())
+            sizes.resize(sizes.size() + more.count(), 3);
+        sizes.insert(sizes.end(), more.sizes.begin(), more.sizes.end());
+    }
+    polygons.corners.insert(polygons.corners.end(), more.corners.begin(), more.corners.end());
+    polygons.small_count += more.small_count;
+}
+
 Scene make_mesh_scene(std::string_view file_name, std::vector<glm::dvec3> positions,
                       Polygons polygons, std::shared_ptr<MeshSource> source, PolygonCorners given)
 {
@@ -161,12 +194,15 @@ Scene make_mesh_scene(std::string_view file_name, std::vector<glm::dvec3> positi
         streams.push_back({&given.normals.corners, &scene.normals.corners});
     if (!given.uvs.corners.empty())
         streams.push_back({&given.uvs.corners, &scene.uvs.front().corners});
-    for (const CornerNumbers& numbers : streams)
-        numbers.triangles->reserve(triangle_count);
+    for (const CornerNumbers& numbers : streams) {
+        if (polygons.sizes.empty())
+            numbers.copy();
+        else
+            numbers.triangles->reserve(triangle_count);
+    }
     std::vector<glm::uvec3> cut;
     std::size_t first = 0;
-    for (std::size_t face = 0; face < polygon_count; ++face) {
-        const std::size_t size = polygons.sizes.empty() ? 3 : polygons.sizes[face];
+    for (const std::uint32_t size : polygons.sizes) {
         std::span<const glm::uvec3> places(&kWhole, 1);
         if (size > 3) {
             cut.clear();

@@ -61,6 +61,9 @@ struct PolygonCorners {
 /// is taken back and counted.
 void close_polygon(Polygons& polygons, std::uint32_t size);
 
+/// Appends those of a file's next lines.
+void append(Polygons& polygons, const Polygons& more);
+
 /// What the writers need beyond the Scene. The readers of OBJ and PLY derive from it and keep the
 /// file itself.
 class MeshSource : public SourceAsset {

@@ -37,6 +37,29 @@ std::size_t uv_list(const Element& element)
                                     element.properties.begin());
 }
 
+/// What rows of faces say.
+struct Faces {
+    Polygons polygons;
+    PolygonValues<glm::dvec2> uvs;
+    std::uint64_t odd_uv_lists = 0;  ///< whose numbers are not two for each corner, nor none
+
+    /// Appends those of the rows behind.
+    void append(const Faces& more)
+    {
+        const std::size_t corners = polygons.corners.size();
+        if (!more.uvs.corners.empty()) {
+            uvs.corners.resize(corners, kNoValue);
+            for (const std::uint32_t value : more.uvs.corners)
+                uvs.corners.push_back(value == kNoValue
+                                          ? value
+                                          : value + static_cast<std::uint32_t>(uvs.values.size()));
+            uvs.values.insert(uvs.values.end(), more.uvs.values.begin(), more.uvs.values.end());
+        }
+        surfelao::append(polygons, more.polygons);
+        odd_uv_lists += more.odd_uv_lists;
+    }
+};
+
 template <class Data>
 class Reader {
 public:
@@ -67,17 +90,16 @@ public:
                 skip_rows(element);
         }
         // what the faces say of their corners is more than what the vertices can
-        if (!face_uvs_.values.empty()) {
-            face_uvs_.close(polygons);
-            given.uvs = std::move(face_uvs_);
+        if (!faces.uvs.values.empty()) {
+            faces.uvs.close(faces.polygons);
+            given.uvs = std::move(faces.uvs);
         }
     }
 
     std::vector<glm::dvec3> positions;
     PolygonCorners given;
-    Polygons polygons;
+    Faces faces;
     std::optional<glm::dvec3> camera;
-    std::uint64_t odd_uv_lists = 0;  ///< whose numbers are not two for each corner, nor none
 
 private:
     /// Refuses a count for which the file is too short before anything of that size is reserved.
@@ -124,63 +146,82 @@ private:
 
     /// Calls read(p, length) for the lists p that it is asked of with is_read(p).
     template <class IsRead, class Read>
-    void read_row(const Element& element, std::uint64_t row, const IsRead& is_read,
-                  const Read& read)
+    static void read_row(Data& data, const Element& element, std::uint64_t row,
+                         const IsRead& is_read, const Read& read)
     {
-        data_.begin_row(element, row);
+        data.begin_row(element, row);
         for (std::size_t p = 0; p < element.properties.size(); ++p) {
             if (is_read(p))
-                read(p, read_length(data_, element.properties[p]));
+                read(p, read_length(data, element.properties[p]));
             else
-                skip_property(data_, element.properties[p]);
+                skip_property(data, element.properties[p]);
         }
-        data_.end_row();
+        data.end_row();
     }
 
     void read_faces(const Element& element)
     {
         const std::size_t list = index_list(file_name_, element);
-        const std::size_t uvs = uv_list(element);
         index_type_ = element.properties[list].type;
-        std::vector<glm::dvec2> row_uvs;
         source_.faces_begin = data_.offset();
-        for (std::uint64_t row = 0; row < element.count; ++row) {
-            const std::size_t first = polygons.corners.size();
-            std::uint64_t uv_numbers = 0;
-            read_row(
-                element, row, [&](std::size_t p) { return p == list || p == uvs; },
-                [&](std::size_t p, std::uint64_t length) {
-                    if (p == list)
-                        return read_face(length);
-                    uv_numbers = length;
-                    read_uvs(length, element.properties[p].type, row_uvs);
-                });
-            const std::size_t corners = polygons.corners.size() - first;
-            if (uv_numbers == 2 * corners)
-                add_uvs(first, row_uvs);
-            else if (uv_numbers > 0 && corners > 0)
-                ++odd_uv_lists;
-            row_uvs.clear();
+        const std::vector<RowRange> ranges = data_.ranges(element);
+        std::vector<Faces> parts(ranges.size());
+        for_each_range(data_, ranges, [&](Data& data, std::size_t i) {
+            read_faces(data, element, list, ranges[i], parts[i]);
+        });
+        std::size_t corners = faces.polygons.corners.size();
+        for (const Faces& part : parts)
+            corners += part.polygons.corners.size();
+        faces.polygons.corners.reserve(corners);
+        for (Faces& part : parts) {
+            faces.append(part);
+            part = {};
         }
         source_.faces_end = data_.offset();
     }
 
-    void read_uvs(std::uint64_t length, Type type, std::vector<glm::dvec2>& uvs)
+    void read_faces(Data& data, const Element& element, std::size_t list, const RowRange& range,
+                    Faces& found) const
+    {
+        const std::size_t uvs = uv_list(element);
+        std::vector<glm::dvec2> row_uvs;
+        for (std::uint64_t row = range.first; row < range.end; ++row) {
+            const std::size_t first = found.polygons.corners.size();
+            std::uint64_t uv_numbers = 0;
+            read_row(
+                data, element, row, [&](std::size_t p) { return p == list || p == uvs; },
+                [&](std::size_t p, std::uint64_t length) {
+                    if (p == list)
+                        return read_face(data, length, found.polygons);
+                    uv_numbers = length;
+                    read_uvs(data, length, element.properties[p].type, row_uvs);
+                });
+            const std::size_t corners = found.polygons.corners.size() - first;
+            if (uv_numbers == 2 * corners)
+                add_uvs(first, row_uvs, found.uvs);
+            else if (uv_numbers > 0 && corners > 0)
+                ++found.odd_uv_lists;
+            row_uvs.clear();
+        }
+    }
+
+    static void read_uvs(Data& data, std::uint64_t length, Type type, std::vector<glm::dvec2>& uvs)
     {
         for (std::uint64_t i = 0; i < length; ++i) {
             const int axis = static_cast<int>(i % 2);
             if (axis == 0)
                 uvs.emplace_back(0.0);
-            uvs.back()[axis] = uv_number(data_.loose_number(type), axis);
+            uvs.back()[axis] = uv_number(data.loose_number(type), axis);
         }
     }
 
     /// Of the corners from `first` on.
-    void add_uvs(std::size_t first, const std::vector<glm::dvec2>& uvs)
+    static void add_uvs(std::size_t first, const std::vector<glm::dvec2>& row,
+                        PolygonValues<glm::dvec2>& uvs)
     {
-        for (std::size_t i = 0; i < uvs.size(); ++i) {
-            face_uvs_.set(first + i, static_cast<std::uint32_t>(face_uvs_.values.size()));
-            face_uvs_.values.push_back(uvs[i]);
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            uvs.set(first + i, static_cast<std::uint32_t>(uvs.values.size()));
+            uvs.values.push_back(row[i]);
         }
     }
 
@@ -190,30 +231,31 @@ private:
         index_type_ = element.properties[list].type;
         for (std::uint64_t row = 0; row < element.count; ++row)
             read_row(
-                element, row, [&](std::size_t p) { return p == list; },
+                data_, element, row, [&](std::size_t p) { return p == list; },
                 [&](std::size_t, std::uint64_t length) { read_strip_list(length); });
-        if (polygons.corners.empty())  // no cloud, but a mesh of nothing
-            ++polygons.small_count;
+        if (faces.polygons.corners.empty())  // no cloud, but a mesh of nothing
+            ++faces.polygons.small_count;
     }
 
-    std::uint32_t checked(std::int64_t index) const
+    std::uint32_t checked(const Data& data, std::int64_t index) const
     {
         if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_) {
-            data_.fail("uses vertex " + std::to_string(index) + ", but there are " +
-                       std::to_string(vertex_count_) + " vertices");
+            data.fail("uses vertex " + std::to_string(index) + ", but there are " +
+                      std::to_string(vertex_count_) + " vertices");
         }
         return static_cast<std::uint32_t>(index);
     }
 
-    void read_face(std::uint64_t length)
+    void read_face(Data& data, std::uint64_t length, Polygons& polygons) const
     {
         for (std::uint64_t i = 0; i < length; ++i)
-            polygons.corners.push_back(checked(data_.integer(index_type_)));
+            polygons.corners.push_back(checked(data, data.integer(index_type_)));
         close_polygon(polygons, static_cast<std::uint32_t>(length));
     }
 
     void read_strip_list(std::uint64_t length)
     {
+        Polygons& polygons = faces.polygons;
         std::array<std::uint32_t, 3> last{};
         std::uint64_t in_strip = 0;
         for (std::uint64_t i = 0; i < length; ++i) {
@@ -222,7 +264,7 @@ private:
                 in_strip = 0;
                 continue;
             }
-            last = {last[1], last[2], checked(index)};
+            last = {last[1], last[2], checked(data_, index)};
             if (++in_strip < 3 || last[0] == last[1] || last[1] == last[2] || last[0] == last[2])
                 continue;
             if (in_strip % 2 == 0)  // every other triangle of a strip is wound the other way
@@ -250,7 +292,6 @@ private:
     Data data_;
     std::uint64_t vertex_count_ = 0;
     Type index_type_ = Type::int32;
-    PolygonValues<glm::dvec2> face_uvs_;
 };
 
 template <class Data>
@@ -258,11 +299,11 @@ Scene read_with(const std::string& file_name, std::shared_ptr<PlySource> source)
 {
     Reader<Data> reader(file_name, *source);
     reader.run();
-    Scene scene = make_scene_of(file_name, std::move(reader.positions), std::move(reader.polygons),
-                                source, std::move(reader.given));
+    Scene scene = make_scene_of(file_name, std::move(reader.positions),
+                                std::move(reader.faces.polygons), source, std::move(reader.given));
     if (scene.triangles.empty())
         scene.viewpoint = source->header.viewpoint ? source->header.viewpoint : reader.camera;
-    add_note(scene.notes, reader.odd_uv_lists, "face",
+    add_note(scene.notes, reader.faces.odd_uv_lists, "face",
              "with a list texcoord that has not two numbers for each corner: taken as without");
     for (const Element& element : source->header.elements)
         add_note(scene.notes,

@@ -263,6 +263,10 @@ WrittenFile spliced(const PlySource& source, const Scene& scene,
     if (header.replaced > 0)
         written.notes.push_back("the map takes the place of " +
                                 count_text(header.replaced, "texture") + " that the file names");
+    std::size_t size = written.contents.size() + source.data().size();
+    for (const Piece& piece : pieces)
+        size += piece.text.size();
+    written.contents.reserve(size);
     std::size_t copied = 0;
     for (const Piece& piece : pieces) {
         written.contents.append(source.data().substr(copied, piece.begin - copied))

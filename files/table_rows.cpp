@@ -50,6 +50,31 @@ std::uint32_t packed_bits(Type type, double number)
                                  : static_cast<std::uint32_t>(static_cast<std::int64_t>(number));
 }
 
+std::vector<RowRange> BinaryData::ranges(const Element& element) const
+{
+    const bool has_lists = std::ranges::any_of(element.properties, [](const Property& property) {
+        return property.count_type.has_value();
+    });
+    if (!has_lists)
+        return row_ranges(offset_, remaining(), least_bytes(element), element.count);
+    std::vector<RowRange> ranges{{0, element.count, offset_, 0}};
+    BinaryData rows = *this;
+    try {
+        for (std::uint64_t row = 0; row < element.count; ++row) {
+            if (rows.offset_ - ranges.back().offset >= kRangeBytes) {
+                ranges.back().end = row;
+                ranges.push_back({row, element.count, rows.offset_, 0});
+            }
+            rows.begin_row(element, row);
+            for (const Property& property : element.properties)
+                skip_property(rows, property);
+        }
+    } catch (const InputError&) {
+        // who reads the last range finds the same fault, or an earlier one
+    }
+    return ranges;
+}
+
 std::vector<Role> roles_of(const std::string& file_name, const Element& element)
 {
     const std::size_t count = element.properties.size();

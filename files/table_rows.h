@@ -4,6 +4,7 @@
 
 #include "files/mesh_source.h"
 #include "files/own_colors.h"
+#include "files/row_ranges.h"
 #include "files/text_cursor.h"
 #include "surfels/errors.h"
 
@@ -151,6 +152,19 @@ public:
     /// The fewest bytes that one row takes.
     static std::size_t least_bytes(const Element& element) { return 2 * element.properties.size(); }
 
+    /// Of the next rows, which are those of the element.
+    [[nodiscard]] std::vector<RowRange> ranges(const Element& element) const
+    {
+        return row_ranges(cursor_, element.count);
+    }
+    /// Before a range of rows, in which next comes begin_row().
+    [[nodiscard]] AsciiData at(const RowRange& range) const
+    {
+        AsciiData rows = *this;
+        rows.cursor_ = cursor_.part(range.offset, offset() + remaining(), range.line);
+        return rows;
+    }
+
     void begin_row(const Element& element, std::uint64_t row)
     {
         element_ = &element;
@@ -211,7 +225,7 @@ private:
 class BinaryData {
 public:
     BinaryData(const std::string& file_name, std::string_view rows, const RowForm& form)
-        : file_name_(file_name),
+        : file_name_(&file_name),
           rows_(rows),
           swapped_((form.format == Format::big_endian) != (std::endian::native == std::endian::big))
     {
@@ -223,6 +237,15 @@ public:
         for (const Property& property : element.properties)
             bytes += size_of(property.count_type.value_or(property.type));
         return bytes;
+    }
+
+    /// As those of AsciiData. Rows with lists are stepped through to find them.
+    [[nodiscard]] std::vector<RowRange> ranges(const Element& element) const;
+    [[nodiscard]] BinaryData at(const RowRange& range) const
+    {
+        BinaryData rows = *this;
+        rows.offset_ = range.offset;
+        return rows;
     }
 
     void begin_row(const Element& element, std::uint64_t row)
@@ -272,7 +295,7 @@ public:
     [[nodiscard]] std::size_t offset() const { return offset_; }
     [[noreturn]] void fail(const std::string& fault) const
     {
-        throw InputError(file_name_ + ": " + row_name(*element_, row_) + " " + fault);
+        throw InputError(*file_name_ + ": " + row_name(*element_, row_) + " " + fault);
     }
 
 private:
@@ -295,7 +318,7 @@ private:
         fail("of " + std::to_string(element_->count) + " is cut: the file ends");
     }
 
-    const std::string& file_name_;
+    const std::string* file_name_;
     std::string_view rows_;
     std::size_t offset_ = 0;
     bool swapped_;
@@ -331,7 +354,7 @@ void skip_property(Data& data, const Property& property)
     data.skip(property.type, count);
 }
 
-/// All rows of the vertices, which begin at the data's place.
+/// All rows of the vertices, which begin at the data's place; all threads.
 template <class Data>
 VertexValues read_vertices(Data& data, const Element& vertices, const std::vector<Role>& roles)
 {
@@ -341,22 +364,27 @@ VertexValues read_vertices(Data& data, const Element& vertices, const std::vecto
         values.normals.resize(vertices.count);
     if (std::ranges::find(roles, Role::uv, &Role::kind) != roles.end())
         values.uvs.resize(vertices.count);
-    for (std::uint64_t row = 0; row < vertices.count; ++row) {
-        data.begin_row(vertices, row);
+    const auto read_row = [&](Data& rows, std::uint64_t row) {
+        rows.begin_row(vertices, row);
         for (std::size_t p = 0; p < roles.size(); ++p) {
             const Property& property = vertices.properties[p];
             const auto [kind, axis] = roles[p];
             if (kind == Role::position)
-                values.positions[row][axis] = data.any_number(property.type);
+                values.positions[row][axis] = rows.any_number(property.type);
             else if (kind == Role::normal)
-                values.normals[row][axis] = static_cast<float>(data.any_number(property.type));
+                values.normals[row][axis] = static_cast<float>(rows.any_number(property.type));
             else if (kind == Role::uv)
-                values.uvs[row][axis] = uv_number(data.loose_number(property.type), axis);
+                values.uvs[row][axis] = uv_number(rows.loose_number(property.type), axis);
             else
-                skip_property(data, property);
+                skip_property(rows, property);
         }
-        data.end_row();
-    }
+        rows.end_row();
+    };
+    const std::vector<RowRange> ranges = data.ranges(vertices);
+    for_each_range(data, ranges, [&](Data& rows, std::size_t i) {
+        for (std::uint64_t row = ranges[i].first; row < ranges[i].end; ++row)
+            read_row(rows, row);
+    });
     return values;
 }
 

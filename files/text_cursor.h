@@ -4,6 +4,7 @@
 /// does not depend on the length of lines. Every fault is an InputError "FILE: line N: FAULT".
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -40,10 +41,33 @@ public:
     bool next_line();
 
     /// True when the line holds no more words.
-    bool at_line_end();
+    bool at_line_end()
+    {
+        while (at_ != end_) {
+            const Sign sign = sign_of(*at_);
+            if (sign == Sign::of_word)
+                return false;
+            if (sign == Sign::newline)
+                return true;
+            if (sign == Sign::special && !joins_lines(at_))
+                return begins_comment(at_);
+            ++at_;
+            if (sign == Sign::special)
+                skip_newline();
+        }
+        return true;
+    }
 
     /// The next word on this line; empty at its end.
-    std::string_view word();
+    std::string_view word()
+    {
+        if (at_line_end())
+            return {};
+        const char* first = at_;
+        while (!ends_word(at_))
+            ++at_;
+        return {first, static_cast<std::size_t>(at_ - first)};
+    }
 
     /// What stands on this line from the next word on, without blanks at the end; it is not taken.
     [[nodiscard]] std::string_view rest_of_line();
@@ -63,6 +87,23 @@ public:
     /// Bytes that lie behind the cursor.
     [[nodiscard]] std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
 
+    /// Before the lines between two byte positions of the text, at the first of which a line
+    /// begins, as in line_begin(): next_line() finds its first. Positions remain those in the whole
+    /// text.
+    [[nodiscard]] TextCursor part(std::size_t begin, std::size_t end, std::uint64_t line) const
+    {
+        TextCursor cursor = *this;
+        cursor.at_ = begin_ + begin;
+        cursor.end_ = begin_ + end;
+        cursor.line_ = line;
+        cursor.started_ = false;
+        return cursor;
+    }
+
+    /// Byte position of the first line that begins behind `offset` and is not joined with the one
+    /// before; the text's end where there is none.
+    [[nodiscard]] std::size_t line_begin(std::size_t offset) const;
+
     /// Byte position in the text: of the next word after next_line() or at_line_end().
     [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
 
@@ -72,12 +113,25 @@ public:
     [[noreturn]] void fail(const std::string& fault) const;
 
 private:
+    /// What a byte may be where words are looked for.
+    enum class Sign : std::uint8_t {
+        of_word,
+        blank,
+        newline,
+        special,  ///< a comment or a joint of lines may begin here, or a word
+    };
+
     template <bool kFinite>
     double parse(std::string_view what);
     /// Steps over the line's end; a no-op at the end of the text.
     void skip_newline();
-    [[nodiscard]] bool ends_word(const char* at) const;
-    [[nodiscard]] bool is_blank(char c) const;
+    [[nodiscard]] Sign sign_of(char c) const { return signs_[static_cast<unsigned char>(c)]; }
+    [[nodiscard]] bool ends_word(const char* at) const
+    {
+        return at == end_ || sign_of(*at) == Sign::blank || sign_of(*at) == Sign::newline ||
+               (sign_of(*at) == Sign::special && joins_lines(at));
+    }
+    [[nodiscard]] bool joins_lines(const char* at) const;
     [[nodiscard]] bool begins_comment(const char* at) const;
 
     std::string_view file_name_;
@@ -87,6 +141,7 @@ private:
     TextRules rules_;
     std::uint64_t line_;
     bool started_ = false;
+    std::array<Sign, 256> signs_{};
 };
 
 }  // namespace surfelao

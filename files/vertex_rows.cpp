@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace surfelao::table {
 namespace {
@@ -106,72 +107,125 @@ std::string_view word_of(std::string_view property, Notation notation)
     return property;
 }
 
-/// Appends the rows of the vertices with what changes. occlusion: empty for a map.
-template <class Data>
-void append_rows(std::string& text, const RowSource& source, std::span<const Occlusion> occlusion,
-                 const VertexChanges& changes)
+/// One behind the other; each is gone as soon as it is copied.
+std::string joined(std::vector<std::string>& texts)
 {
-    const Element& vertices = source.vertices();
-    const std::vector<Property>& properties = vertices.properties;
-    const Notation notation = notation_of(source.form());
-    const ColorPlan& plan = changes.plan;
-    constexpr int kStays = -1, kGoes = -2;
-    std::vector<int> fates(properties.size(), kStays);  // or a channel of the colour
-    for (std::size_t p = 0; p < fates.size(); ++p)
-        fates[p] = changes.drops(properties[p].name) ? kGoes : kStays;
-    for (int c = 0; c < 3 && changes.places.shown; ++c)
-        fates[(*changes.places.shown)[static_cast<std::size_t>(c)]] = c;
-    std::vector<std::string_view> old(properties.size());
-    const auto own_word = [&](std::size_t c) {
-        return word_of(old[(*changes.places.own)[c]], notation);
-    };
-    const ColorForm form = changes.places.packed ? ColorForm::packed : ColorForm::apart;
-    const std::size_t own_words = form == ColorForm::packed ? 1 : 3;
+    std::size_t size = 0;
+    for (const std::string& text : texts)
+        size += text.size();
+    std::string all;
+    all.reserve(size);
+    for (std::string& text : texts)
+        all.append(std::exchange(text, {}));
+    return all;
+}
 
-    const std::string_view rows = source.vertex_rows();
-    const std::string no_name;
-    Data data(no_name, rows, source.form());
-    std::size_t row_end = 0;
-    for (std::uint64_t row = 0; row < vertices.count; ++row) {
-        data.begin_row(vertices, row);
-        text.append(rows.substr(row_end, data.offset() - row_end));
+/// Writes the rows of the vertices with what changes.
+template <class Data>
+class RowWriter {
+public:
+    /// occlusion: empty for a map.
+    RowWriter(const RowSource& source, std::span<const Occlusion> occlusion,
+              const VertexChanges& changes)
+        : source_(source),
+          occlusion_(occlusion),
+          changes_(changes),
+          properties_(source.vertices().properties),
+          fates_(properties_.size(), kStays)
+    {
+        for (std::size_t p = 0; p < fates_.size(); ++p)
+            fates_[p] = changes.drops(properties_[p].name) ? kGoes : kStays;
+        for (int c = 0; c < 3 && changes.places.shown; ++c)
+            fates_[(*changes.places.shown)[static_cast<std::size_t>(c)]] = c;
+    }
+
+    /// All threads, each a range of rows.
+    [[nodiscard]] std::string write() const
+    {
+        const std::string no_name;
+        const std::string_view rows = source_.vertex_rows();
+        Data data(no_name, rows, source_.form());
+        const std::vector<RowRange> ranges = data.ranges(source_.vertices());
+        std::vector<std::string> texts(ranges.size());
+        for_each_range(data, ranges, [&](Data& at, std::size_t i) {
+            std::size_t end = ranges[i].offset;
+            std::vector<std::string_view> old(properties_.size());
+            texts[i].reserve(kRangeBytes * 4);
+            for (std::uint64_t row = ranges[i].first; row < ranges[i].end; ++row)
+                end = append_row(texts[i], at, row, end, old);
+            const std::size_t next = i + 1 < ranges.size() ? ranges[i + 1].offset : rows.size();
+            texts[i].append(rows.substr(end, next - end));
+        });
+        return joined(texts);
+    }
+
+private:
+    static constexpr int kStays = -1, kGoes = -2;
+
+    /// copied: where the row before ends. Returns where this one ends. old: room for its
+    /// properties.
+    std::size_t append_row(std::string& text, Data& data, std::uint64_t row, std::size_t copied,
+                           std::span<std::string_view> old) const
+    {
+        const std::string_view rows = source_.vertex_rows();
+        data.begin_row(source_.vertices(), row);
+        text.append(rows.substr(copied, data.offset() - copied));
         for (std::size_t p = 0; p < old.size(); ++p) {
             const std::size_t begin = data.offset();
-            skip_property(data, properties[p]);
+            skip_property(data, properties_[p]);
             old[p] = rows.substr(begin, data.offset() - begin);
         }
-        row_end = data.offset();
+        append_changed(text, row, old);
+        return data.offset();
+    }
+
+    /// old: the properties as they stand in the file.
+    void append_changed(std::string& text, std::uint64_t row,
+                        std::span<const std::string_view> old) const
+    {
+        const ColorPlan& plan = changes_.plan;
+        const auto own_word = [&](std::size_t c) {
+            return word_of(old[(*changes_.places.own)[c]], notation_);
+        };
+        const ColorForm form = changes_.places.packed ? ColorForm::packed : ColorForm::apart;
         glm::vec3 numbers(0.0f);
         if (plan.what != VertexColors::keep)
-            numbers = plan.numbers(row, occlusion[row]);
+            numbers = plan.numbers(row, occlusion_[row]);
         for (std::size_t p = 0; p < old.size(); ++p) {
-            if (fates[p] == kStays)
+            if (fates_[p] == kStays)
                 text.append(old[p]);
-            if (fates[p] < 0)
+            if (fates_[p] < 0)
                 continue;
-            const std::string_view word = word_of(old[p], notation);
+            const std::string_view word = word_of(old[p], notation_);
             text.append(old[p].substr(0, old[p].size() - word.size()));
-            const Type type = properties[p].type;
+            const Type type = properties_[p].type;
             if (plan.what == VertexColors::keep)
-                text.append(own_word(static_cast<std::size_t>(fates[p])));
+                text.append(own_word(static_cast<std::size_t>(fates_[p])));
             else if (form == ColorForm::packed)
-                append_packed(text, type, numbers, alpha_in(word, type, notation), notation);
+                append_packed(text, type, numbers, alpha_in(word, type, notation_), notation_);
             else
-                append_channel(text, type, numbers[fates[p]] * white_of(type, changes.largest),
-                               notation);
+                append_channel(text, type, numbers[fates_[p]] * white_of(type, changes_.largest),
+                               notation_);
         }
-        if (!occlusion.empty())
-            append_measured(text, occlusion[row], notation);
+        if (!occlusion_.empty())
+            append_measured(text, occlusion_[row], notation_);
         if (!plan.has_own() && plan.writes())
-            append_new_colors(text, numbers, form, notation);
+            append_new_colors(text, numbers, form, notation_);
+        const std::size_t own_words = form == ColorForm::packed ? 1 : 3;
         for (std::size_t c = 0; c < own_words && plan.replaces(); ++c) {
-            if (notation.ascii)
-                text += notation.separator;
+            if (notation_.ascii)
+                text += notation_.separator;
             text.append(own_word(c));
         }
     }
-    text.append(rows.substr(row_end));
-}
+
+    const RowSource& source_;
+    std::span<const Occlusion> occlusion_;
+    const VertexChanges& changes_;
+    const std::vector<Property>& properties_;
+    const Notation notation_ = notation_of(source_.form());
+    std::vector<int> fates_;  ///< of the properties, or a channel of the colour
+};
 
 /// Columns of a cloud that are no place, normal, colour or result of a bake.
 struct Others {
@@ -305,14 +359,9 @@ VertexChanges changes_of(const RowSource& source, const WriteOptions& options, b
 std::string changed_rows(const RowSource& source, std::span<const Occlusion> occlusion,
                          const VertexChanges& changes)
 {
-    std::string text;
-    const bool ascii = source.form().format == Format::ascii;
-    text.reserve(source.vertex_rows().size() + occlusion.size() * (ascii ? 60 : 19));
-    if (ascii)
-        append_rows<AsciiData>(text, source, occlusion, changes);
-    else
-        append_rows<BinaryData>(text, source, occlusion, changes);
-    return text;
+    return source.form().format == Format::ascii
+               ? RowWriter<AsciiData>(source, occlusion, changes).write()
+               : RowWriter<BinaryData>(source, occlusion, changes).write();
 }
 
 NewRows::NewRows(const Scene& scene, std::span<const Occlusion> occlusion,

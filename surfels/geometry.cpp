@@ -1,12 +1,17 @@
 #include "surfels/geometry.h"
 
 #include "surfels/edges.h"
+#include "surfels/for_all.h"
+#include "surfels/owner_ranges.h"
+#include "surfels/repeated.h"
 #include "surfels/weld.h"
 
+#include <tbb/parallel_reduce.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -27,47 +32,21 @@ constexpr double kCancelled = 1e-5;
 constexpr double kOutside = 1e6;
 
 /// Calls again(triangle) for each triangle whose three positions an earlier one has.
-///
-/// Nearly all meshes have none, so a bit per hash value sifts first: only triangles that share
-/// theirs with another one (a sixteenth by chance) are compared, in a table that fits the cache.
 template <class Again>
 void for_each_repeated(const std::vector<glm::uvec3>& triangles,
                        const std::vector<std::uint32_t>& welded, const Again& again)
 {
-    const auto key_of = [&](glm::uvec3 t) {  // the positions in rising order
-        t = {welded[t.x], welded[t.y], welded[t.z]};
-        const std::uint32_t low = std::min({t.x, t.y, t.z}), high = std::max({t.x, t.y, t.z});
-        return glm::uvec3(low, t.x ^ t.y ^ t.z ^ low ^ high, high);
-    };
-    const auto hash_of = [](glm::uvec3 key) {
-        std::uint64_t hash = (std::uint64_t{key.x} << 32 | key.y) * 0x9E3779B97F4A7C15u;
-        hash = (hash ^ hash >> 29 ^ key.z) * 0x9E3779B97F4A7C15u;
-        return hash ^ hash >> 32;
-    };
-    const std::size_t bits = std::bit_ceil(triangles.size() * 16);
-    std::vector<bool> met(bits), met_again(bits);
-    std::size_t suspects = 0;
-    for (const glm::uvec3 triangle : triangles) {
-        const std::size_t bit = hash_of(key_of(triangle)) & (bits - 1);
-        if (met[bit]) {
-            met_again[bit] = true;
-            ++suspects;
-        }
-        met[bit] = true;
-    }
-
+    const std::vector<std::uint32_t> suspects = maybe_repeated(triangles, welded);
     constexpr glm::uvec3 kEmpty{0, 0, 0};  // no triangle with area has its corners in one position
-    std::vector<glm::uvec3> slots(std::bit_ceil(suspects * 4 + 1), kEmpty);  // <= half full
-    for (const glm::uvec3 triangle : triangles) {
-        const glm::uvec3 key = key_of(triangle);
-        const std::uint64_t hash = hash_of(key);
-        if (!met_again[hash & (bits - 1)])
-            continue;
-        std::size_t slot = (hash >> 32) & (slots.size() - 1);
+    std::vector<glm::uvec3> slots(std::bit_ceil(suspects.size() * 4 + 1), kEmpty);
+    for (const std::uint32_t t : suspects) {
+        const glm::uvec3 key = positions_of(triangles[t], welded);
+        std::size_t slot =
+            (key.x * 0x9E3779B1u ^ key.y * 0x85EBCA6Bu ^ key.z * 0xC2B2AE35u) & (slots.size() - 1);
         while (slots[slot] != kEmpty && slots[slot] != key)
             slot = (slot + 1) & (slots.size() - 1);
         if (slots[slot] == key)
-            again(triangle);
+            again(triangles[t]);
         slots[slot] = key;
     }
 }
@@ -99,24 +78,6 @@ void borrow_normals(const std::vector<glm::uvec3>& dropped, Geometry& geometry)
     }
 }
 
-/// What the kept triangles give to the places and vertices around them.
-struct Sums {
-    explicit Sums(std::size_t vertex_count)
-        : position_vector(vertex_count, glm::dvec3(0.0)),
-          own_vector(vertex_count, glm::dvec3(0.0)),
-          position_area(vertex_count, 0.0),
-          own_area(vertex_count, 0.0),
-          repeated_area(vertex_count, 0.0),
-          largest(vertex_count, {0.0, kNone})
-    {
-    }
-
-    std::vector<glm::dvec3> position_vector, own_vector;  ///< vector areas
-    std::vector<double> position_area, own_area;
-    std::vector<double> repeated_area;  ///< of triangles whose place an earlier one has
-    std::vector<std::pair<double, std::uint32_t>> largest;  ///< own triangle: area, index
-};
-
 /// Vertices of the scene in the unit frame, in double.
 struct UnitPositions {
     const Scene& scene;
@@ -125,91 +86,165 @@ struct UnitPositions {
     {
         return (scene.positions[v] - frame.centre) / frame.diagonal;
     }
+    /// Of twice a triangle's area.
+    [[nodiscard]] glm::dvec3 vector_of(glm::uvec3 triangle) const
+    {
+        const glm::dvec3 a = (*this)[triangle.x];
+        return glm::cross((*this)[triangle.y] - a, (*this)[triangle.z] - a);
+    }
 };
 
-/// Keeps the triangles with area and sums their vector areas, per position and per vertex. Returns
-/// those without.
+bool has_area(const UnitPositions& positions, glm::uvec3 triangle)
+{
+    const glm::dvec3 a = positions[triangle.x], b = positions[triangle.y],
+                     c = positions[triangle.z];
+    const glm::dvec3 doubled = glm::cross(b - a, c - a);
+    const double longest2 =
+        std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});
+    const glm::vec3 fa(a), fb(b), fc(c);
+    const glm::vec3 rounded = glm::cross(fb - fa, fc - fa);
+    return glm::length(doubled) > kZeroAreaRatio * longest2 && glm::dot(rounded, rounded) > 0.0f;
+}
+
+/// Keeps the triangles that are there and have area. Returns those without.
 std::vector<glm::uvec3> keep_triangles(const std::vector<glm::uvec3>& triangles,
                                        const std::vector<bool>& left_out,
-                                       const UnitPositions& positions, Geometry& geometry,
-                                       Sums& sums)
+                                       const UnitPositions& positions, Geometry& geometry)
 {
+    enum : std::uint8_t { stays, is_flat, is_out };
+    std::vector<std::uint8_t> fates(triangles.size(), stays);
+    for_all(triangles.size(), [&](std::size_t t) {
+        if (!left_out.empty() && left_out[t])
+            fates[t] = is_out;
+        else if (!has_area(positions, triangles[t]))
+            fates[t] = is_flat;
+    });
     std::vector<glm::uvec3> dropped;
-    geometry.triangles.reserve(triangles.size());
-    bool all_kept = true;
-    const auto pass_over = [&](std::size_t t) {
-        if (all_kept) {
-            geometry.kept.resize(t);
-            std::iota(geometry.kept.begin(), geometry.kept.end(), 0u);
-        }
-        all_kept = false;
-    };
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        if (!left_out.empty() && left_out[t]) {
-            pass_over(t);
-            continue;
-        }
-        const glm::uvec3 triangle = triangles[t];
-        const glm::dvec3 a = positions[triangle[0]];
-        const glm::dvec3 b = positions[triangle[1]];
-        const glm::dvec3 c = positions[triangle[2]];
-        const glm::dvec3 doubled = glm::cross(b - a, c - a);
-        const double longest2 =
-            std::max({glm::dot(b - a, b - a), glm::dot(c - b, c - b), glm::dot(a - c, a - c)});
-        const glm::vec3 fa(a), fb(b), fc(c);
-        const glm::vec3 rounded = glm::cross(fb - fa, fc - fa);
-        if (!(glm::length(doubled) > kZeroAreaRatio * longest2) ||
-            !(glm::dot(rounded, rounded) > 0.0f)) {
-            pass_over(t);
-            dropped.push_back(triangle);
-            continue;
-        }
-        if (!all_kept)
-            geometry.kept.push_back(static_cast<std::uint32_t>(t));
-        const std::uint32_t index = static_cast<std::uint32_t>(geometry.triangles.size());
-        geometry.triangles.push_back(triangle);
-        const double area = 0.5 * glm::length(doubled);
-        for (int corner = 0; corner < 3; ++corner) {
-            const std::uint32_t v = triangle[corner];
-            const std::uint32_t w = geometry.welded[v];
-            sums.position_vector[w] += 0.5 * doubled;
-            sums.position_area[w] += area;
-            sums.own_vector[v] += 0.5 * doubled;
-            sums.own_area[v] += area;
-            if (area > sums.largest[v].first)
-                sums.largest[v] = {area, index};
-        }
+    const auto lost = std::ranges::count_if(fates, [](std::uint8_t fate) { return fate != stays; });
+    if (lost == 0) {
+        geometry.triangles = triangles;
+        return dropped;
     }
+    const std::size_t kept = triangles.size() - static_cast<std::size_t>(lost);
+    geometry.triangles.reserve(kept);
+    geometry.kept.reserve(kept);
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        if (fates[t] == is_flat)
+            dropped.push_back(triangles[t]);
+        if (fates[t] != stays)
+            continue;
+        geometry.triangles.push_back(triangles[t]);
+        geometry.kept.push_back(static_cast<std::uint32_t>(t));
+    }
+    return dropped;
+}
+
+/// What the kept triangles give to the places around them.
+struct Sums {
+    explicit Sums(std::size_t vertex_count)
+        : vector(vertex_count, glm::dvec3(0.0)), area(vertex_count, 0.0), is_used(vertex_count, 0)
+    {
+    }
+
+    std::vector<glm::dvec3> vector;     ///< vector areas, at the lowest vertex of the place
+    std::vector<double> area;           ///< likewise
+    std::vector<std::uint8_t> is_used;  ///< whether a triangle uses this very vertex
+    std::vector<double> repeated_area;  ///< of triangles whose place an earlier one has, at the
+                                        ///< place; empty: none does
+    [[nodiscard]] bool cancels(std::uint32_t place) const
+    {
+        return glm::length(vector[place]) <= kCancelled * area[place];
+    }
+};
+
+Sums sums_of(const UnitPositions& positions, const Geometry& geometry)
+{
+    Sums sums(geometry.positions.size());
+    for_owner_ranges(sums.area.size(), [&](OwnerRange range) {
+        for (const glm::uvec3 t : geometry.triangles) {
+            const glm::uvec3 w{geometry.welded[t.x], geometry.welded[t.y], geometry.welded[t.z]};
+            const bool has_any = range.has(w.x) || range.has(w.y) || range.has(w.z);
+            const glm::dvec3 vector = has_any ? 0.5 * positions.vector_of(t) : glm::dvec3(0.0);
+            const double area = glm::length(vector);
+            for (int corner = 0; corner < 3; ++corner) {
+                if (range.has(t[corner]))
+                    sums.is_used[t[corner]] = 1;
+                if (!range.has(w[corner]))
+                    continue;
+                sums.vector[w[corner]] += vector;
+                sums.area[w[corner]] += area;
+            }
+        }
+    });
     for_each_repeated(geometry.triangles, geometry.welded, [&](glm::uvec3 triangle) {
-        const glm::dvec3 a = positions[triangle[0]];
-        const double area =
-            0.5 * glm::length(glm::cross(positions[triangle[1]] - a, positions[triangle[2]] - a));
+        sums.repeated_area.resize(sums.area.size(), 0.0);
+        const double area = 0.5 * glm::length(positions.vector_of(triangle));
         for (int corner = 0; corner < 3; ++corner)
             sums.repeated_area[geometry.welded[triangle[corner]]] += area;
     });
-    return dropped;
+    return sums;
+}
+
+/// Where the sum at a place cancels, of each vertex the mean over its own triangles; where that
+/// cancels too, the normal of its largest.
+void set_own_normals(const UnitPositions& positions, const Sums& sums, Geometry& geometry)
+{
+    struct Own {
+        glm::dvec3 vector{0.0};
+        double area = 0.0, largest_area = 0.0;
+        glm::dvec3 largest{0.0};
+    };
+    std::vector<std::uint32_t> number(sums.area.size(), kNone);
+    std::vector<Own> own;
+    for (std::uint32_t v = 0; v < number.size(); ++v) {
+        if (sums.is_used[v] == 0 || !sums.cancels(geometry.welded[v]))
+            continue;
+        number[v] = static_cast<std::uint32_t>(own.size());
+        own.emplace_back();
+    }
+    for (const glm::uvec3 t : geometry.triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+            if (number[t[corner]] == kNone)
+                continue;
+            Own& sum = own[number[t[corner]]];
+            const glm::dvec3 doubled = positions.vector_of(t);
+            const double area = 0.5 * glm::length(doubled);
+            sum.vector += 0.5 * doubled;
+            sum.area += area;
+            if (area > sum.largest_area) {
+                sum.largest_area = area;
+                sum.largest = doubled;
+            }
+        }
+    }
+    for (std::uint32_t v = 0; v < number.size(); ++v) {
+        if (number[v] == kNone)
+            continue;
+        const Own& sum = own[number[v]];
+        const bool cancels = glm::length(sum.vector) <= kCancelled * sum.area;
+        geometry.normals[v] = glm::vec3(glm::normalize(cancels ? sum.largest : sum.vector));
+    }
 }
 
 void set_areas_and_normals(const UnitPositions& positions, const Sums& sums, Geometry& geometry)
 {
-    const auto vertex_count = static_cast<std::uint32_t>(geometry.positions.size());
-    for (std::uint32_t v = 0; v < vertex_count; ++v) {
+    const std::size_t vertex_count = geometry.positions.size();
+    std::atomic<bool> is_any_cancelled{false};
+    for_all(vertex_count, [&](std::size_t v) {
         const std::uint32_t w = geometry.welded[v];
-        if (w == v)
-            geometry.areas[v] =
-                static_cast<float>((sums.position_area[v] - sums.repeated_area[v]) / 3.0);
-        if (sums.own_area[v] == 0.0)
-            continue;
-        glm::dvec3 sum = sums.position_vector[w];
-        if (glm::length(sum) <= kCancelled * sums.position_area[w])
-            sum = sums.own_vector[v];
-        if (glm::length(sum) <= kCancelled * sums.own_area[v]) {
-            const glm::uvec3 triangle = geometry.triangles[sums.largest[v].second];
-            sum = glm::cross(positions[triangle[1]] - positions[triangle[0]],
-                             positions[triangle[2]] - positions[triangle[0]]);
+        if (w == v) {
+            const double repeated = sums.repeated_area.empty() ? 0.0 : sums.repeated_area[v];
+            geometry.areas[v] = static_cast<float>((sums.area[v] - repeated) / 3.0);
         }
-        geometry.normals[v] = glm::vec3(glm::normalize(sum));
-    }
+        if (sums.is_used[v] == 0)
+            return;
+        if (sums.cancels(w))
+            is_any_cancelled.store(true, std::memory_order_relaxed);
+        else
+            geometry.normals[v] = glm::vec3(glm::normalize(sums.vector[w]));
+    });
+    if (is_any_cancelled)
+        set_own_normals(positions, sums, geometry);
     // the lowest vertex carries the area of its position, so it needs a normal even when no kept
     // triangle uses that very vertex
     for (std::uint32_t v = 0; v < vertex_count; ++v) {
@@ -223,14 +258,23 @@ void set_areas_and_normals(const UnitPositions& positions, const Sums& sums, Geo
 
 Box box_of(const Scene& scene, const std::vector<bool>& left_out)
 {
-    Box box;
-    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
-        if (!left_out.empty() && left_out[t])
-            continue;
-        for (int corner = 0; corner < 3; ++corner)
-            box.include(scene.positions[scene.triangles[t][corner]]);
-    }
-    return box;
+    const auto add = [&](const tbb::blocked_range<std::size_t>& range, Box box) {
+        for (std::size_t t = range.begin(); t < range.end(); ++t) {
+            if (!left_out.empty() && left_out[t])
+                continue;
+            for (int corner = 0; corner < 3; ++corner)
+                box.include(scene.positions[scene.triangles[t][corner]]);
+        }
+        return box;
+    };
+    const auto join = [](Box a, const Box& b) {
+        a.low = glm::min(a.low, b.low);
+        a.high = glm::max(a.high, b.high);
+        return a;
+    };
+    constexpr std::size_t kGrain = 4096;
+    return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, scene.triangles.size(), kGrain),
+                                Box{}, add, join);
 }
 
 Frame frame_of(const Box& box)
@@ -255,13 +299,14 @@ Geometry make_geometry(const Scene& scene, const GeometryScope& scope)
     geometry.areas.assign(vertex_count, 0.0f);
 
     const UnitPositions positions{scene, geometry.frame};
-    for (std::uint32_t v = 0; v < vertex_count; ++v)
-        geometry.positions[v] = glm::vec3(glm::clamp(positions[v], -kOutside, kOutside));
-    Sums sums(vertex_count);
+    for_all(vertex_count, [&](std::size_t v) {
+        geometry.positions[v] =
+            glm::vec3(glm::clamp(positions[static_cast<std::uint32_t>(v)], -kOutside, kOutside));
+    });
     const std::vector<glm::uvec3> dropped =
-        keep_triangles(scene.triangles, scope.left_out, positions, geometry, sums);
+        keep_triangles(scene.triangles, scope.left_out, positions, geometry);
     geometry.dropped_triangles = dropped.size();
-    set_areas_and_normals(positions, sums, geometry);
+    set_areas_and_normals(positions, sums_of(positions, geometry), geometry);
     borrow_normals(dropped, geometry);
 
     // everyone at a position has a normal as soon as anyone has
@@ -274,13 +319,13 @@ Geometry make_geometry(const Scene& scene, const GeometryScope& scope)
 
 std::vector<double> triangle_areas(const Geometry& geometry)
 {
-    std::vector<double> areas;
-    areas.reserve(geometry.triangles.size());
-    for (const glm::uvec3 t : geometry.triangles) {
+    std::vector<double> areas(geometry.triangles.size());
+    for_all(areas.size(), [&](std::size_t i) {
+        const glm::uvec3 t = geometry.triangles[i];
         const glm::dvec3 a(geometry.positions[t.x]);
-        areas.push_back(0.5 * glm::length(glm::cross(glm::dvec3(geometry.positions[t.y]) - a,
-                                                     glm::dvec3(geometry.positions[t.z]) - a)));
-    }
+        areas[i] = 0.5 * glm::length(glm::cross(glm::dvec3(geometry.positions[t.y]) - a,
+                                                glm::dvec3(geometry.positions[t.z]) - a));
+    });
     return areas;
 }
 

@@ -2,6 +2,8 @@
 
 #include "surfels/buckets.h"
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
+#include "surfels/owner_ranges.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -11,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -54,11 +57,7 @@ Face face_of(const Scene& scene, glm::uvec3 triangle)
 std::vector<Face> faces_of(const Scene& scene, const Geometry& geometry)
 {
     std::vector<Face> faces(geometry.triangles.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), kGrain),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t t = range.begin(); t < range.end(); ++t)
-                              faces[t] = face_of(scene, geometry.triangles[t]);
-                      });
+    for_all(faces.size(), [&](std::size_t t) { faces[t] = face_of(scene, geometry.triangles[t]); });
     return faces;
 }
 
@@ -77,38 +76,60 @@ public:
     {
         const std::vector<std::uint32_t>& welded = geometry.welded;
         means_.assign(welded.size(), glm::vec3(0.0f));
-        for (std::size_t t = 0; t < faces.size(); ++t) {
-            for (int corner = 0; corner < 3; ++corner)
-                means_[welded[geometry.triangles[t][corner]]] +=
-                    faces[t].angles[corner] * faces[t].normal;
-        }
-        for (glm::vec3& mean : means_)
-            mean = direction_of(mean, 1.0f, glm::vec3(0.0f));
+        for_owner_ranges(means_.size(), [&](OwnerRange range) {
+            for (std::size_t t = 0; t < faces.size(); ++t) {
+                for (int corner = 0; corner < 3; ++corner) {
+                    const std::uint32_t place = welded[geometry.triangles[t][corner]];
+                    if (range.has(place))
+                        means_[place] += faces[t].angles[corner] * faces[t].normal;
+                }
+            }
+        });
+        for_all(means_.size(), [&](std::size_t place) {
+            means_[place] = direction_of(means_[place], 1.0f, glm::vec3(0.0f));
+        });
 
         // where all are within half the angle of their mean, all are within the angle of each other
         const float half_cosine = std::cos(0.5f * glm::radians(crease));
-        std::vector<std::uint32_t> bend_of(welded.size(), kNone);  // number among those that are
-        std::uint32_t bends = 0;                                   // not all smooth
-        for (std::size_t t = 0; t < faces.size(); ++t) {
+        is_bent_.assign(welded.size(), 0);
+        for_all(faces.size(), [&](std::size_t t) {
             for (int corner = 0; corner < 3; ++corner) {
                 const std::uint32_t place = welded[geometry.triangles[t][corner]];
-                if (bend_of[place] == kNone &&
-                    !(glm::dot(means_[place], faces[t].normal) >= half_cosine))
-                    bend_of[place] = bends++;
+                if (!(glm::dot(means_[place], faces[t].normal) >= half_cosine))
+                    std::atomic_ref(is_bent_[place]).store(1, std::memory_order_relaxed);
             }
+        });
+        std::vector<std::uint32_t> bend_of(welded.size(), kNone);  // number among those that are
+        std::uint32_t bends = 0;                                   // not all smooth
+        for (std::size_t place = 0; place < bend_of.size(); ++place) {
+            if (is_bent_[place] != 0)
+                bend_of[place] = bends++;
         }
         if (bends > 0)
             solve_bends(bend_of, bends);
     }
 
+    /// Whether all corners at the place of a vertex have one normal, mean_at() of it.
+    [[nodiscard]] bool is_smooth_at(std::uint32_t vertex) const
+    {
+        return is_bent_[geometry_.welded[vertex]] == 0 && mean_at(vertex) != glm::vec3(0.0f);
+    }
+    [[nodiscard]] glm::vec3 mean_at(std::uint32_t vertex) const
+    {
+        return means_[geometry_.welded[vertex]];
+    }
+
     [[nodiscard]] glm::vec3 at(std::size_t triangle, int corner) const
     {
+        const std::uint32_t vertex = geometry_.triangles[triangle][corner];
+        if (is_smooth_at(vertex))
+            return mean_at(vertex);
         const std::uint32_t index =
             static_cast<std::uint32_t>(3 * triangle) + static_cast<std::uint32_t>(corner);
         const auto bent = std::ranges::lower_bound(bent_corners_, index);
         if (bent != bent_corners_.end() && *bent == index)
             return bent_normals_[static_cast<std::size_t>(bent - bent_corners_.begin())];
-        return means_[geometry_.welded[geometry_.triangles[triangle][corner]]];
+        return mean_at(vertex);
     }
 
 private:
@@ -180,6 +201,7 @@ private:
     const std::vector<Face>& faces_;
     float crease_cosine_;
     std::vector<glm::vec3> means_;             ///< per place, over all faces
+    std::vector<std::uint8_t> is_bent_;        ///< per place: some face is far from the mean
     std::vector<std::uint32_t> bent_corners_;  ///< rising: corners whose normal is another one
     std::vector<glm::vec3> bent_normals_;
 };
@@ -190,7 +212,7 @@ public:
     Wedges(const Geometry& geometry, Surface& surface) : surface_(surface)
     {
         surface_.normals.assign(geometry.positions.size(), glm::vec3(0.0f));
-        surface_.corners.reserve(geometry.triangles.size());
+        surface_.corners = geometry.triangles;
     }
 
     std::uint32_t wedge_of(std::uint32_t vertex, glm::vec3 normal)
@@ -266,6 +288,29 @@ private:
     const Geometry& geometry_;
 };
 
+/// Gives the vertices at smooth places their normals: the corners there have the vertices' own
+/// wedges. Returns per triangle whether it has other corners too.
+std::vector<std::uint8_t> take_smooth(const Geometry& geometry, const SmoothNormals& smooth,
+                                      Surface& surface)
+{
+    std::vector<std::uint8_t> is_left(geometry.triangles.size(), 0);
+    std::vector<std::uint8_t> takes(surface.normals.size(), 0);
+    for_all(is_left.size(), [&](std::size_t t) {
+        for (int corner = 0; corner < 3; ++corner) {
+            const std::uint32_t vertex = geometry.triangles[t][corner];
+            if (smooth.is_smooth_at(vertex))
+                std::atomic_ref(takes[vertex]).store(1, std::memory_order_relaxed);
+            else
+                is_left[t] = 1;
+        }
+    });
+    for_all(takes.size(), [&](std::size_t v) {
+        if (takes[v] != 0)
+            surface.normals[v] = smooth.mean_at(static_cast<std::uint32_t>(v));
+    });
+    return is_left;
+}
+
 }  // namespace
 
 void check_normals(const NormalSettings& settings)
@@ -285,8 +330,13 @@ Surface make_surface(const Scene& scene, const Geometry& geometry, const NormalS
     const FileNormals file(scene, geometry);
     Surface surface;
     Wedges wedges(geometry, surface);
+    std::vector<std::uint8_t> is_left(faces.size(), 1);
+    if (!flat && !(from_file && !scene.normals.empty()))
+        is_left = take_smooth(geometry, smooth, surface);
     for (std::size_t t = 0; t < faces.size(); ++t) {
-        glm::uvec3 corners;
+        if (is_left[t] == 0)
+            continue;
+        glm::uvec3& corners = surface.corners[t];
         for (int corner = 0; corner < 3; ++corner) {
             const FileNormals::Given given = from_file ? file.at(t, corner) : FileNormals::Given{};
             const bool usable =
@@ -299,7 +349,6 @@ Surface make_surface(const Scene& scene, const Geometry& geometry, const NormalS
                                             : smooth.at(t, corner);
             corners[corner] = wedges.wedge_of(geometry.triangles[t][corner], normal);
         }
-        surface.corners.push_back(corners);
     }
     wedges.finish();
     // vertices that no triangle uses: the geometry's, where it has one

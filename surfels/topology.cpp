@@ -3,6 +3,7 @@
 #include "surfels/buckets.h"
 #include "surfels/edges.h"
 #include "surfels/errors.h"
+#include "surfels/repeated.h"
 #include "surfels/union_find.h"
 
 #include <glm/geometric.hpp>
@@ -45,23 +46,21 @@ Sorted sorted(glm::uvec3 t)
 
 /// Which triangles take no part because others use the same three positions (see topology.h), and
 /// how many use the positions of an earlier one.
-std::vector<bool> find_left_out(const std::vector<glm::uvec3>& triangles, std::size_t vertex_count,
+std::vector<bool> find_left_out(const std::vector<glm::uvec3>& triangles,
+                                const std::vector<std::uint32_t>& welded,
                                 std::uint64_t& duplicate_count)
 {
     struct Item {
-        std::uint32_t middle, high, face;
+        std::array<std::uint32_t, 3> places;
+        std::uint32_t face;
         auto operator<=>(const Item&) const = default;
     };
-    const Buckets<Item> by_lowest(vertex_count, [&](const auto& put) {
-        for (std::uint32_t face = 0; face < triangles.size(); ++face) {
-            const Sorted s = sorted(triangles[face]);
-            put(s.v[0], {s.v[1], s.v[2], face});
-        }
-    });
+    std::vector<Item> items;
+    for (const std::uint32_t face : maybe_repeated(triangles, welded))
+        items.push_back({sorted(triangles[face]).v, face});
+    std::sort(items.begin(), items.end());
     std::vector<bool> left_out(triangles.size(), false);
-    const auto alike = [](const Item& a, const Item& b) {
-        return a.middle == b.middle && a.high == b.high;
-    };
+    const auto alike = [](const Item& a, const Item& b) { return a.places == b.places; };
     const auto judge = [&](std::span<const Item> same) {
         duplicate_count += same.size() - 1;
         std::array<std::size_t, 2> wound{};
@@ -75,12 +74,7 @@ std::vector<bool> find_left_out(const std::vector<glm::uvec3>& triangles, std::s
             missing = missing && left_out[item.face];
         }
     };
-    std::vector<Item> items;
-    for (std::size_t lowest = 0; lowest < vertex_count; ++lowest) {
-        items.assign(by_lowest[lowest].begin(), by_lowest[lowest].end());
-        std::sort(items.begin(), items.end());
-        for_each_run(std::span<const Item>(items), alike, judge);
-    }
+    for_each_run(std::span<const Item>(items), alike, judge);
     return left_out;
 }
 
@@ -238,7 +232,7 @@ Topology analyse_topology(const Geometry& geometry)
 
     Topology topology;
     const std::vector<bool> left_out =
-        find_left_out(triangles, vertex_count, topology.duplicate_triangle_count);
+        find_left_out(triangles, geometry.welded, topology.duplicate_triangle_count);
     Bodies bodies = find_bodies(geometry, left_out, topology);
     const std::vector<OccluderSide> sides = sides_of_bodies(geometry, triangles, left_out, bodies);
     count_components(triangles, vertex_count, left_out, bodies, topology);

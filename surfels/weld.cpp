@@ -1,10 +1,14 @@
 #include "surfels/weld.h"
 
+#include "surfels/for_all.h"
+#include "surfels/owner_ranges.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -28,20 +32,32 @@ std::uint64_t hash_position(glm::dvec3 p)
 }
 
 /// For each vertex the lowest index of a vertex at exactly the same position.
+///
+/// All threads put vertices into one table: once a slot has a vertex it keeps that position, and in
+/// the end the lowest vertex there.
 std::vector<std::uint32_t> weld_equal(const std::vector<glm::dvec3>& positions)
 {
     const std::size_t slot_count = std::bit_ceil(positions.size() * 2 + 1);
     std::vector<std::uint32_t> slots(slot_count, kNone);
-    std::vector<std::uint32_t> welded(positions.size());
-    for (std::uint32_t v = 0; v < positions.size(); ++v) {
-        std::size_t slot = hash_position(positions[v]) & (slot_count - 1);
-        while (slots[slot] != kNone && positions[slots[slot]] != positions[v])
-            slot = (slot + 1) & (slot_count - 1);
-        if (slots[slot] == kNone)
-            slots[slot] = v;
-        welded[v] = slots[slot];
-    }
-    return welded;
+    std::vector<std::uint32_t> slot_of(positions.size());
+    for_all(positions.size(), [&](std::size_t index) {
+        const auto v = static_cast<std::uint32_t>(index);
+        for (std::size_t at = hash_position(positions[v]);; ++at) {
+            const std::size_t slot = at & (slot_count - 1);
+            const std::atomic_ref<std::uint32_t> held(slots[slot]);
+            std::uint32_t other = held.load(std::memory_order_relaxed);
+            if (other == kNone && held.compare_exchange_strong(other, v, std::memory_order_relaxed))
+                other = v;
+            if (other != v && positions[other] != positions[v])
+                continue;
+            while (v < other && !held.compare_exchange_weak(other, v, std::memory_order_relaxed)) {
+            }
+            slot_of[v] = static_cast<std::uint32_t>(slot);
+            return;
+        }
+    });
+    for_all(slot_of.size(), [&](std::size_t v) { slot_of[v] = slots[slot_of[v]]; });
+    return slot_of;
 }
 
 /// Around a vertex whose triangles close, each neighbour is once the next corner and once the one
@@ -54,13 +70,17 @@ std::vector<std::uint32_t> tears_of(const std::vector<glm::uvec3>& triangles,
         return (v + 1) * 0x9E3779B1u ^ (v >> 7) * 0x85EBCA6Bu;
     };
     std::vector<std::uint32_t> tears(welded.size(), 0);
-    for (const glm::uvec3 t : triangles) {
-        const glm::uvec3 w{welded[t.x], welded[t.y], welded[t.z]};
-        const glm::uvec3 h{hash(w.x), hash(w.y), hash(w.z)};
-        tears[w.x] += h.y - h.z;
-        tears[w.y] += h.z - h.x;
-        tears[w.z] += h.x - h.y;
-    }
+    for_owner_ranges(tears.size(), [&](OwnerRange range) {
+        for (const glm::uvec3 t : triangles) {
+            const glm::uvec3 w{welded[t.x], welded[t.y], welded[t.z]};
+            const glm::uvec3 h{hash(w.x), hash(w.y), hash(w.z)};
+            const glm::uvec3 differences{h.y - h.z, h.z - h.x, h.x - h.y};
+            for (int corner = 0; corner < 3; ++corner) {
+                if (range.has(w[corner]))
+                    tears[w[corner]] += differences[corner];
+            }
+        }
+    });
     return tears;
 }
 
@@ -73,16 +93,20 @@ public:
         if (std::ranges::all_of(tears_, [](std::uint32_t tear) { return tear == 0; }))
             return;
         shortest_.assign(welded.size(), std::numeric_limits<double>::infinity());
-        for (const glm::uvec3 t : scene.triangles) {
-            for (int side = 0; side < 3; ++side) {
-                const std::uint32_t a = welded[t[side]], b = welded[t[(side + 1) % 3]];
-                if (a == b)
-                    continue;
-                const double length = glm::distance(scene.positions[a], scene.positions[b]);
-                shortest_[a] = std::min(shortest_[a], length);
-                shortest_[b] = std::min(shortest_[b], length);
+        for_owner_ranges(shortest_.size(), [&](OwnerRange range) {
+            for (const glm::uvec3 t : scene.triangles) {
+                for (int side = 0; side < 3; ++side) {
+                    const std::uint32_t a = welded[t[side]], b = welded[t[(side + 1) % 3]];
+                    if (a == b || !(range.has(a) || range.has(b)))
+                        continue;
+                    const double length = glm::distance(scene.positions[a], scene.positions[b]);
+                    for (const std::uint32_t end : {a, b}) {
+                        if (range.has(end))
+                            shortest_[end] = std::min(shortest_[end], length);
+                    }
+                }
             }
-        }
+        });
     }
 
     /// The place that v, lowest at its own position, joins; v itself where there is none.
