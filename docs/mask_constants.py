@@ -5,13 +5,15 @@ import pathlib
 import re
 
 TABLE = pathlib.Path(__file__).resolve().parent.parent / "tree/masks/constants.inc"
-ROW = re.compile(r"^SURFELAO_MASK_(CONSTANT|FLAG|QUALITY)\((.*)\)$")
+LISTS = ("quality", "limit")
+ROW = re.compile(r"^SURFELAO_MASK_(CONSTANT|FLAG|QUALITY|LIMIT)\((.*)\)$")
 
 
 @functools.cache
 def read():
     """[(section, [row])]; a row: name, value (as written, without suffix) and its fields by name.
-    Rows of the family are named quality, their value is a list: quality, s, r, u, g."""
+    Rows of the family are named quality, their value is a list: quality, s, r, u, g; those of the
+    falloff limit, theirs is distance, weight."""
     sections, fields, last = [], {}, None
     for number, line in enumerate(TABLE.read_text().splitlines(), 1):
         field = re.match(r"^/// (\w+): (.+)$", line)
@@ -27,9 +29,9 @@ def read():
             fields[last] += " " + more.group(1)
         elif row:
             kind, words = row.group(1), [plain(word) for word in row.group(2).split(", ")]
-            name = {"CONSTANT": words[1:2], "FLAG": words[:1]}.get(kind, ["quality"])[0]
+            name = {"CONSTANT": words[1:2], "FLAG": words[:1]}.get(kind, [kind.lower()])[0]
             sections[-1][1].append({**fields, "kind": kind, "name": name,
-                                    "value": words if kind == "QUALITY" else words[-1]})
+                                    "value": words if name in LISTS else words[-1]})
             fields = {}
         elif line.startswith("SURFELAO"):
             raise ValueError(f"{TABLE.name}:{number}: a row that is not one line")
@@ -54,4 +56,13 @@ def value_of(name):
 
 def family():
     """[[quality, s, r, u, g]] as numbers."""
-    return [[float(word) for word in row["value"]] for row in rows("QUALITY")]
+    return numbers_of("QUALITY")
+
+
+def falloff():
+    """[[distance, weight]] as numbers."""
+    return numbers_of("LIMIT")
+
+
+def numbers_of(kind):
+    return [[float(word) for word in row["value"]] for row in rows(kind)]

@@ -36,6 +36,13 @@ def mask_family(figures):
 
 
 @view
+def mask_falloff(figures):
+    """The limits that stand for the smooth falloff, and what hits within them count"""
+    return table(["distance over D", "weight"],
+                 [[f"{value:g}" for value in row] for row in mask_constants.falloff()])
+
+
+@view
 def mask_constants_table(figures):
     """Every constant of the mask engine: value, unit, neutral value, reason, effect"""
     text = ""

@@ -155,24 +155,24 @@ public:
     {
     }
 
-    TextureBuffer solve(std::span<const Receiver> receivers, std::span<const float> limits,
-                        const Progress& progress)
+    TextureBuffer solve(std::span<const Receiver> receivers, const Progress& progress)
     {
+        const MaskLimits& limits = settings_.limits;
         const ReceiverGroups groups = group_receivers(receivers, kMaskFrame);
         const std::span<const std::uint32_t> leaves(groups.leaves);
         const MaskSkies skies(definition_, receivers);
-        ProgressMeter meter(progress, leaves.size() * limits.size() * kMaskFaces * kHalves);
+        ProgressMeter meter(progress, leaves.size() * limits.count * kMaskFaces * kHalves);
         const Framebuffer sums =
             make_rows(scene_.context, leaves.size() * kGroupSize, {TexelFormat::rgba32f});
         sums.clear_color(glm::vec4(0.0f));
         for (std::size_t first = 0; first < leaves.size(); first += kBatchGroups) {
             const auto batch = leaves.subspan(first, std::min(kBatchGroups, leaves.size() - first));
             Batch work(scene_.context, groups, batch);
-            for (const float limit : limits) {
+            for (unsigned k = 0; k < limits.count; ++k) {
                 std::optional<TextureBuffer> sky;
                 if (definition_.ground)
-                    sky = upload_skies(scene_.context, skies, limit, groups, batch);
-                solve_batch(work, limit, sky, first * kGroupSize, sums, meter);
+                    sky = upload_skies(scene_.context, skies, limits.distance[k], groups, batch);
+                solve_batch(work, k, sky, first * kGroupSize, sums, meter);
             }
         }
 
@@ -182,7 +182,6 @@ public:
         Program& answer = scene_.context.program("fullscreen.vert", "masks_answer.frag");
         answer.set("u_sums", sums.color());
         answer.set("u_receivers", asked);
-        answer.set("u_share", 1.0f / static_cast<float>(limits.size()));
         answer.set("u_turn_back", glm::transpose(kMaskFrame));
         draw_fullscreen(rows, answer, scene_.empty);
         TextureBuffer answers = answers_of_rows(scene_.context, rows, receivers.size());
@@ -217,11 +216,12 @@ private:
         Framebuffer sums;  ///< shares; bent normals as drawn, filled, closed
     };
 
-    /// Adds, per slot from `first_slot` on, bent normal of any length in the mask frame, occlusion.
-    /// skies: with a ground.
-    void solve_batch(Batch& batch, float limit, const std::optional<TextureBuffer>& skies,
+    /// Adds, per slot from `first_slot` on, bent normal of any length in the mask frame, occlusion,
+    /// within the k-th limit, by its weight. skies: with a ground.
+    void solve_batch(Batch& batch, unsigned k, const std::optional<TextureBuffer>& skies,
                      std::size_t first_slot, const Framebuffer& sums, ProgressMeter& meter)
     {
+        const float limit = settings_.limits.distance[k];
         const std::vector<std::string> defined = {skies ? "GROUND 1" : "GROUND 0"};
         const ReceiverGrid& grid = batch.halves[0];
         for (std::size_t i = 0; i < 4; ++i)
@@ -276,6 +276,7 @@ private:
         for (std::size_t i = 0; i < std::size(inputs); ++i)
             answer.set(inputs[i], batch.sums.color(i));
         answer.set("u_close", settings_.close);
+        answer.set("u_weight", settings_.limits.weight[k]);
         answer.set("u_slot_count", grid.slot_count());
         answer.set("u_blocks_per_row", grid.blocks_per_row());
         const auto slots = static_cast<std::size_t>(grid.slot_count());
@@ -303,7 +304,7 @@ GpuMasks& GpuMasks::operator=(GpuMasks&&) noexcept = default;
 TextureBuffer GpuMasks::solve(std::span<const Receiver> receivers, const MaskOptions& options,
                               const Progress& progress) const
 {
-    return Solver(*impl_, options).solve(receivers, distance_limits(options.definition), progress);
+    return Solver(*impl_, options).solve(receivers, progress);
 }
 
 }  // namespace surfelao

@@ -1,7 +1,7 @@
 /// gpu_masks.h: the mask engine on the GPU.
 ///
 /// The tree, the opening rule for groups of sixteen receivers, the raster, the filling of cracks
-/// and the sums of tree/masks/masks.h, falloff as the mean over eight limits included; but each
+/// and the sums of tree/masks/masks.h, falloff as the mean over several limits included; but each
 /// receiver walks for itself, once per half a face of its cube, where the CPU's larger groups share
 /// what is far. So the same quality draws slightly different nodes: answers differ by no more than
 /// the setting's own error (tests say how much), and with `exact` only by single bits at edges.

@@ -7,13 +7,11 @@
 // Drawn by   gpu/gpu_masks.cpp, last
 // Reads      u_sums       out_result of masks_result.frag, summed over the distance limits, in rows of slots
 //            u_receivers  RGBA32UI: normal.xyz as bits | slot; 0xFFFFFFFF: it has no normal
-//            u_share      of one distance limit in the mean over all
 //            u_turn_back  from the mask frame to the receivers'
 // Writes     out_answer   RGBA32F: bent normal | occlusion (surfels/occlusion.h)
 // CPU twin   solve in tree/masks/kernel_body.h
 uniform sampler2D u_sums;
 uniform usamplerBuffer u_receivers;
-uniform float u_share;
 uniform mat3 u_turn_back;
 
 out vec4 out_answer;
@@ -26,5 +24,5 @@ void main()
         return;
     vec4 sum   = texelFetch(u_sums, texel_of_index(int(receiver.w)), 0);
     out_answer = vec4(bent_normal_of(u_turn_back * sum.xyz, uintBitsToFloat(receiver.xyz)),
-                      u_share * sum.w);
+                      sum.w);
 }

@@ -10,12 +10,13 @@
 // Definitions  GROUND: 0 or 1. There is a ground
 // Reads      u_share, u_bent, u_bent_filled, u_bent_closed
 //                              outputs of masks_face.frag, summed over the faces
+//            u_weight          of the limit
 //            u_close           how much cracks of two bits count as closed
 //            u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
 //            u_first_slot      before those that are computed
 //            u_skies           RG32F, one a slot that is computed: share of the hemisphere that the
 //                              ground leaves | of masks_face.frag                      (GROUND)
-// Writes     out_result      RGBA32F: bent normal, mask frame, any length, zero where all is closed |
+// Writes     out_result      RGBA32F, times u_weight: bent normal, mask frame, any length, zero where all is closed |
 //                            occlusion (surfels/occlusion.h)
 // CPU twin   openness_of in tree/masks/kernel_solve.h
 #ifndef GROUND
@@ -26,6 +27,7 @@ uniform sampler2D u_share;
 uniform sampler2D u_bent;
 uniform sampler2D u_bent_filled;
 uniform sampler2D u_bent_closed;
+uniform float u_weight;
 uniform float u_close;
 uniform int u_slot_count;
 uniform int u_blocks_per_row;
@@ -66,4 +68,5 @@ void main()
     openness *= texelFetch(u_skies, slot).x;
 #endif
     out_result.w = 1.0 - openness;
+    out_result *= u_weight;
 }

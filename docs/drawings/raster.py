@@ -2,7 +2,7 @@
 import math
 import random
 
-from mask_constants import value_of
+import mask_constants
 from svg import BLUE, FAINT, GREEN, GRID, INK, ORANGE, RED, TINTS, Drawing, Panel
 
 ROWS, COLUMNS = 16, 32
@@ -290,19 +290,17 @@ def falloff(numbers):
     p.axes([(i / 5, f"{i / 5:.1f}") for i in range(6)], [(0, "0"), (0.5, ".5"), (1, "1")],
            "distance of the hit over the limit D", "weight of a hit")
     places = [i / 400 for i in range(401)]
-    # tree/masks/masks.cpp: limits where the weight passes the midpoints of eight steps
-    steps = int(value_of("kMaskFalloffSteps"))
-    limits = [math.sqrt(1.0 - math.sqrt((step + 0.5) / steps)) for step in range(steps)]
+    steps = mask_constants.falloff()
 
     def stepped(t):
-        return sum(1 for limit in limits if t < limit) / steps
+        return sum(weight for limit, weight in steps if t < limit)
     p.path([(t, stepped(t)) for t in places], stroke=BLUE)
     p.path([(t, (1 - t * t) ** 2) for t in places], stroke=ORANGE, width=2)
-    for limit in limits:
+    for limit, _ in steps:
         p.dot((limit, 0), 3.5, fill=BLUE)
     p.text((0.45, 0.88), "(1 - (t/D)^2)^2", color=ORANGE)
-    p.text((0.45, 0.77), "mean over eight limits (dots)", color=BLUE)
-    numbers["falloff limits"] = limits
+    p.text((0.45, 0.77), "sum over five limits (dots)", color=BLUE)
+    numbers["falloff limits"] = [limit for limit, _ in steps]
     numbers["falloff error"] = max(abs(stepped(t) - (1 - t * t) ** 2) for t in places)
     return d
 

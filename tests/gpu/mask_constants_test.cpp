@@ -51,10 +51,12 @@ TEST(MaskConstants, TheShadersNumbersAreThoseOfTheTable)
 #define SURFELAO_MASK_CONSTANT(type, name, value) add(#type, #name, double(name));
 #define SURFELAO_MASK_FLAG(name, value) expected[#name] = double{name};
 #define SURFELAO_MASK_QUALITY(quality, cluster, share_leaf, share_inner, graze)
+#define SURFELAO_MASK_LIMIT(distance, weight)
 #include "tree/masks/constants.inc"
 #undef SURFELAO_MASK_CONSTANT
 #undef SURFELAO_MASK_FLAG
 #undef SURFELAO_MASK_QUALITY
+#undef SURFELAO_MASK_LIMIT
     EXPECT_EQ(shown, expected);
 }
 

@@ -44,9 +44,10 @@ double inside_by(const std::vector<glm::dvec3>& corner, glm::dvec3 direction)
     return least;
 }
 
+/// The bits within each of the limits.
 template <int kCorners>
-std::vector<std::uint32_t> drawn(const std::vector<glm::dvec3>& corner,
-                                 float limit = std::numeric_limits<float>::infinity())
+std::vector<std::vector<std::uint32_t>> drawn_within(const std::vector<glm::dvec3>& corner,
+                                                     const MaskLimits& limits)
 {
     alignas(64) float columns[3 * kCorners][kLanes] = {};
     alignas(64) std::uint32_t target[kLanes] = {};
@@ -54,9 +55,24 @@ std::vector<std::uint32_t> drawn(const std::vector<glm::dvec3>& corner,
         for (int k = 0; k < 3; ++k)
             columns[3 * i + k][0] = static_cast<float>(corner[static_cast<std::size_t>(i)][k]);
     }
-    alignas(64) std::uint32_t mask[kMaskWords] = {};
-    draw<kCorners, kLanes, false>(mask_raster(), limit, columns[0], target, 1, mask);
-    return {mask, mask + kMaskWords};
+    alignas(64) std::uint32_t mask[kMaskMostLimits * kMaskPairWords] = {};
+    draw<kCorners, kLanes, false>(mask_raster(), limits, columns[0], target, 1, mask);
+    std::vector<std::vector<std::uint32_t>> within;
+    for (unsigned k = 0; k < limits.count; ++k) {
+        std::vector<std::uint32_t> bits(mask + k * kMaskPairWords,
+                                        mask + k * kMaskPairWords + kMaskWords);
+        for (std::size_t w = 0; k > 0 && w < bits.size(); ++w)
+            bits[w] |= within.back()[w];
+        within.push_back(bits);
+    }
+    return within;
+}
+
+template <int kCorners>
+std::vector<std::uint32_t> drawn(const std::vector<glm::dvec3>& corner,
+                                 float limit = std::numeric_limits<float>::infinity())
+{
+    return drawn_within<kCorners>(corner, {1, {limit}, {1.0f}, 0.0f}).front();
 }
 
 template <int kCorners>
@@ -163,6 +179,22 @@ TEST(MaskRaster, ALimitCutsWherePlanesAreTooFar)
         }
     }
     EXPECT_GT(cut, 1000);
+}
+
+// One drawing for all limits.
+TEST(MaskRaster, WithinEachOfSeveralLimitsIsWhatOneAloneDraws)
+{
+    std::mt19937 random(5);
+    const auto number = [&] { return random() / 2147483648.0 - 1.0; };
+    const MaskLimits limits{3, {0.3f, 0.6f, 1.1f}, {0.2f, 0.3f, 0.5f}, 0.0f};
+    for (int i = 0; i < 400; ++i) {
+        std::vector<glm::dvec3> corner;
+        for (int k = 0; k < 3; ++k)
+            corner.push_back({number(), number(), number()});
+        const auto within = drawn_within<3>(corner, limits);
+        for (unsigned k = 0; k < limits.count; ++k)
+            ASSERT_EQ(within[k], drawn<3>(corner, limits.distance[k])) << i << " within " << k;
+    }
 }
 
 /// Moments of half-spaces cut by another, against sums over the bits' own directions.

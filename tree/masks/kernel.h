@@ -30,6 +30,15 @@ namespace surfelao {
 struct MaskRaster;
 struct MaskOptions;
 
+/// The hits within a distance count so much more: a hit counts the sum of the weights of all limits
+/// that it is within.
+struct MaskLimits {
+    unsigned count;                   ///< 1 to kMaskMostLimits
+    float distance[kMaskMostLimits];  ///< ascending; infinite: only alone
+    float weight[kMaskMostLimits];    ///< their sum is 1
+    float uncut;  ///< polygons of smaller radius belong to the limit of their middle; 0: none
+};
+
 /// The members of the parameter family and of the definition that the kernels need.
 struct MaskSettings {
     /// s: a node is drawn where its open radius is below this share of its distance.
@@ -37,8 +46,7 @@ struct MaskSettings {
     float cluster_limit;  ///< what unimportant directions may relax s to
     /// u: an inner group shares what is so far that group radius over distance is below this.
     float share_inner;
-    float share_leaf;  ///< r: the same for leaf groups
-    float max_distance;
+    float share_leaf;    ///< r: the same for leaf groups
     float exact_radius;  ///< nodes with a smaller open_radius are never opened
     /// g: polygons whose highest corner lies below this sine of elevation over the receiver's
     /// tangent plane are not drawn.
@@ -49,10 +57,10 @@ struct MaskSettings {
     bool has_ground;
     float ground_up[3];  ///< Definition::ground, in the mask frame
     float ground_height;
+    MaskLimits limits;
 };
 
-/// Throws SettingsError for options out of their range. max_distance is left 0: it changes from
-/// limit to limit (limits.h).
+/// Throws SettingsError for options out of their range.
 [[nodiscard]] MaskSettings mask_settings(const MaskOptions& options);
 
 /// A growing array of plain values.
@@ -81,22 +89,32 @@ struct MaskWorld {
     MaskSettings settings;
 };
 
-/// What far nodes cover, as seen from `center`, and how that changes with the place: a receiver at
-/// p with normal n sees n.(change + slope (p - center)) more of them, had each the sky to itself.
-struct MaskShared {
-    alignas(64) std::uint32_t mask[256];  ///< kMaskPairWords
+/// How what far nodes cover changes with the place: a receiver at p with normal n sees
+/// n.(change + slope (p - center)) more of them, had each the sky to itself. Each counts by its
+/// distance (MaskLimits).
+struct MaskFlow {
     float center[3];
     float change[3];      ///< from where they were drawn to `center`
     float slope[3][3];    ///< derivatives of their vector irradiance, by rows
     float irradiance[3];  ///< the sum of r (A.r) / (pi r^4) over them, A: area vectors
 };
 
-/// What a leaf group has found of some of the nodes, to be taken up together with others.
+/// What far nodes cover, as seen from the centre of `flow`.
+struct MaskShared {
+    /// Per limit, kMaskPairWords each. What lies wholly within one limit is not in those beyond it:
+    /// within a limit is covered what this one and all nearer ones hold.
+    alignas(64) std::uint32_t mask[kMaskMostLimits][256];
+    MaskFlow flow;
+};
+
+/// What a leaf group has found within one limit of some of the nodes, to be taken up together with
+/// others.
 struct MaskKept {
-    MaskShared shared;  ///< as of the group's centre
+    alignas(64) std::uint32_t shared[256];  ///< MaskShared::mask, as of the group's centre
     /// Per receiver what is covered of the faces, what lies below the horizon as if it were, and
     /// what of it sheets cover: kMaskFaces kMaskFaceWords words each.
     alignas(64) std::uint32_t drawn[16][192];
+    MaskFlow flow;  ///< of all limits; only in the first
 };
 
 /// Up to 16 receivers as columns.
@@ -104,7 +122,8 @@ struct MaskReceivers {
     unsigned count;
     float position[3][16];
     float normal[3][16];
-    float sky[16];    ///< what the ground leaves of the hemisphere, cosine-weighted: 1 without one
+    /// What the ground leaves of the hemisphere within each limit, cosine-weighted: 1 without one.
+    float sky[kMaskMostLimits][16];
     float above[16];  ///< signed height over the ground
 };
 
@@ -116,8 +135,8 @@ struct MaskAnswers {
 struct MaskKernel {
     const char* name;
     /// Draws the nodes of `in` that are far from the whole group into `shared`, drops those below
-    /// all horizons or beyond the limit, and hands the others, opened to about the group's size, to
-    /// `out`.
+    /// all horizons or beyond all limits, and hands the others, opened to about the group's size,
+    /// to `out`.
     void (*descend)(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
                     std::size_t in_count, MaskBuffer<std::uint32_t>& out, MaskShared& shared,
                     MaskScratch& scratch);
@@ -125,15 +144,15 @@ struct MaskKernel {
     void (*solve)(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
                   std::size_t in_count, const MaskShared& from_above,
                   const MaskReceivers& receivers, MaskAnswers& answers, MaskScratch& scratch);
-    /// The same, but for the answers, and without a ground.
+    /// The same, but for the answers, and without a ground. kept: one per limit, `stride` apart.
     void (*keep)(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
                  std::size_t in_count, const MaskShared& from_above, const MaskReceivers& receivers,
-                 MaskKept& kept, MaskScratch& scratch);
+                 MaskKept* kept, std::size_t stride, MaskScratch& scratch);
     /// Finishes a leaf group of which some is kept; `in` is the rest. The same bits as solve() of
     /// all, but for where receivers are left out because they are closed.
     void (*solve_kept)(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
-                       std::size_t in_count, const MaskKept& kept, const MaskReceivers& receivers,
-                       MaskAnswers& answers, MaskScratch& scratch);
+                       std::size_t in_count, const MaskKept* kept, std::size_t stride,
+                       const MaskReceivers& receivers, MaskAnswers& answers, MaskScratch& scratch);
 };
 
 extern const MaskKernel kMaskKernelPortable;

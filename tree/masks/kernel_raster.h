@@ -101,33 +101,50 @@ SURFELAO_MASK_INLINE void find_faces(const Vector16* c, Bool16 drawn, Bool16* in
     in[5] = without(drawn, negative(~any_dzx | ~any_szx | all_dyz | ~any_syz));
 }
 
-/// Polygons that cross the distance limit, to be cut to a cone about their plane's normal.
+/// Polygons that are not wholly within the nearest limit. Within each limit that they cross they
+/// are cut to a cone about their plane's normal.
 struct Cuts {
     unsigned lanes = 0;
-    alignas(64) float plane[4][kLanes];  ///< normal; distance over limit
+    unsigned within[kMaskMostLimits];    ///< lanes whose plane is nearer than the limit
+    unsigned beyond[kMaskMostLimits];    ///< lanes of which a corner is not
+    alignas(64) float plane[4][kLanes];  ///< normal; distance
 };
 
-/// Takes those whose plane lies beyond the limit out of `drawn`.
+/// Takes those whose plane lies beyond all limits out of `drawn`.
 template <int kCorners>
-SURFELAO_MASK_INLINE void find_cuts(const Vector16* c, float max_distance, Bool16& drawn,
+SURFELAO_MASK_INLINE void find_cuts(const Vector16* c, const MaskLimits& limits, Bool16& drawn,
                                     Cuts& cuts)
 {
-    const Float16 limit = all(max_distance);
     Vector16 normal = cross(c[1] - c[0], c[2] - c[0]);
     const Float16 length2 = max(dot(normal, normal), all(kMaskTiny));
     const Float16 inverse = inverse_sqrt(length2);
     Float16 height = dot(normal, c[0]) * inverse;
     const Int16 behind = sign_of(height);
     height = flip(height, behind);
-    Float16 farthest2 = dot(c[0], c[0]);
-    for (int i = 1; i < kCorners; ++i)
+    const Vector16 middle =
+        kCorners == 3 ? (c[0] + c[1] + c[2]) * all(1.0f / 3.0f) : (c[0] + c[2]) * all(0.5f);
+    Float16 radius2 = all(0.0f), farthest2 = all(0.0f);
+    for (int i = 0; i < kCorners; ++i) {
+        radius2 = max(radius2, dot(c[i] - middle, c[i] - middle));
         farthest2 = max(farthest2, dot(c[i], c[i]));
-    drawn = drawn & (height < limit);
-    cuts.lanes = bits(farthest2 > limit * limit);
+    }
+    const Float16 distance2 = dot(middle, middle);
+    const Float16 distance = sqrt(distance2);
+    Float16 nearest = max(height, distance - sqrt(radius2));
+    const Bool16 small = radius2 < all(limits.uncut * limits.uncut);
+    nearest = select(small, distance, nearest);
+    farthest2 = select(small, distance2, farthest2);
+    for (unsigned k = 0; k < limits.count; ++k) {
+        const Float16 limit = all(limits.distance[k]);
+        cuts.within[k] = bits(nearest < limit);
+        cuts.beyond[k] = bits(limit * limit < farthest2);
+    }
+    drawn = drawn & lanes_of(cuts.within[limits.count - 1]);
+    cuts.lanes = cuts.beyond[0];
     store(cuts.plane[0], flip(normal.x * inverse, behind));
     store(cuts.plane[1], flip(normal.y * inverse, behind));
     store(cuts.plane[2], flip(normal.z * inverse, behind));
-    store(cuts.plane[3], height * all(1.0f / max_distance));
+    store(cuts.plane[3], height);
 }
 
 /// The edges of 16 polygons as each face sees them: from bit ceil(slope v + start - shift) up, or
@@ -160,11 +177,21 @@ SURFELAO_MASK_INLINE void set_axis(const Vector16* n, const Bool16* in, EdgeLine
     }
 }
 
+/// Sets bits of one face in its mask, and among the sheets' bits too.
+template <bool kSheet>
+SURFELAO_MASK_INLINE void set_bits(std::uint32_t* mask, Int16 bits)
+{
+    store(mask, load(mask) | bits);
+    if constexpr (kSheet)
+        store(mask + kMaskWords, load(mask + kMaskWords) | bits);
+}
+
 /// Sixteen polygons at once up to the edges, then each by itself, 16 rows at a time.
 /// corner: 3 kCorners rows of `kStride` floats, relative to the receiver; target: word offset of
-/// the receiver's mask in `masks`; kSheet: what is set is set among the sheets' bits too.
+/// the receiver's masks in `masks`, a pair for each limit. A polygon is set within the nearest
+/// limit that it does not cross, and cut within those that it does.
 template <int kCorners, int kStride, bool kSheet>
-void draw(const MaskRaster& raster, float max_distance, const float* corner,
+void draw(const MaskRaster& raster, const MaskLimits& limits, const float* corner,
           const std::uint32_t* target, unsigned count, std::uint32_t* masks)
 {
     Vector16 c[kCorners];
@@ -172,8 +199,8 @@ void draw(const MaskRaster& raster, float max_distance, const float* corner,
     const auto planes = planes_of<kCorners>(c);
     Bool16 drawn = first_lanes(count) & (nonzero(as_int(planes.volume) & all(0x7fffffffu)));
     Cuts cuts;
-    if (max_distance < __builtin_inff())
-        find_cuts<kCorners>(c, max_distance, drawn, cuts);
+    if (limits.distance[0] < __builtin_inff())
+        find_cuts<kCorners>(c, limits, drawn, cuts);
     Bool16 in[kMaskFaces];
     find_faces<kCorners>(c, drawn, in);
     EdgeLines<kCorners> lines;
@@ -196,16 +223,25 @@ void draw(const MaskRaster& raster, float max_distance, const float* corner,
                 inside =
                     and_xor(inside, bits_from(at - row_shift), all(lines.below[axis][i][lane]));
             }
-            if (cuts.lanes >> lane & 1u) {
-                const float na = cuts.plane[axis][lane];
-                inside = inside & cone_bits(raster, face % 2 == 0 ? na : -na,
-                                            cuts.plane[(axis + 1) % 3][lane],
-                                            cuts.plane[(axis + 2) % 3][lane], cuts.plane[3][lane]);
-            }
             std::uint32_t* mask = masks + target[lane] + kMaskFaceWords * face;
-            store(mask, load(mask) | inside);
-            if constexpr (kSheet)
-                store(mask + kMaskWords, load(mask + kMaskWords) | inside);
+            if ((cuts.lanes >> lane & 1u) == 0) {
+                set_bits<kSheet>(mask, inside);
+                continue;
+            }
+            for (unsigned k = 0; k < limits.count; ++k, mask += kMaskPairWords) {
+                if ((cuts.beyond[k] >> lane & 1u) == 0) {
+                    set_bits<kSheet>(mask, inside);
+                    break;
+                }
+                if ((cuts.within[k] >> lane & 1u) == 0)
+                    continue;
+                const float na = cuts.plane[axis][lane];
+                set_bits<kSheet>(mask,
+                                 inside & cone_bits(raster, face % 2 == 0 ? na : -na,
+                                                    cuts.plane[(axis + 1) % 3][lane],
+                                                    cuts.plane[(axis + 2) % 3][lane],
+                                                    cuts.plane[3][lane] / limits.distance[k]));
+            }
         }
     }
 }
@@ -227,13 +263,13 @@ inline void horizon(const MaskRaster& raster, const float* n, std::uint32_t* abo
     }
 }
 
-/// Takes what the ground covers, as seen from a signed height over it, out of `above`: what lies
-/// below a second horizon without a limit, and inside of a cone with one.
-inline void take_ground(const MaskRaster& raster, const MaskSettings& settings, float height,
-                        std::uint32_t* above)
+/// Takes what the ground covers within a limit, as seen from a signed height over it, out of
+/// `above`: what lies below a second horizon without a limit, and inside of a cone with one.
+inline void take_ground(const MaskRaster& raster, const MaskSettings& settings, float limit,
+                        float height, std::uint32_t* above)
 {
     const float turn = height < 0.0f ? 1.0f : -1.0f;
-    const float edge = -turn * height / settings.max_distance;
+    const float edge = -turn * height / limit;
     if (!(settings.has_ground && edge < 1.0f))
         return;
     const float* up = settings.ground_up;

@@ -28,36 +28,42 @@ struct Visible {
 };
 
 /// n.(change + slope (p - center))
-SURFELAO_MASK_INLINE Float16 changes_at(const MaskShared& shared, const Receivers16& receivers)
+SURFELAO_MASK_INLINE Float16 changes_at(const MaskFlow& flow, const Receivers16& receivers)
 {
-    const Vector16 p = receivers.position - broadcast(shared.center);
-    const Vector16 change = broadcast(shared.change) + Vector16{dot(broadcast(shared.slope[0]), p),
-                                                                dot(broadcast(shared.slope[1]), p),
-                                                                dot(broadcast(shared.slope[2]), p)};
+    const Vector16 p = receivers.position - broadcast(flow.center);
+    const Vector16 change = broadcast(flow.change) + Vector16{dot(broadcast(flow.slope[0]), p),
+                                                              dot(broadcast(flow.slope[1]), p),
+                                                              dot(broadcast(flow.slope[2]), p)};
     return dot(change, receivers.normal);
 }
 
 Visible visible_of(const MaskWorld& world, const MaskShared& shared, const float* axis)
 {
     const MaskRaster& raster = *world.raster;
-    const float sum = shared.irradiance[0] * axis[0] + shared.irradiance[1] * axis[1] +
-                      shared.irradiance[2] * axis[2];
+    const MaskLimits& limits = world.settings.limits;
+    const MaskFlow& flow = shared.flow;
+    const float sum =
+        flow.irradiance[0] * axis[0] + flow.irradiance[1] * axis[1] + flow.irradiance[2] * axis[2];
     if (!(sum > 0.0f))
         return {1.0f, 0.0f};
     alignas(64) std::uint32_t above[kMaskWords];
     alignas(64) std::uint32_t open[kMaskWords];
     horizon(raster, axis, above);
     const float* up = world.settings.ground_up;
-    take_ground(raster, world.settings,
-                up[0] * shared.center[0] + up[1] * shared.center[1] + up[2] * shared.center[2] -
-                    world.settings.ground_height,
-                above);
-    open_bits(above, shared.mask, open);
-    First of_open, of_above;
-    first_moments(raster, open, above, of_open, of_above);
-    if (!(of_above.along(axis) > 0.0f))
-        return {1.0f, 0.0f};
-    const float openness = of_open.along(axis) / of_above.along(axis);
+    const float height = up[0] * flow.center[0] + up[1] * flow.center[1] + up[2] * flow.center[2] -
+                         world.settings.ground_height;
+    std::memcpy(open, above, sizeof open);
+    float openness = 0.0f;
+    for (unsigned k = 0; k < limits.count; ++k) {
+        take_ground(raster, world.settings, limits.distance[k], height, above);
+        take_ground(raster, world.settings, limits.distance[k], height, open);
+        open_bits(open, shared.mask[k], open);
+        First of_open, of_above;
+        first_moments(raster, open, above, of_open, of_above);
+        if (!(of_above.along(axis) > 0.0f))
+            return {1.0f, 0.0f};
+        openness += limits.weight[k] * (of_open.along(axis) / of_above.along(axis));
+    }
     const float share = (1.0f - openness) / sum;
     return {openness, share < 1.0f ? share : 1.0f};
 }
@@ -116,20 +122,96 @@ SURFELAO_MASK_INLINE void draw_near(const MaskWorld& world, const MaskBuffer<std
     }
 }
 
+/// The masks of up to sixteen receivers: of each a pair for every limit.
+struct Masks16 {
+    unsigned limits;
+    unsigned skies;  ///< of each receiver: with a ground one for every limit, else one
+    alignas(64) std::uint32_t drawn[kLanes * kMaskMostLimits * kMaskPairWords];
+    /// The bits of the sky above each: of its hemisphere without the ground.
+    alignas(64) std::uint32_t horizons[kLanes * kMaskMostLimits * kMaskWords];
+    alignas(64) std::uint32_t target[kLanes];  ///< where the masks of each begin in `drawn`
+    float normals[kLanes][3];
+
+    /// All that is shared or kept, and what is no sky as if it were covered. kept: null for none.
+    SURFELAO_MASK_INLINE Masks16(const MaskWorld& world, const MaskShared& shared,
+                                 const MaskReceivers& receivers, const MaskKept* kept,
+                                 std::size_t stride)
+        : limits(world.settings.limits.count), skies(world.settings.has_ground ? limits : 1)
+    {
+        for (unsigned i = 0; i < kLanes; ++i) {
+            target[i] = i * limits * kMaskPairWords;
+            for (int k = 0; k < 3; ++k)
+                normals[i][k] = receivers.normal[k][i];
+        }
+        for (unsigned i = 0; i < receivers.count; ++i) {
+            std::uint32_t* above = horizons + i * skies * kMaskWords;
+            horizon(*world.raster, normals[i], above);
+            for (unsigned k = 1; k < skies; ++k)
+                std::memcpy(above + k * kMaskWords, above, kMaskWords * sizeof *above);
+            for (unsigned k = 0; k < skies; ++k)
+                take_ground(*world.raster, world.settings, world.settings.limits.distance[k],
+                            receivers.above[i], above + k * kMaskWords);
+            for (unsigned k = 0; k < limits; ++k)
+                begin(of(i, k), shared.mask[k],
+                      kept == nullptr ? nullptr : kept[k * stride].drawn[i],
+                      k < skies ? above + k * kMaskWords : nullptr);
+        }
+    }
+
+    /// What is covered within a limit also is within those beyond it.
+    SURFELAO_MASK_INLINE void add_up(unsigned count)
+    {
+        for (unsigned i = 0; i < count; ++i) {
+            for (unsigned k = 1; k < limits; ++k) {
+                for (int w = 0; w < kMaskPairWords; w += kLanes)
+                    store(of(i, k) + w, load(of(i, k) + w) | load(of(i, k - 1) + w));
+            }
+        }
+    }
+
+    std::uint32_t* of(unsigned receiver, unsigned limit)
+    {
+        return drawn + target[receiver] + limit * kMaskPairWords;
+    }
+    const std::uint32_t* of(unsigned receiver, unsigned limit) const
+    {
+        return drawn + target[receiver] + limit * kMaskPairWords;
+    }
+    const std::uint32_t* sky(unsigned receiver, unsigned limit) const
+    {
+        return horizons + (receiver * skies + (limit < skies ? limit : 0)) * kMaskWords;
+    }
+
+private:
+    SURFELAO_MASK_INLINE static void begin(std::uint32_t* mask, const std::uint32_t* shared,
+                                           const std::uint32_t* before, const std::uint32_t* above)
+    {
+        for (int w = 0; w < kFaceWords; w += kLanes) {
+            Int16 set = load(shared + w), sheets = load(shared + kMaskWords + w);
+            if (before != nullptr) {
+                set = set | load(before + w);
+                sheets = sheets | load(before + kFaceWords + w);
+            }
+            store(mask + w, above != nullptr ? set | ~load(above + w) : set);
+            store(mask + kMaskWords + w, sheets);
+        }
+    }
+};
+
 /// Draws the lists into the masks of `count` receivers. Those in nearly closed places are finished
 /// before all is drawn. kept: something is in the masks already.
 void draw_lists(const MaskWorld& world, const MaskScratch& scratch, const Receivers16& receivers,
-                const float (*normals)[3], unsigned count, bool kept, std::uint32_t* masks)
+                unsigned count, bool kept, Masks16& masks)
 {
     if (scratch.rectangles.count + scratch.sheets.count + scratch.triangles.count == 0)
         return;
-    Streams streams(world, masks);
+    Streams streams(world, masks.drawn);
     alignas(64) std::uint32_t active[kLanes] = {};
     for (unsigned i = 0; i < count; ++i)
         active[i] = 1;
     const auto leave_out_closed = [&] {
         for (unsigned i = 0; i < count; ++i) {
-            if (active[i] != 0 && is_closed(*world.raster, masks + i * kMaskPairWords, normals[i]))
+            if (active[i] != 0 && is_closed(*world.raster, masks.of(i, 0), masks.normals[i]))
                 active[i] = 0;
         }
     };
@@ -155,45 +237,6 @@ void draw_lists(const MaskWorld& world, const MaskScratch& scratch, const Receiv
     draw_list(scratch.triangles, streams.triangles);
     streams.finish();
 }
-
-/// The masks of up to sixteen receivers.
-struct Masks16 {
-    alignas(64) std::uint32_t drawn[kLanes * kMaskPairWords];
-    /// The bits of the sky above each: of its hemisphere without the ground.
-    alignas(64) std::uint32_t horizons[kLanes * kMaskWords];
-    alignas(64) std::uint32_t target[kLanes];  ///< where each mask begins in `drawn`
-    float normals[kLanes][3];
-
-    /// All that is shared or kept, and what is no sky as if it were covered. kept: null for none.
-    SURFELAO_MASK_INLINE Masks16(const MaskWorld& world, const MaskShared& shared,
-                                 const MaskReceivers& receivers, const MaskKept* kept)
-    {
-        const MaskRaster& raster = *world.raster;
-        for (unsigned i = 0; i < kLanes; ++i) {
-            target[i] = i * kMaskPairWords;
-            for (int k = 0; k < 3; ++k)
-                normals[i][k] = receivers.normal[k][i];
-        }
-        for (unsigned i = 0; i < receivers.count; ++i) {
-            std::uint32_t* above = horizons + i * kMaskWords;
-            horizon(raster, normals[i], above);
-            take_ground(raster, world.settings, receivers.above[i], above);
-            std::uint32_t* closed = drawn + target[i];
-            for (int w = 0; w < kFaceWords; w += kLanes) {
-                const Int16 set = load(shared.mask + w);
-                const Int16 sheets = load(shared.mask + kMaskWords + w);
-                if (kept != nullptr) {
-                    const std::uint32_t* before = kept->drawn[i];
-                    store(closed + w, set | load(before + w) | ~load(above + w));
-                    store(closed + kMaskWords + w, sheets | load(before + kFaceWords + w));
-                } else {
-                    store(closed + w, set | ~load(above + w));
-                    store(closed + kMaskWords + w, sheets);
-                }
-            }
-        }
-    }
-};
 
 /// How much of the sky of one receiver with normal n is open, between 0 and 1 to rounding, cracks
 /// counted as closed where much is covered. A sky smaller than a bit is open. `open` becomes the
@@ -260,15 +303,26 @@ void answer(const MaskWorld& world, const ReceiverGroup& group, const MaskShared
             const Masks16& masks, const Receivers16& all_receivers, const MaskReceivers& receivers,
             MaskAnswers& answers)
 {
-    const MaskRaster& raster = *world.raster;
+    const MaskLimits& limits = world.settings.limits;
     const Visible visible = visible_of(world, shared, group.axis);
     alignas(64) float changes[kLanes];
-    store(changes, changes_at(shared, all_receivers));
+    store(changes, changes_at(shared.flow, all_receivers));
     for (unsigned i = 0; i < receivers.count; ++i) {
         const float* n = masks.normals[i];
-        alignas(64) std::uint32_t open[kMaskWords];
-        float openness = openness_of(world, masks.drawn + masks.target[i],
-                                     masks.horizons + i * kMaskWords, n, open);
+        float openness = 0.0f, above = 0.0f, seen = 0.0f, m[6] = {};
+        for (unsigned k = 0; k < limits.count; ++k) {
+            alignas(64) std::uint32_t open[kMaskWords];
+            const float open_share =
+                limits.weight[k] * openness_of(world, masks.of(i, k), masks.sky(i, k), n, open);
+            // the sky's size is exact, bits tell how much of it is open
+            openness += open_share;
+            seen += receivers.sky[k][i] * open_share;
+            above += receivers.sky[k][i] * limits.weight[k];
+            const Second second = second_moments(*world.raster, open);
+            for (int j = 0; j < 6; ++j)
+                m[j] += limits.weight[k] * static_cast<float>(second.at[j]);
+        }
+        const float sky = openness > 0.0f ? seen / openness : above;
         // near polygons cover what is far as they cover the open sky
         const float bare = openness < visible.openness ? openness / visible.openness : 1.0f;
         const float change = bare * visible.share * changes[i];
@@ -276,12 +330,7 @@ void answer(const MaskWorld& world, const ReceiverGroup& group, const MaskShared
         if (size < __builtin_inff())
             openness -= change / (1.0f + size / kMaskLargestMove);
         openness = openness < 0.0f ? 0.0f : openness > 1.0f ? 1.0f : openness;
-        // the sky's size is exact, bits tell how much of it is open
-        answers.occlusion[i] = 1.0f - receivers.sky[i] * openness;
-        const Second second = second_moments(raster, open);
-        float m[6];
-        for (int k = 0; k < 6; ++k)
-            m[k] = static_cast<float>(second.at[k]);
+        answers.occlusion[i] = 1.0f - sky * openness;
         answers.bent[0][i] = m[0] * n[0] + m[3] * n[1] + m[5] * n[2];
         answers.bent[1][i] = m[3] * n[0] + m[1] * n[1] + m[4] * n[2];
         answers.bent[2][i] = m[5] * n[0] + m[4] * n[1] + m[2] * n[2];
@@ -294,46 +343,54 @@ void solve(const MaskWorld& world, const ReceiverGroup& group, const std::uint32
 {
     MaskShared shared = from_above;
     open_rest(world, group, in, in_count, shared, scratch);
-    Masks16 masks(world, shared, receivers, nullptr);
+    Masks16 masks(world, shared, receivers, nullptr, 0);
     const Receivers16 all_receivers = receivers_of(receivers, masks);
-    draw_lists(world, scratch, all_receivers, masks.normals, receivers.count, false, masks.drawn);
+    draw_lists(world, scratch, all_receivers, receivers.count, false, masks);
+    masks.add_up(receivers.count);
     answer(world, group, shared, masks, all_receivers, receivers, answers);
 }
 
 void keep(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
           std::size_t in_count, const MaskShared& from_above, const MaskReceivers& receivers,
-          MaskKept& kept, MaskScratch& scratch)
+          MaskKept* kept, std::size_t stride, MaskScratch& scratch)
 {
-    kept.shared = from_above;
-    open_rest(world, group, in, in_count, kept.shared, scratch);
-    Masks16 masks(world, kept.shared, receivers, nullptr);
-    draw_lists(world, scratch, receivers_of(receivers, masks), masks.normals, receivers.count,
-               false, masks.drawn);
-    for (unsigned i = 0; i < receivers.count; ++i) {
-        const std::uint32_t* drawn = masks.drawn + masks.target[i];
-        for (int w = 0; w < kFaceWords; w += kLanes) {
-            store(kept.drawn[i] + w, load(drawn + w));
-            store(kept.drawn[i] + kFaceWords + w, load(drawn + kMaskWords + w));
+    MaskShared shared = from_above;
+    open_rest(world, group, in, in_count, shared, scratch);
+    Masks16 masks(world, shared, receivers, nullptr, 0);
+    draw_lists(world, scratch, receivers_of(receivers, masks), receivers.count, false, masks);
+    kept->flow = shared.flow;
+    for (unsigned k = 0; k < masks.limits; ++k) {
+        MaskKept& of_limit = kept[k * stride];
+        std::memcpy(of_limit.shared, shared.mask[k], sizeof of_limit.shared);
+        for (unsigned i = 0; i < receivers.count; ++i) {
+            const std::uint32_t* drawn = masks.of(i, k);
+            for (int w = 0; w < kFaceWords; w += kLanes) {
+                store(of_limit.drawn[i] + w, load(drawn + w));
+                store(of_limit.drawn[i] + kFaceWords + w, load(drawn + kMaskWords + w));
+            }
         }
     }
 }
 
 void solve_kept(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
-                std::size_t in_count, const MaskKept& kept, const MaskReceivers& receivers,
-                MaskAnswers& answers, MaskScratch& scratch)
+                std::size_t in_count, const MaskKept* kept, std::size_t stride,
+                const MaskReceivers& receivers, MaskAnswers& answers, MaskScratch& scratch)
 {
     MaskShared shared{};
     open_rest(world, group, in, in_count, shared, scratch);
-    Masks16 masks(world, shared, receivers, &kept);
+    Masks16 masks(world, shared, receivers, kept, stride);
     const Receivers16 all_receivers = receivers_of(receivers, masks);
-    draw_lists(world, scratch, all_receivers, masks.normals, receivers.count, true, masks.drawn);
-    for (int w = 0; w < kMaskPairWords; w += kLanes)
-        store(shared.mask + w, load(shared.mask + w) | load(kept.shared.mask + w));
+    draw_lists(world, scratch, all_receivers, receivers.count, true, masks);
+    masks.add_up(receivers.count);
+    for (unsigned k = 0; k < masks.limits; ++k) {
+        for (int w = 0; w < kMaskPairWords; w += kLanes)
+            store(shared.mask[k] + w, load(shared.mask[k] + w) | load(kept[k * stride].shared + w));
+    }
     for (int i = 0; i < 3; ++i) {
-        shared.change[i] += kept.shared.change[i];
-        shared.irradiance[i] += kept.shared.irradiance[i];
+        shared.flow.change[i] += kept->flow.change[i];
+        shared.flow.irradiance[i] += kept->flow.irradiance[i];
         for (int k = 0; k < 3; ++k)
-            shared.slope[i][k] += kept.shared.slope[i][k];
+            shared.flow.slope[i][k] += kept->flow.slope[i][k];
     }
     answer(world, group, shared, masks, all_receivers, receivers, answers);
 }

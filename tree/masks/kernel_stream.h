@@ -25,8 +25,8 @@ SURFELAO_MASK_INLINE float sum_of(Float16 a)
 /// r moves by -p: df/dp = (4 r r^T (A.r) / r^2 - (A.r) I - r A^T) / (pi r^4).
 class Slope {
 public:
-    Slope(const ReceiverGroup& group, float max_distance)
-        : axis_(broadcast(group.axis)), max_distance_(max_distance)
+    Slope(const ReceiverGroup& group, const MaskLimits& limits)
+        : axis_(broadcast(group.axis)), limits_(limits)
     {
     }
 
@@ -42,8 +42,8 @@ public:
         Vector16 area =
             cross(c[2] - c[0], kCorners == 3 ? c[1] - c[0] : c[kCorners - 1] - c[1]) * all(0.5f);
         // beyond the count stands anything
-        const Bool16 counts = first_lanes(count) & (zero < dot(r, axis_)) &
-                              (dot(r, r) < all(max_distance_ * max_distance_));
+        const Bool16 counts = first_lanes(count) & (zero < dot(r, axis_));
+        const Float16 weight = weight_of(dot(r, r));
         const auto choose = [&](Vector16 v) {
             return Vector16{select(counts, v.x, zero), select(counts, v.y, zero),
                             select(counts, v.z, zero)};
@@ -51,7 +51,7 @@ public:
         r = choose(r);
         const Float16 inverse = inverse_sqrt(max(dot(r, r), all(kMaskTiny)));
         r = r * inverse;
-        area = choose(area) * (inverse * inverse * all(kInversePi));
+        area = choose(area) * (inverse * inverse * all(kInversePi) * weight);
         const Int16 away = sign_of(dot(area, r));
         const Float16 along = flip(dot(area, r), away);
         const Float16 direction[3] = {r.x, r.y, r.z};
@@ -68,20 +68,31 @@ public:
         any_ = true;
     }
 
-    void finish(MaskShared& shared) const
+    void finish(MaskFlow& flow) const
     {
         if (!any_)
             return;
         for (int i = 0; i < 3; ++i) {
-            shared.irradiance[i] += sum_of(irradiance_[i]);
+            flow.irradiance[i] += sum_of(irradiance_[i]);
             for (int j = 0; j < 3; ++j)
-                shared.slope[i][j] += sum_of(slope_[i][j]);
+                flow.slope[i][j] += sum_of(slope_[i][j]);
         }
     }
 
 private:
+    /// What counts at the square of a distance.
+    SURFELAO_MASK_INLINE Float16 weight_of(Float16 distance2) const
+    {
+        Float16 weight = all(0.0f);
+        for (unsigned k = 0; k < limits_.count; ++k) {
+            const Bool16 within = distance2 < all(limits_.distance[k] * limits_.distance[k]);
+            weight = weight + select(within, all(limits_.weight[k]), all(0.0f));
+        }
+        return weight;
+    }
+
     Vector16 axis_;
-    float max_distance_;
+    const MaskLimits& limits_;
     bool any_ = false;
     Float16 irradiance_[3] = {all(0.0f), all(0.0f), all(0.0f)};
     Float16 slope_[3][3] = {{all(0.0f), all(0.0f), all(0.0f)},
@@ -95,10 +106,7 @@ class Stream {
 public:
     /// slope: where all is drawn for a group.
     Stream(const MaskWorld& world, std::uint32_t* masks, Slope* slope = nullptr)
-        : raster_(*world.raster),
-          max_distance_(world.settings.max_distance),
-          masks_(masks),
-          slope_(slope)
+        : raster_(*world.raster), limits_(world.settings.limits), masks_(masks), slope_(slope)
     {
     }
 
@@ -131,14 +139,13 @@ public:
 private:
     void draw_first(unsigned count)
     {
-        draw<kCorners, 2 * kLanes, kSheet>(raster_, max_distance_, corner_[0], target_, count,
-                                           masks_);
+        draw<kCorners, 2 * kLanes, kSheet>(raster_, limits_, corner_[0], target_, count, masks_);
         if (slope_ != nullptr)
             slope_->template add<kCorners, 2 * kLanes>(corner_[0], count);
     }
 
     const MaskRaster& raster_;
-    float max_distance_;
+    const MaskLimits& limits_;
     std::uint32_t* masks_;
     Slope* slope_;
     unsigned count_ = 0;

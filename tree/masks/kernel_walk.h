@@ -76,14 +76,14 @@ SURFELAO_MASK_INLINE void append(MaskBuffer<std::uint32_t>& list, Int16 index, B
     list.count += count_of(chosen);
 }
 
-void move_to(MaskShared& shared, const float* center)
+void move_to(MaskFlow& flow, const float* center)
 {
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j)
-            shared.change[i] += shared.slope[i][j] * (center[j] - shared.center[j]);
+            flow.change[i] += flow.slope[i][j] * (center[j] - flow.center[j]);
     }
     for (int i = 0; i < 3; ++i)
-        shared.center[i] = center[i];
+        flow.center[i] = center[i];
 }
 
 /// A group of receivers, each number in all lanes.
@@ -130,9 +130,9 @@ SURFELAO_MASK_INLINE Sight16 see(const MaskSettings& settings, const Group16& gr
     const Float16 slab = min(node.radius(), fma(node.radius(), tilt, node.thickness()));
     const Float16 top = base + slab + group.rise;
     const Float16 nearest = distance - node.radius();
-    const Bool16 alive = active &
-                         (top > max(all(settings.graze) * (nearest - group.radius), zero)) &
-                         (nearest - group.radius < all(settings.max_distance));
+    const Bool16 alive =
+        active & (top > max(all(settings.graze) * (nearest - group.radius), zero)) &
+        (nearest - group.radius < all(settings.limits.distance[settings.limits.count - 1]));
     const Float16 weight = min(max(top * inverse, all(kMaskImportanceFloor)), all(1.0f));
     return {distance, nearest, dot(to_node, normal), inverse_sqrt(weight), alive};
 }
@@ -189,9 +189,9 @@ void walk(const MaskWorld& world, const ReceiverGroup& of, MaskBuffer<std::uint3
           MaskShared& shared_part, MaskScratch& scratch)
 {
     const MaskSettings& settings = world.settings;
-    move_to(shared_part, of.center);
-    Slope slope(of, settings.max_distance);
-    Streams streams(world, shared_part.mask, &slope);
+    move_to(shared_part.flow, of.center);
+    Slope slope(of, settings.limits);
+    Streams streams(world, shared_part.mask[0], &slope);
     const Group16 group(of);
     const Float16 zero = all(0.0f);
     const Float16 share = all(kLeaf ? settings.share_leaf : settings.share_inner);
@@ -249,7 +249,7 @@ void walk(const MaskWorld& world, const ReceiverGroup& of, MaskBuffer<std::uint3
             open(world, node, opened, frontier);
     }
     streams.finish();
-    slope.finish(shared_part);
+    slope.finish(shared_part.flow);
 }
 
 void start_frontier(MaskScratch& scratch, const std::uint32_t* in, std::size_t in_count)

@@ -7,24 +7,17 @@
 
 namespace surfelao {
 
-/// A falloff is a mean over hits within several limits: with H(w) the weight of the distance t,
-/// H = integral over h in [0, 1] of (t < distance at which the weight is h). Midpoints of as many
-/// steps; a hit's weight is off by half a step at most.
-std::vector<float> distance_limits(const Definition& definition)
+/// A falloff is a mean over hits within several limits: the weight of the distance t is the sum of
+/// the weights of the limits beyond t.
+MaskLimits distance_limits(const Definition& definition)
 {
     if (definition.falloff == Falloff::none)
-        return {definition.max_distance};
-    std::vector<float> limits;
-    for (int step = 0; step < kMaskFalloffSteps; ++step) {
-        const float weight = (static_cast<float>(step) + 0.5f) / kMaskFalloffSteps;
-        // hit_weight falls steadily: bisection keeps its formula in one place
-        float near = 0.0f;
-        float far = definition.max_distance;
-        for (int i = 0; i < kMaskFalloffHalvings; ++i) {
-            const float middle = 0.5f * (near + far);
-            (hit_weight(definition, middle) > weight ? near : far) = middle;
-        }
-        limits.push_back(far);
+        return {1, {definition.max_distance}, {1.0f}, 0.0f};
+    MaskLimits limits{};
+    limits.uncut = kMaskUncut * definition.max_distance;
+    for (const MaskFalloffStep& step : kMaskFalloffSteps) {
+        limits.distance[limits.count] = step.distance * definition.max_distance;
+        limits.weight[limits.count++] = step.weight;
     }
     return limits;
 }
@@ -34,13 +27,13 @@ MaskSkies::MaskSkies(const Definition& definition, std::span<const Receiver> rec
 {
     if (!ground_ || definition.falloff == Falloff::none)
         return;
-    const std::vector<float> limits = distance_limits(definition);
+    const MaskLimits limits = distance_limits(definition);
     scales_.resize(receivers.size());
     tbb::parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t i) {
-        float sum = 0.0f;
-        for (const float limit : limits)
-            sum += 1.0f - ground_share(*ground_, receivers[i], limit);
-        const float mean = sum / static_cast<float>(limits.size());
+        float mean = 0.0f;
+        for (unsigned k = 0; k < limits.count; ++k)
+            mean += limits.weight[k] *
+                    (1.0f - ground_share(*ground_, receivers[i], limits.distance[k]));
         const float whole = 1.0f - ground_share(definition, receivers[i]);
         scales_[i] = mean > 0.0f ? whole / mean : 1.0f;
     });

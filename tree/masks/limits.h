@@ -5,6 +5,7 @@
 
 #include "surfels/occlusion.h"
 #include "surfels/receiver.h"
+#include "tree/masks/kernel.h"
 
 #include <cstddef>
 #include <optional>
@@ -13,12 +14,12 @@
 
 namespace surfelao {
 
-/// The limits, ascending or not, over which the mean of hard-limited occlusions is that of the
-/// definition, to 1/16 of each hit's weight. One limit, maybe infinite, where there is no falloff.
-[[nodiscard]] std::vector<float> distance_limits(const Definition& definition);
+/// The limits over which the weighted mean of hard-limited occlusions is nearly that of the
+/// definition (kMaskFalloffSteps). One limit, maybe infinite, where there is no falloff.
+[[nodiscard]] MaskLimits distance_limits(const Definition& definition);
 
 /// What a ground leaves of the hemispheres of receivers, cosine-weighted, within each of the
-/// limits: exact, and with a falloff scaled so that the mean over the limits is.
+/// limits: exact, and with a falloff scaled so that the weighted mean over the limits is.
 class MaskSkies {
 public:
     /// O(receivers), all cores; nothing without a ground. The receivers must outlive it.

@@ -40,6 +40,7 @@ MaskSettings mask_settings(const MaskOptions& options)
             "this processor has no kernel " + std::string(name_of(options.kernel)));
     MaskSettings settings{};
     settings.fill = !options.exact;
+    settings.limits = distance_limits(options.definition);
     if (const auto& ground = options.definition.ground) {
         const glm::vec3 up = kMaskFrame * ground->up;
         settings.has_ground = true;
@@ -49,8 +50,10 @@ MaskSettings mask_settings(const MaskOptions& options)
     }
     // within a limit a body's far side may be missing
     settings.one_sided = !options.exact && std::isinf(options.definition.max_distance);
-    if (options.exact)
+    if (options.exact) {
+        settings.limits.uncut = 0.0f;
         return settings;
+    }
     settings.exact_radius = std::numeric_limits<float>::min();
     const float place = options.quality - MaskOptions::kCoarsest;
     const auto i = std::min(static_cast<std::size_t>(place), std::size(kMaskFamily) - 2);
@@ -79,7 +82,7 @@ std::vector<Occlusion> solve_masks(const MaskNode* nodes, std::span<const std::u
         for (std::uint32_t i = group.begin; wanted[leaf] == 0 && i < group.end; ++i)
             answers[groups.order[i]] = kUnsolved;
     }
-    ProgressMeter meter(progress, wanted.size() * solver.limits().size() / options.share.count);
+    ProgressMeter meter(progress, wanted.size() / options.share.count);
     solver.solve({nodes, roots, receivers, groups, skies, wanted}, meter, answers);
     return answers;
 }

@@ -74,7 +74,8 @@ MaskMemory::MaskMemory(const MaskForest& forest, std::span<const Receiver> at_re
         of.body = body;
         of.index = std::move(index[body]);
         group(of, at_rest);
-        const std::size_t bytes = of.share.size() * solver_.limits().size() * sizeof(MaskKept);
+        const std::size_t bytes =
+            of.share.size() * solver_.settings().limits.count * sizeof(MaskKept);
         of.may_keep = forest.body_count() > 1 && bytes <= keep_most;
         keep_most -= of.may_keep ? bytes : 0;
     }
@@ -89,7 +90,7 @@ void MaskMemory::group(OfBody& of, std::span<const Receiver> at_rest)
     of.share = leaves_of(options_.share, of.groups);
     of.seen.assign(words_ * of.share.size(), 0);
     of.answers.assign(of.receivers.size(), {});
-    of.kept_limits.clear();
+    of.kept_within.reset();
     of.is_new = true;
     if (of.groups.groups.empty())
         return;
@@ -130,7 +131,7 @@ bool MaskMemory::is_kept(const OfBody& of) const
 /// A body that grows has other limits in its own space.
 bool MaskMemory::is_to_keep(const OfBody& of) const
 {
-    return is_kept(of) && of.kept_limits != distance_limits(definition_of(of));
+    return is_kept(of) && of.kept_within != definition_of(of).max_distance;
 }
 
 /// As it is in the body's own space.
@@ -249,7 +250,7 @@ const MaskNode* MaskMemory::nodes_before(const OfBody& of, bool with_own)
         bodies.push_back(of.body);
     for_bits(looked_at.data(), words_, [&](std::uint32_t body) { bodies.push_back(body); });
     forest_.place_before({of.body, of.ball, solver_.settings().cluster,
-                          solver_.limits().empty() ? 0.0f : std::ranges::max(solver_.limits())},
+                          solver_.settings().limits.distance[solver_.settings().limits.count - 1]},
                          bodies, before_);
     return before_.data();
 }
@@ -274,12 +275,12 @@ void MaskMemory::solve(OfBody& of, MaskFrame& frame, ProgressMeter& meter)
         return;
     }
     if (is_first) {
-        of.kept_limits.clear();
-        of.kept.resize(of.wanted.size() * solver_.limits().size());
+        of.kept_within.reset();
+        of.kept.resize(of.wanted.size() * solver_.settings().limits.count);
         question.wanted = of.share;
         solver_.keep(question, meter, of.kept);
         question.wanted = of.wanted;
-        of.kept_limits = solver_.limits();
+        of.kept_within = definition.max_distance;
     }
     solver_.solve_kept(question, of.kept, meter, of.answers);
 }
@@ -322,7 +323,7 @@ MaskFrame MaskMemory::solve(std::span<Occlusion> answers, const Progress& progre
             leaves += static_cast<std::uint64_t>(std::ranges::count(of.share, 1));
     }
     all_ = true;  // until all is well
-    ProgressMeter meter(progress, leaves * solver_.limits().size());
+    ProgressMeter meter(progress, leaves);
     for (OfBody* of : there) {
         if (std::ranges::find(of->wanted, 1) != of->wanted.end())
             solve(*of, frame, meter);

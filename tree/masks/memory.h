@@ -22,6 +22,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -65,8 +66,8 @@ private:
         std::vector<std::uint8_t> share;  ///< of the leaf groups
         bool may_keep = false;
         RawVector<MaskKept> kept;
-        std::vector<float> kept_limits;   ///< empty: nothing is kept
-        std::vector<std::uint64_t> seen;  ///< bodies that a leaf group looks at: bits
+        std::optional<float> kept_within;  ///< the largest distance; none: nothing is kept
+        std::vector<std::uint64_t> seen;   ///< bodies that a leaf group looks at: bits
         std::vector<Occlusion> answers;
         bool is_new = true;  ///< not answered since it was grouped
         // of this frame

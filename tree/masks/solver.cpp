@@ -17,7 +17,8 @@ std::size_t leaf_of(const ReceiverGroup& group)
     return group.begin / kGroupSize;
 }
 
-MaskReceivers columns_of(const MaskQuestion& question, const ReceiverGroup& group, float limit)
+MaskReceivers columns_of(const MaskQuestion& question, const ReceiverGroup& group,
+                         const MaskLimits& limits)
 {
     MaskReceivers columns{};
     columns.count = group.end - group.begin;
@@ -26,20 +27,25 @@ MaskReceivers columns_of(const MaskQuestion& question, const ReceiverGroup& grou
         std::copy_n(&question.groups.normal[k][group.begin], columns.count, columns.normal[k]);
     }
     for (std::uint32_t i = 0; i < columns.count; ++i) {
-        const MaskSkies::Sky sky = question.skies.at(limit, question.groups.order[group.begin + i]);
-        columns.sky[i] = sky.share;
-        columns.above[i] = sky.above;
+        for (unsigned k = 0; k < limits.count; ++k) {
+            const MaskSkies::Sky sky =
+                question.skies.at(limits.distance[k], question.groups.order[group.begin + i]);
+            columns.sky[k][i] = sky.share;
+            columns.above[i] = sky.above;
+        }
     }
     return columns;
 }
 
-void add(const MaskQuestion& question, const ReceiverGroup& group, const MaskAnswers& found,
-         std::span<Occlusion> answers)
+/// The receivers' own order, and their own frame: a row vector times a rotation turns back.
+void write(const MaskQuestion& question, const ReceiverGroup& group, const MaskAnswers& found,
+           std::span<Occlusion> answers)
 {
     for (std::uint32_t i = 0; i < group.end - group.begin; ++i) {
-        Occlusion& answer = answers[question.groups.order[group.begin + i]];
-        answer.occlusion += found.occlusion[i];
-        answer.bent_normal += glm::vec3(found.bent[0][i], found.bent[1][i], found.bent[2][i]);
+        const std::uint32_t index = question.groups.order[group.begin + i];
+        const glm::vec3 bent(found.bent[0][i], found.bent[1][i], found.bent[2][i]);
+        answers[index] = {found.occlusion[i],
+                          bent_normal_of(bent * kMaskFrame, question.receivers[index].normal)};
     }
 }
 
@@ -50,14 +56,6 @@ void for_wanted(const MaskQuestion& question, const Work& work)
     tbb::parallel_for(std::size_t{0}, question.groups.leaves.size(), [&](std::size_t leaf) {
         if (question.wanted[leaf] != 0)
             work(question.groups.groups[question.groups.leaves[leaf]]);
-    });
-}
-
-void clear(const MaskQuestion& question, std::span<Occlusion> answers)
-{
-    for_wanted(question, [&](const ReceiverGroup& group) {
-        for (std::uint32_t i = group.begin; i < group.end; ++i)
-            answers[question.groups.order[i]] = {};
     });
 }
 
@@ -73,7 +71,7 @@ MaskWorkspace::~MaskWorkspace()
         release(list);
 }
 
-/// The way from the root group down to the leaf groups that are wanted, within one limit.
+/// The way from the root group down to the leaf groups that are wanted.
 /// at_leaf(group, in, in_count, from_above, workspace).
 template <class AtLeaf>
 class MaskSolver::Descent {
@@ -147,10 +145,7 @@ private:
 };
 
 MaskSolver::MaskSolver(const MaskOptions& options)
-    : options_(options),
-      settings_(mask_settings(options)),
-      kernel_(*kernel_of(options.kernel)),
-      limits_(distance_limits(options.definition))
+    : options_(options), settings_(mask_settings(options)), kernel_(*kernel_of(options.kernel))
 {
 }
 
@@ -158,94 +153,66 @@ void MaskSolver::ask(const Definition& definition)
 {
     options_.definition = definition;
     settings_ = mask_settings(options_);
-    limits_ = distance_limits(definition);
 }
 
-MaskWorld MaskSolver::world_at(const MaskQuestion& question, float limit) const
+MaskWorld MaskSolver::world_of(const MaskQuestion& question) const
 {
-    MaskWorld world{reinterpret_cast<const float*>(question.nodes), &mask_raster(), settings_};
-    world.settings.max_distance = limit;
-    return world;
-}
-
-void MaskSolver::finish(const MaskQuestion& question, const ReceiverGroup& leaf,
-                        std::span<Occlusion> answers) const
-{
-    const float weight = 1.0f / static_cast<float>(limits_.size());
-    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
-        const std::uint32_t index = question.groups.order[i];
-        Occlusion& answer = answers[index];
-        answer.occlusion *= weight;
-        // a row vector times a rotation: turned back
-        answer.bent_normal =
-            bent_normal_of(answer.bent_normal * kMaskFrame, question.receivers[index].normal);
-    }
+    return {reinterpret_cast<const float*>(question.nodes), &mask_raster(), settings_};
 }
 
 void MaskSolver::solve(const MaskQuestion& question, ProgressMeter& meter,
                        std::span<Occlusion> answers)
 {
-    clear(question, answers);
-    for (const float limit : limits_) {
-        const MaskWorld world = world_at(question, limit);
-        const auto at_leaf = [&](const ReceiverGroup& group, const std::uint32_t* in,
-                                 std::size_t in_count, const MaskShared& from_above,
-                                 MaskWorkspace& workspace) {
-            if (question.leaf_roots != nullptr) {
-                const auto more = question.leaf_roots->of(leaf_of(group));
-                workspace.roots.assign(in, in + in_count);
-                workspace.roots.insert(workspace.roots.end(), more.begin(), more.end());
-                in = workspace.roots.data();
-                in_count = workspace.roots.size();
-            }
-            const MaskReceivers columns = columns_of(question, group, limit);
-            MaskAnswers found{};
-            kernel_.solve(world, group, in, in_count, from_above, columns, found,
-                          workspace.scratch);
-            add(question, group, found, answers);
-            meter.add(1);
-        };
-        Descent(*this, question, world, at_leaf).run();
-    }
-    for_wanted(question, [&](const ReceiverGroup& group) { finish(question, group, answers); });
+    const MaskWorld world = world_of(question);
+    const auto at_leaf = [&](const ReceiverGroup& group, const std::uint32_t* in,
+                             std::size_t in_count, const MaskShared& from_above,
+                             MaskWorkspace& workspace) {
+        if (question.leaf_roots != nullptr) {
+            const auto more = question.leaf_roots->of(leaf_of(group));
+            workspace.roots.assign(in, in + in_count);
+            workspace.roots.insert(workspace.roots.end(), more.begin(), more.end());
+            in = workspace.roots.data();
+            in_count = workspace.roots.size();
+        }
+        const MaskReceivers columns = columns_of(question, group, settings_.limits);
+        MaskAnswers found{};
+        kernel_.solve(world, group, in, in_count, from_above, columns, found, workspace.scratch);
+        write(question, group, found, answers);
+        meter.add(1);
+    };
+    Descent(*this, question, world, at_leaf).run();
 }
 
 void MaskSolver::keep(const MaskQuestion& question, ProgressMeter& meter, std::span<MaskKept> kept)
 {
-    for (std::size_t k = 0; k < limits_.size(); ++k) {
-        MaskWorld world = world_at(question, limits_[k]);
-        world.settings.has_ground = false;  // it may move about the receivers
-        const auto of_limit = kept.subspan(k * question.groups.leaves.size());
-        const auto at_leaf = [&](const ReceiverGroup& group, const std::uint32_t* in,
-                                 std::size_t in_count, const MaskShared& from_above,
-                                 MaskWorkspace& workspace) {
-            kernel_.keep(world, group, in, in_count, from_above,
-                         columns_of(question, group, limits_[k]), of_limit[leaf_of(group)],
-                         workspace.scratch);
-            meter.add(1);
-        };
-        Descent(*this, question, world, at_leaf).run();
-    }
+    MaskWorld world = world_of(question);
+    world.settings.has_ground = false;  // it may move about the receivers
+    const std::size_t leaves = question.groups.leaves.size();
+    const auto at_leaf = [&](const ReceiverGroup& group, const std::uint32_t* in,
+                             std::size_t in_count, const MaskShared& from_above,
+                             MaskWorkspace& workspace) {
+        kernel_.keep(world, group, in, in_count, from_above,
+                     columns_of(question, group, settings_.limits), &kept[leaf_of(group)], leaves,
+                     workspace.scratch);
+        meter.add(1);
+    };
+    Descent(*this, question, world, at_leaf).run();
 }
 
 void MaskSolver::solve_kept(const MaskQuestion& question, std::span<const MaskKept> kept,
                             ProgressMeter& meter, std::span<Occlusion> answers)
 {
-    clear(question, answers);
+    const MaskWorld world = world_of(question);
     const std::size_t leaves = question.groups.leaves.size();
     for_wanted(question, [&](const ReceiverGroup& group) {
         const std::size_t leaf = leaf_of(group);
         const auto roots = question.leaf_roots->of(leaf);
-        MaskScratch& scratch = workspaces_.local().scratch;
-        for (std::size_t k = 0; k < limits_.size(); ++k) {
-            const MaskWorld world = world_at(question, limits_[k]);
-            MaskAnswers found{};
-            kernel_.solve_kept(world, group, roots.data(), roots.size(), kept[k * leaves + leaf],
-                               columns_of(question, group, limits_[k]), found, scratch);
-            add(question, group, found, answers);
-            meter.add(1);
-        }
-        finish(question, group, answers);
+        MaskAnswers found{};
+        kernel_.solve_kept(world, group, roots.data(), roots.size(), &kept[leaf], leaves,
+                           columns_of(question, group, settings_.limits), found,
+                           workspaces_.local().scratch);
+        write(question, group, found, answers);
+        meter.add(1);
     });
 }
 

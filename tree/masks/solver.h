@@ -69,10 +69,9 @@ public:
     void ask(const Definition& definition);
 
     [[nodiscard]] const MaskSettings& settings() const { return settings_; }
-    [[nodiscard]] const std::vector<float>& limits() const { return limits_; }
 
     /// Writes the answers of the receivers of the leaf groups that are wanted. meter: counts leaf
-    /// groups times limits.
+    /// groups.
     void solve(const MaskQuestion& question, ProgressMeter& meter, std::span<Occlusion> answers);
 
     /// The same in two steps: what of the roots that all groups see, without a ground, and the
@@ -85,14 +84,11 @@ private:
     template <class AtLeaf>
     class Descent;
 
-    [[nodiscard]] MaskWorld world_at(const MaskQuestion& question, float limit) const;
-    void finish(const MaskQuestion& question, const ReceiverGroup& leaf,
-                std::span<Occlusion> answers) const;
+    [[nodiscard]] MaskWorld world_of(const MaskQuestion& question) const;
 
     MaskOptions options_;
     MaskSettings settings_;
     const MaskKernel& kernel_;
-    std::vector<float> limits_;
     tbb::enumerable_thread_specific<MaskWorkspace> workspaces_;
 };
 
