@@ -1,12 +1,11 @@
 #include "bake/vertex_fit.h"
 
 #include "bake/fit_cells.h"
+#include "bake/normal_equations.h"
 #include "surfels/buckets.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <Eigen/IterativeLinearSolvers>
-#include <Eigen/SparseCore>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
@@ -27,12 +26,6 @@ constexpr std::size_t kGrain = 4096;
 /// right to some 1e-4.
 constexpr double kTolerance = 1e-4;
 constexpr int kMostSteps = 100;
-
-using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-using Solver = Eigen::ConjugateGradient<Matrix, Eigen::Lower | Eigen::Upper>;
-
-/// Bent vector and occlusion are four right sides of one matrix.
-constexpr int kChannels = 4;
 
 template <class Body>
 void in_blocks(std::size_t count, const Body& body)
@@ -81,9 +74,10 @@ int corner_count(const FitCell& cell)
 
 namespace {
 
-/// Right sides of the normal equations, and values: to begin with the means of the answers around.
+/// Bent vector and occlusion: right sides of the normal equations, and values: to begin with the
+/// means of the answers around.
 struct Channels {
-    std::array<Eigen::VectorXd, kChannels> right, values;
+    FourColumns right, values;
 };
 
 }  // namespace
@@ -99,7 +93,7 @@ struct VertexFit::Impl {
     /// Made when they are first asked for: the engines that answer before need the memory.
     struct Equations {
         Buckets<std::uint32_t> corners;  ///< 4 * cell + corner, by unknown
-        Matrix matrix;
+        NormalEquations matrix;
     };
     mutable std::once_flag are_made;
     mutable std::optional<Equations> made;
@@ -159,7 +153,7 @@ struct VertexFit::Impl {
     }
 
     glm::dvec4 row_of(std::uint32_t cell, int corner) const;
-    void make_matrix(const Buckets<std::uint32_t>& corners, Matrix& matrix) const;
+    void make_matrix(const Buckets<std::uint32_t>& corners, NormalEquations& matrix) const;
     Channels channels_of(std::span<const Occlusion> answers) const;
     std::vector<Occlusion> values_of(const Channels& channels) const;
 };
@@ -191,17 +185,18 @@ glm::dvec4 VertexFit::Impl::row_of(std::uint32_t cell, int corner) const
     return row;
 }
 
-void VertexFit::Impl::make_matrix(const Buckets<std::uint32_t>& corners, Matrix& matrix) const
+void VertexFit::Impl::make_matrix(const Buckets<std::uint32_t>& corners,
+                                  NormalEquations& matrix) const
 {
     struct Block {
-        std::vector<int> counts, columns;  ///< of rows; of entries
-        std::vector<double> values;
+        std::vector<std::uint32_t> counts, columns;  ///< of rows; of entries
+        std::vector<float> values;
     };
-    const auto size = static_cast<std::ptrdiff_t>(unknown_count);
+    using Entry = std::pair<std::uint32_t, double>;
     std::vector<Block> blocks((unknown_count + kGrain - 1) / kGrain);
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t index) {
         Block& block = blocks[index];
-        std::vector<std::pair<int, double>> row;
+        std::vector<Entry> row;
         const std::size_t end = std::min(unknown_count, (index + 1) * kGrain);
         for (std::size_t unknown = index * kGrain; unknown < end; ++unknown) {
             row.clear();
@@ -209,9 +204,9 @@ void VertexFit::Impl::make_matrix(const Buckets<std::uint32_t>& corners, Matrix&
                 const FitCell& cell = samples.cells[at / 4];
                 const glm::dvec4 entries = row_of(at / 4, static_cast<int>(at % 4));
                 for (int corner = 0; corner < corner_count(cell); ++corner)
-                    row.emplace_back(static_cast<int>(cell.unknowns[corner]), entries[corner]);
+                    row.emplace_back(cell.unknowns[corner], entries[corner]);
             }
-            std::ranges::stable_sort(row, {}, &std::pair<int, double>::first);
+            std::ranges::stable_sort(row, {}, &Entry::first);
             const std::size_t filled = block.columns.size();
             for_each_run(
                 std::span(row), [](auto& a, auto& b) { return a.first == b.first; },
@@ -220,28 +215,24 @@ void VertexFit::Impl::make_matrix(const Buckets<std::uint32_t>& corners, Matrix&
                     for (const auto& entry : run)
                         sum += entry.second;
                     block.columns.push_back(run.front().first);
-                    block.values.push_back(sum);
+                    block.values.push_back(static_cast<float>(sum));
                 });
-            block.counts.push_back(static_cast<int>(block.columns.size() - filled));
+            block.counts.push_back(static_cast<std::uint32_t>(block.columns.size() - filled));
         }
     });
 
-    std::ptrdiff_t entries = 0;
+    std::size_t entries = 0;
     for (const Block& block : blocks)
-        entries += static_cast<std::ptrdiff_t>(block.columns.size());
-    matrix.resize(size, size);
-    matrix.resizeNonZeros(entries);
-    int* row_end = matrix.outerIndexPtr();
-    *row_end = 0;
-    std::ptrdiff_t filled = 0;
+        entries += block.columns.size();
+    matrix.begin.reserve(unknown_count + 1);
+    matrix.begin.push_back(0);
+    matrix.columns.reserve(entries);
+    matrix.values.reserve(entries);
     for (Block& block : blocks) {
-        for (const int count : block.counts) {
-            row_end[1] = row_end[0] + count;
-            ++row_end;
-        }
-        std::ranges::copy(block.columns, matrix.innerIndexPtr() + filled);
-        std::ranges::copy(block.values, matrix.valuePtr() + filled);
-        filled += static_cast<std::ptrdiff_t>(block.columns.size());
+        for (const std::uint32_t count : block.counts)
+            matrix.begin.push_back(matrix.begin.back() + count);
+        matrix.columns.insert(matrix.columns.end(), block.columns.begin(), block.columns.end());
+        matrix.values.insert(matrix.values.end(), block.values.begin(), block.values.end());
         block = {};
     }
 }
@@ -272,13 +263,8 @@ std::vector<std::uint32_t> VertexFit::unused_vertices() const
 
 Channels VertexFit::Impl::channels_of(std::span<const Occlusion> answers) const
 {
-    const auto count = static_cast<std::ptrdiff_t>(unknown_count);
     const Buckets<std::uint32_t>& corners = equations().corners;
-    Channels channels;
-    for (std::size_t channel = 0; channel < kChannels; ++channel) {
-        channels.right[channel].resize(count);
-        channels.values[channel].resize(count);
-    }
+    Channels channels{FourColumns(unknown_count), FourColumns(unknown_count)};
     in_blocks(unknown_count, [&](std::size_t unknown) {
         glm::dvec4 sum(0.0);
         double weights = 0.0;
@@ -292,29 +278,26 @@ Channels VertexFit::Impl::channels_of(std::span<const Occlusion> answers) const
                 weights += weight;
             });
         }
-        for (int channel = 0; channel < kChannels; ++channel) {
-            const auto c = static_cast<std::size_t>(channel);
-            channels.right[c][static_cast<std::ptrdiff_t>(unknown)] = sum[channel];
-            channels.values[c][static_cast<std::ptrdiff_t>(unknown)] = sum[channel] / weights;
-        }
+        const Eigen::Array4d sums(sum.x, sum.y, sum.z, sum.w);
+        channels.right[unknown] = sums.cast<float>();
+        channels.values[unknown] = (sums / weights).cast<float>();
     });
     return channels;
 }
 
 std::vector<Occlusion> VertexFit::Impl::values_of(const Channels& channels) const
 {
-    const auto& solution = channels.values;
     std::vector<Occlusion> values(unknowns.size());
     in_blocks(values.size(), [&](std::size_t v) {
         values[v].bent_normal = surface.normals[v];
         if (unknowns[v] == kUnused)
             return;
-        const auto unknown = static_cast<std::ptrdiff_t>(unknowns[v]);
-        values[v].occlusion = static_cast<float>(std::clamp(solution[3][unknown], 0.0, 1.0));
-        const glm::dvec3 bent(solution[0][unknown], solution[1][unknown], solution[2][unknown]);
-        const double length = glm::length(bent);
+        const Eigen::Array4f& value = channels.values[unknowns[v]];
+        values[v].occlusion = std::clamp(value[3], 0.0f, 1.0f);
+        const glm::vec3 bent(value[0], value[1], value[2]);
+        const float length = glm::length(bent);
         if (length > kLeastBent)
-            values[v].bent_normal = glm::vec3(bent / length);
+            values[v].bent_normal = bent / length;
     });
     return values;
 }
@@ -322,48 +305,16 @@ std::vector<Occlusion> VertexFit::Impl::values_of(const Channels& channels) cons
 std::vector<Occlusion> VertexFit::solve(std::span<const Occlusion> answers) const
 {
     Channels channels = impl_->channels_of(answers);
-    const Matrix& matrix = impl_->equations().matrix;
-    tbb::parallel_for(std::size_t{0}, channels.right.size(), [&](std::size_t channel) {
-        Solver solver;
-        solver.setTolerance(kTolerance);
-        solver.setMaxIterations(kMostSteps);
-        solver.compute(matrix);
-        channels.values[channel] =
-            solver.solveWithGuess(channels.right[channel], channels.values[channel]).eval();
-    });
+    conjugate_gradients(impl_->equations().matrix, channels.right, kTolerance, kMostSteps,
+                        channels.values);
     return impl_->values_of(channels);
 }
 
 std::vector<Occlusion> VertexFit::solve_locally(std::span<const Occlusion> answers) const
 {
     Channels channels = impl_->channels_of(answers);
-    const Matrix& matrix = impl_->equations().matrix;
-    const Eigen::VectorXd inverse = matrix.diagonal().cwiseInverse();
-    // rows over their diagonal: the sums of their entries bound all eigenvalues (Gershgorin)
-    double largest = 0.0;
-    for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
-        double sum = 0.0;
-        for (Matrix::InnerIterator entry(matrix, row); entry; ++entry)
-            sum += std::abs(entry.value());
-        largest = std::max(largest, sum * inverse[row]);
-    }
-    const double middle = 0.5 * largest * (1.0 + kLocalSpectrum);
-    const double half = 0.5 * largest * (1.0 - kLocalSpectrum);
-    tbb::parallel_for(std::size_t{0}, channels.right.size(), [&](std::size_t channel) {
-        Eigen::VectorXd& x = channels.values[channel];
-        Eigen::VectorXd rest = channels.right[channel] - matrix * x;
-        Eigen::VectorXd step = inverse.cwiseProduct(rest) / middle;
-        double rho = half / middle;
-        for (int i = 1;; ++i) {
-            x += step;
-            if (i == kLocalSteps)
-                break;
-            rest -= matrix * step;
-            const double next = 1.0 / (2.0 * middle / half - rho);
-            step = next * rho * step + (2.0 * next / half) * inverse.cwiseProduct(rest);
-            rho = next;
-        }
-    });
+    chebyshev(impl_->equations().matrix, channels.right, kLocalSteps, kLocalSpectrum,
+              channels.values);
     return impl_->values_of(channels);
 }
 
