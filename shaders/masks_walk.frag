@@ -153,7 +153,6 @@ void main()
         uvec4 last     = texelFetch(u_nodes, at * 4 + 3);
         bool  triangle = (last.w & kMaskTriangle) != 0u;
         bool  exact    = uintBitsToFloat(third.w) <= u_exact_radius;
-        bool  sheet    = !exact && (last.w & kMaskSheet) != 0u;
         vec4  ball     = uintBitsToFloat(texelFetch(u_nodes, at * 4));
         vec3  center   = u_face * (ball.xyz - position);
         float radius   = ball.w;
@@ -161,9 +160,14 @@ void main()
         vec3  axis_a   = uintBitsToFloat(third.xyz);
         vec3  axis_b   = uintBitsToFloat(last.xyz);
         vec3  normal   = normal_of(axis_a, axis_b);
-        float away     = dot(normal, ball.xyz - group.xyz);
+        vec3  to_node  = ball.xyz - group.xyz;
+        float away     = dot(normal, to_node);
         float own_away = shared ? away : dot(normal, ball.xyz - position);
         bool  dropped = u_one_sided != 0 && (last.w & kMaskSolid) != 0u && own_away < 0.0;
+        // cracks are beside what is wide enough for them
+        bool  sheet = !exact && (last.w & kMaskSheet) != 0u &&
+                     kMaskNarrowSheet * kMaskNarrowSheet * dot(to_node, to_node) <
+                         dot(axis_a + axis_b, axis_a + axis_b);
         float grow    = sheet && (last.w & kMaskHollow) != 0u && away < 0.0 ? kMaskHollowGrowth : 1.0;
         vec3  skew = u_face * uintBitsToFloat(texelFetch(u_nodes, at * 4 + 1).xyz);
         axis_a     = u_face * axis_a;

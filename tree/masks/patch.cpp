@@ -142,6 +142,16 @@ void set_rectangles(Columns& of)
     of.length_v = any ? length_v * shrink : zero;
 }
 
+/// How much narrower strips of bulging bodies are drawn between their folds.
+Float4 folds_of(const Columns& of, Float4 bulge)
+{
+    const Float4 zero = all_lanes(0.0f), one = all_lanes(1.0f);
+    const Float4 full = kMaskFoldBulge * of.area * of.length_v;
+    const Float4 bent = full > 0.0f ? least(one, most(zero, bulge) / full) : zero;
+    const Float4 longer = of.length_u > 0.0f ? one - of.length_v / of.length_u : zero;
+    return kMaskFold * longer * bent * bent;
+}
+
 /// MaskRoom of as many patches as there are lanes.
 struct RoomColumns {
     std::array<Vector, 3> axes;
@@ -164,9 +174,9 @@ RoomColumns room_columns(std::span<const MaskPatchNode> nodes)
     return columns;
 }
 
-/// Lengthens a half axis of a rectangle by `rim` at the ends that are cut. Returns how far the
-/// middle moves.
-Vector grow_to_cuts(Vector& axis, const RoomColumns& room, Float4 rim)
+/// Lengthens a half axis of a rectangle by `rim` at the ends that are cut and shortens it by `fold`
+/// at the others. Returns how far the middle moves.
+Vector move_ends(Vector& axis, const RoomColumns& room, Float4 rim, Float4 fold)
 {
     Bool4 ahead{}, behind{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -175,9 +185,8 @@ Vector grow_to_cuts(Vector& axis, const RoomColumns& room, Float4 rim)
         ahead |= (along > 0.0f ? room.above[k] : room.below[k]) < reach;
         behind |= (along > 0.0f ? room.below[k] : room.above[k]) < reach;
     }
-    const Float4 half = 0.5f * rim;
-    const Float4 zero = all_lanes(0.0f);
-    const Float4 forward = ahead ? half : zero, backward = behind ? half : zero;
+    const Float4 longer = 0.5f * rim, shorter = -0.5f * fold;
+    const Float4 forward = ahead ? longer : shorter, backward = behind ? longer : shorter;
     const Vector move = axis * (forward - backward);
     axis = axis * (1.0f + forward + backward);
     return move;
@@ -440,8 +449,9 @@ void show_patches(std::span<MaskPatchNode> nodes)
         const RoomColumns room = room_columns(nodes.subspan(begin, count));
         const Float4 depth =
             of.area > 0.0f ? kMaskBulgeDepth * most(zero, patch[4][3]) / of.area : zero;
-        const Vector move =
-            grow_to_cuts(along, room, of.rim) + grow_to_cuts(across, room, of.rim) - normal * depth;
+        const Vector move = move_ends(along, room, of.rim, zero) +
+                            move_ends(across, room, of.rim, folds_of(of, patch[4][3])) -
+                            normal * depth;
         const Vector middle = center + move;
         const Vector axis_a = along + across, axis_b = across - along;
 
