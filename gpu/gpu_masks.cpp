@@ -234,6 +234,7 @@ private:
         walk.set("u_share", settings_.share_leaf);
         walk.set("u_cluster", settings_.cluster);
         walk.set("u_cluster_limit", settings_.cluster_limit);
+        walk.set("u_crossing", settings_.crossing);
         walk.set("u_graze", settings_.graze);
         walk.set("u_one_sided", settings_.one_sided ? 1 : 0);
         walk.set("u_max_distance", std::min(limit, std::numeric_limits<float>::max()));
@@ -276,6 +277,7 @@ private:
         for (std::size_t i = 0; i < std::size(inputs); ++i)
             answer.set(inputs[i], batch.sums.color(i));
         answer.set("u_close", settings_.close);
+        answer.set("u_fill_from", settings_.fill_from);
         answer.set("u_weight", settings_.limits.weight[k]);
         answer.set("u_slot_count", grid.slot_count());
         answer.set("u_blocks_per_row", grid.blocks_per_row());

@@ -11,6 +11,7 @@
 // Reads      u_share, u_bent, u_bent_filled, u_bent_closed
 //                              outputs of masks_face.frag, summed over the faces
 //            u_weight          of the limit
+//            u_fill_from       occlusion from which cracks count
 //            u_close           how much cracks of two bits count as closed
 //            u_slot_count, u_blocks_per_row  (receiver_grid.glsl)
 //            u_first_slot      before those that are computed
@@ -28,6 +29,7 @@ uniform sampler2D u_bent;
 uniform sampler2D u_bent_filled;
 uniform sampler2D u_bent_closed;
 uniform float u_weight;
+uniform float u_fill_from;
 uniform float u_close;
 uniform int u_slot_count;
 uniform int u_blocks_per_row;
@@ -53,7 +55,7 @@ void main()
     float openness = shares.x;
     out_result.xyz = texelFetch(u_bent, pixel, 0).xyz;
 
-    float fill = (1.0 - openness - kMaskFillFrom) / kMaskFillRange;
+    float fill = (1.0 - openness - u_fill_from) / kMaskFillRange;
     if (fill > 0.0 && openness > 0.0) {
         openness -= min(fill, 1.0) * kMaskFillShare * (shares.x - shares.y);
         out_result.xyz = texelFetch(u_bent_filled, pixel, 0).xyz;

@@ -15,7 +15,7 @@
 //            u_face            from the mask frame to the face's axes
 //            u_half            0: rows 0 to 7, where V < 0; 1: rows 8 to 15
 //            u_groups          RGBA32F, 3 texels a group of 16 slots (disks_gather.frag)
-//            u_cluster, u_cluster_limit, u_share, u_graze, u_one_sided, u_max_distance  MaskSettings of
+//            u_cluster, u_cluster_limit, u_crossing, u_share, u_graze, u_one_sided, u_max_distance  MaskSettings of
 //                              tree/masks/kernel.h; u_share is share_leaf; no limit: the largest float
 //            u_exact_radius    nodes with no larger open_radius are drawn as they are; -1: leaves alone
 //            u_words0, u_words1, u_sheets0, u_sheets1, u_at  the outputs of the draw before
@@ -39,6 +39,7 @@ uniform samplerBuffer u_groups;
 uniform float u_cluster;
 uniform float u_share;
 uniform float u_cluster_limit;
+uniform float u_crossing;
 uniform float u_graze;
 uniform int u_one_sided;
 uniform float u_max_distance;
@@ -138,6 +139,8 @@ void main()
                          nearest - group.w < u_max_distance;
             float relax     = inversesqrt(clamp(top * inverse, kMaskImportanceFloor, 1.0));
             float cluster   = min(u_cluster * relax, u_cluster_limit);
+            if (distance + ball.w + group.w > u_max_distance)
+                cluster *= u_crossing;
             shared = group.w < u_share * relax * nearest;
             float from_all = shared ? distance : distance - group.w;
             found = alive && (open_radius <= u_exact_radius || open_radius < cluster * from_all);

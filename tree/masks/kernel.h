@@ -44,6 +44,7 @@ struct MaskSettings {
     /// s: a node is drawn where its open radius is below this share of its distance.
     float cluster;
     float cluster_limit;  ///< what unimportant directions may relax s to
+    float crossing;       ///< of s, for nodes that a distance limit may cut
     /// u: an inner group shares what is so far that group radius over distance is below this.
     float share_inner;
     float share_leaf;    ///< r: the same for leaf groups
@@ -51,9 +52,10 @@ struct MaskSettings {
     /// g: polygons whose highest corner lies below this sine of elevation over the receiver's
     /// tangent plane are not drawn.
     float graze;
-    bool one_sided;  ///< of small closed bodies only what faces away is drawn
-    bool fill;       ///< close single-bit cracks where much is covered
-    float close;     ///< how much cracks of two bits count as closed where all else is
+    bool one_sided;   ///< of small closed bodies only what faces away is drawn
+    bool fill;        ///< close single-bit cracks where more than `fill_from` is covered
+    float fill_from;  ///< occlusion
+    float close;      ///< how much cracks of two bits count as closed where all else is
     bool has_ground;
     float ground_up[3];  ///< Definition::ground, in the mask frame
     float ground_height;

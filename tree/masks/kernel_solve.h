@@ -253,7 +253,7 @@ SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32
     if (!(weight > 0.0f))
         return 1.0f;
     float openness = of_open.along(n) / weight;
-    const float fill_weight = (1.0f - openness - kMaskFillFrom) / kMaskFillRange;
+    const float fill_weight = (1.0f - openness - world.settings.fill_from) / kMaskFillRange;
     if (!(world.settings.fill && fill_weight > 0.0f && openness > 0.0f))
         return openness;
 

@@ -112,8 +112,8 @@ struct Sight16 {
 };
 
 /// How high above any of the group's horizons the nodes may reach, and so how much they may weigh.
-SURFELAO_MASK_INLINE Sight16 see(const MaskSettings& settings, const Group16& group,
-                                 const Node16& node, Bool16 active)
+SURFELAO_MASK_INLINE Sight16 see(float graze, float limit, const Group16& group, const Node16& node,
+                                 Bool16 active)
 {
     const Float16 zero = all(0.0f);
     const Vector16 to_node = node.center() - group.center;
@@ -130,9 +130,8 @@ SURFELAO_MASK_INLINE Sight16 see(const MaskSettings& settings, const Group16& gr
     const Float16 slab = min(node.radius(), fma(node.radius(), tilt, node.thickness()));
     const Float16 top = base + slab + group.rise;
     const Float16 nearest = distance - node.radius();
-    const Bool16 alive =
-        active & (top > max(all(settings.graze) * (nearest - group.radius), zero)) &
-        (nearest - group.radius < all(settings.limits.distance[settings.limits.count - 1]));
+    const Bool16 alive = active & (top > max(all(graze) * (nearest - group.radius), zero)) &
+                         (nearest - group.radius < all(limit));
     const Float16 weight = min(max(top * inverse, all(kMaskImportanceFloor)), all(1.0f));
     return {distance, nearest, dot(to_node, normal), inverse_sqrt(weight), alive};
 }
@@ -203,6 +202,7 @@ void walk(const MaskWorld& world, const ReceiverGroup& of, MaskBuffer<std::uint3
     const Group16 group(of);
     const Float16 zero = all(0.0f);
     const Float16 share = all(kLeaf ? settings.share_leaf : settings.share_inner);
+    const float limit = settings.limits.distance[settings.limits.count - 1];
     const Float16 exact_radius = all(settings.exact_radius);
     const Int16 solid = all(settings.one_sided ? kMaskSolid : 0u);
     MaskBuffer<std::uint32_t>& frontier = scratch.frontier;
@@ -220,9 +220,11 @@ void walk(const MaskWorld& world, const ReceiverGroup& of, MaskBuffer<std::uint3
         Node16 node;
         load_transposed(world.nodes, index, node.field);
 
-        const Sight16 sight = see(settings, group, node, first_lanes(count));
+        const Sight16 sight = see(settings.graze, limit, group, node, first_lanes(count));
+        const Float16 farthest = sight.distance + node.radius() + group.radius;
         const Float16 cluster =
-            min(all(settings.cluster) * sight.relax, all(settings.cluster_limit));
+            min(all(settings.cluster) * sight.relax, all(settings.cluster_limit)) *
+            select(all(limit) < farthest, all(settings.crossing), all(1.0f));
         const Bool16 one_sided = nonzero(node.links() & solid);
         const Bool16 exact = node.open_radius() < exact_radius;
         const Bool16 sheet = without(node.is_sheet(), exact) & wide(node, sight.distance);

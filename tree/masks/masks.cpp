@@ -48,8 +48,11 @@ MaskSettings mask_settings(const MaskOptions& options)
             settings.ground_up[k] = up[k];
         settings.ground_height = ground->height;
     }
-    // within a limit a body's far side may be missing
-    settings.one_sided = !options.exact && std::isinf(options.definition.max_distance);
+    // within a limit a body's far side may be missing, and what stands behind a crack
+    const bool is_limited = std::isfinite(options.definition.max_distance);
+    settings.one_sided = !options.exact && !is_limited;
+    settings.fill_from = is_limited ? kMaskLimitedFillFrom : kMaskFillFrom;
+    settings.crossing = options.definition.falloff == Falloff::none ? kMaskCrossing : 1.0f;
     if (options.exact) {
         settings.limits.uncut = 0.0f;
         return settings;

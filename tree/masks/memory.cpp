@@ -249,9 +249,10 @@ const MaskNode* MaskMemory::nodes_before(const OfBody& of, bool with_own)
     if (with_own && forest_.root(of.body))
         bodies.push_back(of.body);
     for_bits(looked_at.data(), words_, [&](std::uint32_t body) { bodies.push_back(body); });
-    forest_.place_before({of.body, of.ball, solver_.settings().cluster,
-                          solver_.settings().limits.distance[solver_.settings().limits.count - 1]},
-                         bodies, before_);
+    forest_.place_before(
+        {of.body, of.ball, solver_.settings().cluster * solver_.settings().crossing,
+         solver_.settings().limits.distance[solver_.settings().limits.count - 1]},
+        bodies, before_);
     return before_.data();
 }
 
