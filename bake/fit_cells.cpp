@@ -1,8 +1,10 @@
 #include "bake/fit_cells.h"
 
 #include "surfels/edges.h"
+#include "surfels/for_all.h"
 #include "surfels/union_find.h"
 
+#include <tbb/parallel_for.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -181,32 +183,7 @@ private:
 
 class Sampler {
 public:
-    Sampler(const Geometry& geometry, SurfaceSamples& samples)
-        : geometry_(geometry), samples_(samples)
-    {
-    }
-
-    void add_triangle(std::uint32_t triangle, glm::uvec3 unknowns, std::uint32_t rows, double area)
-    {
-        begin(glm::uvec4(unknowns, FitCell::kNoCorner));
-        const float size = 1.0f / static_cast<float>(rows);
-        const glm::vec2 shift(kSampleShift[0], kSampleShift[1]);
-        const glm::vec2 upright = glm::vec2(1.0f / 3.0f) + shift;
-        const glm::vec2 turned = glm::vec2(2.0f / 3.0f) - shift;
-        const auto share = static_cast<float>(area / (rows * rows));
-        const auto put = [&](glm::vec2 at) {
-            samples_.points.push_back({triangle, size * at});
-            samples_.areas.push_back(share);
-        };
-        for (std::uint32_t i = 0; i < rows; ++i) {
-            for (std::uint32_t j = 0; i + j < rows; ++j) {
-                const glm::vec2 corner(static_cast<float>(i), static_cast<float>(j));
-                put(corner + upright);
-                if (i + j + 1 < rows)
-                    put(corner + turned);
-            }
-        }
-    }
+    explicit Sampler(SurfaceSamples& samples) : samples_(samples) {}
 
     void add_quad(const Quad& quad, std::uint32_t rows, double area)
     {
@@ -285,7 +262,6 @@ private:
              glm::clamp(glm::vec2(turned.y, turned.z), glm::vec2(0.0f), glm::vec2(1.0f))});
     }
 
-    const Geometry& geometry_;
     SurfaceSamples& samples_;
 };
 
@@ -313,13 +289,16 @@ double wanted_of(std::size_t triangles)
 class Density {
 public:
     Density(const Geometry& geometry, std::span<const double> areas)
-        : geometry_(geometry), pieces_(geometry.positions.size())
+        : geometry_(geometry), piece_at_(geometry.positions.size())
     {
+        UnionFind joined(piece_at_.size());
         for (const glm::uvec3 t : geometry.triangles) {
             const glm::uvec3 w{geometry.welded[t.x], geometry.welded[t.y], geometry.welded[t.z]};
-            pieces_.join(w.x, w.y);
-            pieces_.join(w.y, w.z);
+            joined.join(w.x, w.y);
+            joined.join(w.y, w.z);
         }
+        for (std::uint32_t place = 0; place < piece_at_.size(); ++place)
+            piece_at_[place] = joined.root(place);
         struct Piece {
             double area = 0.0;
             std::size_t triangles = 0;
@@ -350,23 +329,86 @@ public:
         }
     }
 
-    std::uint32_t rows_of(std::uint32_t triangle, double area)
+    std::uint32_t rows_of(std::uint32_t triangle, double area) const
     {
         const double rows = std::round(std::sqrt(per_area_of_[piece_of(triangle)] * area));
         return static_cast<std::uint32_t>(std::clamp(rows, 1.0, double{kMostSampleRows}));
     }
 
 private:
-    std::uint32_t piece_of(std::uint32_t triangle)
+    std::uint32_t piece_of(std::uint32_t triangle) const
     {
-        return pieces_.root(geometry_.welded[geometry_.triangles[triangle].x]);
+        return piece_at_[geometry_.welded[geometry_.triangles[triangle].x]];
     }
 
     const Geometry& geometry_;
-    UnionFind pieces_;
+    std::vector<std::uint32_t> piece_at_;  ///< by place
     double per_area_ = 0.0;
     std::vector<double> per_area_of_;  ///< by piece
 };
+
+/// In small triangles of a triangle cut into rows^2, near their middles: calls put(at).
+template <class Put>
+void for_each_place(std::uint32_t rows, const Put& put)
+{
+    const float size = 1.0f / static_cast<float>(rows);
+    const glm::vec2 shift(kSampleShift[0], kSampleShift[1]);
+    const glm::vec2 upright = glm::vec2(1.0f / 3.0f) + shift;
+    const glm::vec2 turned = glm::vec2(2.0f / 3.0f) - shift;
+    for (std::uint32_t i = 0; i < rows; ++i) {
+        for (std::uint32_t j = 0; i + j < rows; ++j) {
+            const glm::vec2 corner(static_cast<float>(i), static_cast<float>(j));
+            put(size * (corner + upright));
+            if (i + j + 1 < rows)
+                put(size * (corner + turned));
+        }
+    }
+}
+
+/// Appends the cells and samples of the triangles, all threads. rows: of each; 0: it is no cell.
+void add_triangles(const Geometry& geometry, std::span<const std::uint32_t> unknowns,
+                   std::span<const double> areas, std::span<const std::uint8_t> rows,
+                   SurfaceSamples& samples)
+{
+    constexpr std::size_t kBlock = 4096;
+    struct Start {
+        std::size_t cell, sample;
+    };
+    const auto for_each_block = [&](const auto& body) {
+        tbb::parallel_for(std::size_t{0}, (rows.size() + kBlock - 1) / kBlock, [&](std::size_t b) {
+            body(b, b * kBlock, std::min(rows.size(), (b + 1) * kBlock));
+        });
+    };
+    std::vector<Start> starts(rows.size() / kBlock + 2, {0, 0});
+    for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            starts[b + 1].cell += rows[t] > 0 ? 1 : 0;
+            starts[b + 1].sample += std::size_t{rows[t]} * rows[t];
+        }
+    });
+    starts[0] = {samples.cells.size(), samples.points.size()};
+    for (std::size_t b = 1; b < starts.size(); ++b)
+        starts[b] = {starts[b - 1].cell + starts[b].cell, starts[b - 1].sample + starts[b].sample};
+    samples.cells.resize(starts.back().cell);
+    samples.points.resize(starts.back().sample);
+    samples.areas.resize(starts.back().sample);
+    for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
+        Start at = starts[b];
+        for (std::size_t t = begin; t < end; ++t) {
+            if (rows[t] == 0)
+                continue;
+            const glm::uvec3 corners = geometry.triangles[t];
+            samples.cells[at.cell++] = {
+                {unknowns[corners.x], unknowns[corners.y], unknowns[corners.z], FitCell::kNoCorner},
+                static_cast<std::uint32_t>(at.sample)};
+            for_each_place(rows[t], [&](glm::vec2 place) {
+                samples.points[at.sample] = {static_cast<std::uint32_t>(t), place};
+                samples.areas[at.sample++] =
+                    static_cast<float>(areas[t] / (std::uint32_t{rows[t]} * rows[t]));
+            });
+        }
+    });
+}
 
 }  // namespace
 
@@ -374,11 +416,16 @@ SurfaceSamples samples_of(const Geometry& geometry, std::span<const std::uint32_
 {
     const auto count = static_cast<std::uint32_t>(geometry.triangles.size());
     const std::vector<double> areas = triangle_areas(geometry);
-    Density density(geometry, areas);
+    const Density density(geometry, areas);
+    std::vector<std::uint8_t> rows(count);
+    for_all(count, [&](std::size_t t) {
+        rows[t] =
+            static_cast<std::uint8_t>(density.rows_of(static_cast<std::uint32_t>(t), areas[t]));
+    });
 
     std::vector<std::uint32_t> among;
     for (std::uint32_t t = 0; t < count; ++t) {
-        if (count <= kQuadsEverywhere || density.rows_of(t, areas[t]) > 1)
+        if (count <= kQuadsEverywhere || rows[t] > 1)
             among.push_back(t);
     }
     std::vector<Quad> quads;
@@ -386,22 +433,13 @@ SurfaceSamples samples_of(const Geometry& geometry, std::span<const std::uint32_
         quads = QuadFinder(geometry, unknowns, among).quads;
     SurfaceSamples samples;
     samples.cells.reserve(count - quads.size() + 1);
-    samples.points.reserve(count + count / 4);
-    samples.areas.reserve(samples.points.capacity());
-    Sampler sampler(geometry, samples);
-    std::vector<bool> done(count, false);
+    Sampler sampler(samples);
     for (const Quad& quad : quads) {
         const double area = areas[quad.triangles[0]] + areas[quad.triangles[1]];
         sampler.add_quad(quad, density.rows_of(quad.triangles[0], area), area);
-        done[quad.triangles[0]] = done[quad.triangles[1]] = true;
+        rows[quad.triangles[0]] = rows[quad.triangles[1]] = 0;
     }
-    for (std::uint32_t t = 0; t < count; ++t) {
-        if (done[t])
-            continue;
-        const glm::uvec3 corners = geometry.triangles[t];
-        sampler.add_triangle(t, {unknowns[corners.x], unknowns[corners.y], unknowns[corners.z]},
-                             density.rows_of(t, areas[t]), areas[t]);
-    }
+    add_triangles(geometry, unknowns, areas, rows, samples);
     sampler.begin(glm::uvec4(FitCell::kNoCorner));
     return samples;
 }

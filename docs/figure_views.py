@@ -396,6 +396,19 @@ def scaling(figures, engine):
 
 
 @view
+def whole_job(figures):
+    """from file to file: stages, processor time, memory"""
+    columns = [("name", "mesh", str), ("triangles", "triangles", thousands),
+               ("bytes", "file, MB", lambda v: fixed(v / 1e6, 1))]
+    columns += [(stage, f"{stage}, s", lambda v: fixed(v, 2))
+                for stage in ("read", "tree", "solve", "fit", "write", "total", "user", "system")]
+    columns.append(("bytes/triangle", "peak, bytes a triangle", lambda v: thousands(round(v))))
+    return table([head for _, head, _ in columns],
+                 [[text(row[key]) for key, _, text in columns]
+                  for row in figures["whole_job"]["rows"]])
+
+
+@view
 def scaling_exponent(figures, engine):
     """scaling_exponent masks|disks: solving grows with vertices to the power of this"""
     return fixed(figures["scaling"][engine]["exponent"], 2)

@@ -2,15 +2,21 @@
 
 #include "files/obj_file.h"
 #include "files/own_colors.h"
+#include "files/row_ranges.h"
 #include "surfels/errors.h"
 #include "surfels/labels.h"
 
+#include <array>
 #include <limits>
+#include <utility>
 
 namespace surfelao {
 namespace {
 
-glm::dvec3 read_vertex(TextCursor& cursor, ObjSource& source)
+/// Thrown where a range of lines names things by counting back to those of lines before it.
+struct CountsBack {};
+
+glm::dvec3 read_vertex(TextCursor& cursor, bool& has_colors)
 {
     glm::dvec3 position;
     for (int axis = 0; axis < 3; ++axis)
@@ -22,7 +28,7 @@ glm::dvec3 read_vertex(TextCursor& cursor, ObjSource& source)
         cursor.fail("the vertex has " + std::to_string(3 + more) +
                     " numbers, but x y z, w and a colour are 3, 4, 6 or 7");
     }
-    source.has_colors = source.has_colors || more > 2;
+    has_colors = has_colors || more > 2;
     return position;
 }
 
@@ -34,12 +40,20 @@ glm::vec3 read_normal(TextCursor& cursor)
     return normal;
 }
 
-/// What `number` names when there are `count` so far, counted from 0; negative: nothing.
-std::int64_t index_of(std::int64_t number, std::size_t count)
+/// How many vertices, normals or texture coordinates there are so far.
+struct SoFar {
+    std::size_t count = 0;
+    bool is_known = true;  ///< nothing stands before the range of lines
+};
+
+/// What `number` names, counted from 0; negative: nothing.
+std::int64_t index_of(std::int64_t number, const SoFar& so_far)
 {
     if (number == 0)
         return -1;
-    return number > 0 ? number - 1 : static_cast<std::int64_t>(count) + number;
+    if (number < 0 && !so_far.is_known)
+        throw CountsBack();
+    return number > 0 ? number - 1 : static_cast<std::int64_t>(so_far.count) + number;
 }
 
 /// Texture coordinates as UvSet has them: in the file v runs up, and is 0 where it is missing.
@@ -58,12 +72,24 @@ struct NamedValues : PolygonValues<Value> {
     std::uint64_t lost = 0;  ///< corners that name one that there is not
 
     /// Of the corner of this number, which names its value by `word`.
-    void read(const TextCursor& cursor, std::size_t corner, std::string_view word)
+    void read(const TextCursor& cursor, std::size_t corner, std::string_view word, bool is_first)
     {
-        const std::int64_t index = index_of(cursor.integer_of(word), this->values.size());
+        const std::int64_t index =
+            index_of(cursor.integer_of(word), {this->values.size(), is_first});
         const bool is_one = index >= 0 && index < kNoValue;
         lost += is_one ? 0 : 1;
         this->set(corner, is_one ? static_cast<std::uint32_t>(index) : kNoValue);
+    }
+
+    /// Those of the next lines. corners: how many there are before.
+    void append(const NamedValues& more, std::size_t corner_count)
+    {
+        this->values.insert(this->values.end(), more.values.begin(), more.values.end());
+        if (!more.corners.empty()) {
+            this->corners.resize(corner_count, kNoValue);
+            this->corners.insert(this->corners.end(), more.corners.begin(), more.corners.end());
+        }
+        lost += more.lost;
     }
 
     /// After the last value.
@@ -80,28 +106,26 @@ struct NamedValues : PolygonValues<Value> {
     }
 };
 
+/// `o NAME`, `usemtl NAME`, `g NAME NAME ...`
+struct NameLine {
+    LabelKind kind = LabelKind::object;
+    std::vector<std::string_view> names;
+    std::size_t triangles = 0;  ///< before it
+};
+
 /// Which faces have which names. A name holds until the next of its kind.
 class FaceNames {
 public:
-    /// `o NAME`, `usemtl NAME`: all that stands on the line.
-    void set(LabelKind kind, std::string_view name, std::size_t triangles)
+    void set(const NameLine& line)
     {
-        end(of(kind), kind, triangles);
-        of(kind).names = {name};
-    }
-    /// `g NAME NAME ...`
-    void set_groups(TextCursor& cursor, std::size_t triangles)
-    {
-        end(groups_, LabelKind::group, triangles);
-        groups_.names.clear();
-        while (!cursor.at_line_end())
-            groups_.names.push_back(cursor.word());
+        Current& current = currents_[static_cast<std::size_t>(line.kind)];
+        end(current, line.kind, line.triangles);
+        current.names = line.names;
     }
     std::vector<Label> finish(std::size_t triangles)
     {
-        end(object_, LabelKind::object, triangles);
-        end(groups_, LabelKind::group, triangles);
-        end(material_, LabelKind::material, triangles);
+        for (const LabelKind kind : {LabelKind::object, LabelKind::group, LabelKind::material})
+            end(currents_[static_cast<std::size_t>(kind)], kind, triangles);
         return maker_.finish();
     }
 
@@ -110,7 +134,6 @@ private:
         std::vector<std::string_view> names;
         std::size_t first = 0;
     };
-    Current& of(LabelKind kind) { return kind == LabelKind::object ? object_ : material_; }
     void end(Current& current, LabelKind kind, std::size_t triangles)
     {
         for (const std::string_view name : current.names)
@@ -119,28 +142,47 @@ private:
         current.first = triangles;
     }
 
-    Current object_, groups_, material_;
+    std::array<Current, 5> currents_;  ///< by kind
     LabelMaker maker_;
 };
 
+/// What lines say.
 class Reader {
 public:
+    /// is_first: no lines stand before those that are read.
+    explicit Reader(bool is_first) : is_first_(is_first) {}
+
+    void read(TextCursor& cursor)
+    {
+        while (cursor.next_line())
+            read_line(cursor);
+    }
+
+    /// Appends what the next lines say.
+    void append(const Reader& more)
+    {
+        for (NameLine line : more.names) {
+            line.triangles += triangle_count();
+            names.push_back(std::move(line));
+        }
+        normals.append(more.normals, polygons.corners.size());
+        uvs.append(more.uvs, polygons.corners.size());
+        positions.insert(positions.end(), more.positions.begin(), more.positions.end());
+        surfelao::append(polygons, more.polygons);
+        normals.close(polygons);
+        uvs.close(polygons);
+        libraries.insert(libraries.end(), more.libraries.begin(), more.libraries.end());
+        has_colors = has_colors || more.has_colors;
+        if (more.farthest_ > farthest_) {
+            farthest_ = more.farthest_;
+            farthest_line_ = more.farthest_line_;
+        }
+    }
+
     /// That the faces so far are cut into.
     [[nodiscard]] std::size_t triangle_count() const
     {
         return polygons.corners.size() - 2 * polygons.count();
-    }
-
-    void read_face(TextCursor& cursor)
-    {
-        std::uint32_t size = 0;
-        for (; !cursor.at_line_end(); ++size)
-            read_corner(cursor, cursor.word());
-        if (size < 3 && cursor.remaining() == 0)
-            cursor.fail("the file ends within a face of " + std::to_string(size) + " corners");
-        close_polygon(polygons, size);
-        normals.close(polygons);
-        uvs.close(polygons);
     }
 
     /// Faces may use what comes later: what there is is known at the end.
@@ -159,8 +201,47 @@ public:
     NamedValues<glm::vec3> normals;
     NamedValues<glm::dvec2> uvs;
     Polygons polygons;
+    std::vector<NameLine> names;
+    std::vector<std::string> libraries;  ///< what stands behind each `mtllib`
+    bool has_colors = false;             ///< at some vertex
 
 private:
+    void read_line(TextCursor& cursor)
+    {
+        const std::string_view statement = cursor.word();
+        if (statement == "v") {
+            positions.push_back(read_vertex(cursor, has_colors));
+        } else if (statement == "f" || statement == "fo") {
+            read_face(cursor);
+        } else if (statement == "vn") {
+            normals.values.push_back(read_normal(cursor));
+        } else if (statement == "vt") {
+            uvs.values.push_back(read_uv(cursor));
+        } else if (statement == "mtllib") {
+            libraries.emplace_back(cursor.rest_of_line());
+        } else if (statement == "g") {
+            NameLine& line = names.emplace_back(NameLine{LabelKind::group, {}, triangle_count()});
+            while (!cursor.at_line_end())
+                line.names.push_back(cursor.word());
+        } else if (statement == "o" || statement == "usemtl") {
+            names.push_back({statement == "o" ? LabelKind::object : LabelKind::material,
+                             {cursor.rest_of_line()},
+                             triangle_count()});
+        }
+    }
+
+    void read_face(TextCursor& cursor)
+    {
+        std::uint32_t size = 0;
+        for (; !cursor.at_line_end(); ++size)
+            read_corner(cursor, cursor.word());
+        if (size < 3 && cursor.remaining() == 0)
+            cursor.fail("the file ends within a face of " + std::to_string(size) + " corners");
+        close_polygon(polygons, size);
+        normals.close(polygons);
+        uvs.close(polygons);
+    }
+
     /// `v`, `v/vt`, `v//vn` or `v/vt/vn`
     void read_corner(const TextCursor& cursor, std::string_view word)
     {
@@ -172,15 +253,15 @@ private:
         const std::string_view rest = word.substr(slash + 1);
         const std::size_t second = rest.find('/');
         if (const std::string_view uv = rest.substr(0, second); !uv.empty())
-            uvs.read(cursor, corner, uv);
+            uvs.read(cursor, corner, uv, is_first_);
         if (second != std::string_view::npos && second + 1 < rest.size())
-            normals.read(cursor, corner, rest.substr(second + 1));
+            normals.read(cursor, corner, rest.substr(second + 1), is_first_);
     }
 
     std::uint32_t read_vertex_index(const TextCursor& cursor, std::string_view word)
     {
         const std::int64_t number = cursor.integer_of(word);
-        const std::int64_t index = index_of(number, positions.size());
+        const std::int64_t index = index_of(number, {positions.size(), is_first_});
         if (index < 0)
             cursor.fail("the face uses vertex " + std::to_string(number) + ", but " +
                         (number == 0 ? "vertices are counted from 1"
@@ -193,9 +274,35 @@ private:
         return static_cast<std::uint32_t>(index);  // one beyond 32 bits is refused as the farthest
     }
 
+    bool is_first_;
     std::int64_t farthest_ = -1;  ///< the largest vertex in use
     std::uint64_t farthest_line_ = 0;
 };
+
+/// All lines, by all threads; where they count back, by one.
+Reader read_lines(const std::string& file_name, std::string_view text)
+{
+    const TextCursor start(file_name, text, kObjRules);
+    const std::vector<table::RowRange> ranges = table::line_ranges(start);
+    std::vector<Reader> readers;
+    for (std::size_t i = 0; i < ranges.size(); ++i)
+        readers.emplace_back(i == 0);
+    try {
+        table::for_each_in_order(ranges.size(), [&](std::size_t i) {
+            const std::size_t end = i + 1 < ranges.size() ? ranges[i + 1].offset : text.size();
+            TextCursor lines = start.part(ranges[i].offset, end, ranges[i].line);
+            readers[i].read(lines);
+        });
+    } catch (const CountsBack&) {
+        Reader reader(true);
+        TextCursor lines = start;
+        reader.read(lines);
+        return reader;
+    }
+    for (std::size_t i = 1; i < readers.size(); ++i)
+        readers.front().append(std::exchange(readers[i], Reader(false)));
+    return std::move(readers.front());
+}
 
 }  // namespace
 
@@ -204,28 +311,12 @@ Scene read_obj(const std::string& file_name, std::string contents)
     const auto source = std::make_shared<ObjSource>();
     source->folder = std::filesystem::absolute(file_name).parent_path();
     source->text = std::move(contents);
-    Reader reader;
+    Reader reader = read_lines(file_name, source->text);
+    source->has_colors = reader.has_colors;
+    source->libraries = std::move(reader.libraries);
     FaceNames names;
-    TextCursor cursor(file_name, source->text, kObjRules);
-    while (cursor.next_line()) {
-        const std::string_view statement = cursor.word();
-        if (statement == "v") {
-            reader.positions.push_back(read_vertex(cursor, *source));
-        } else if (statement == "f" || statement == "fo") {
-            reader.read_face(cursor);
-        } else if (statement == "vn") {
-            reader.normals.values.push_back(read_normal(cursor));
-        } else if (statement == "vt") {
-            reader.uvs.values.push_back(read_uv(cursor));
-        } else if (statement == "mtllib") {
-            source->libraries.emplace_back(cursor.rest_of_line());
-        } else if (statement == "g") {
-            names.set_groups(cursor, reader.triangle_count());
-        } else if (statement == "o" || statement == "usemtl") {
-            names.set(statement == "o" ? LabelKind::object : LabelKind::material,
-                      cursor.rest_of_line(), reader.triangle_count());
-        }
-    }
+    for (const NameLine& line : reader.names)
+        names.set(line);
     reader.finish(file_name);
     const std::uint64_t lost_normals = reader.normals.lost, lost_uvs = reader.uvs.lost;
     source->vertex_count = reader.positions.size();

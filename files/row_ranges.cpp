@@ -1,36 +1,72 @@
 #include "files/row_ranges.h"
 
 #include <algorithm>
+#include <string_view>
 
 namespace surfelao::table {
+namespace {
+
+/// Without a branch, so that many bytes are looked at in one step.
+template <class IsCounted>
+std::uint64_t count_bytes(std::string_view text, const IsCounted& is_counted)
+{
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i + 1 < text.size(); ++i)
+        count += is_counted(text[i], text[i + 1]) ? 1 : 0;
+    return count;
+}
+
+/// How many lines end in a text after which a line begins.
+std::uint64_t line_ends(std::string_view text)
+{
+    const bool ends_with_one = !text.empty() && (text.back() == '\n' || text.back() == '\r');
+    return count_bytes(text,
+                       [](char c, char next) { return c == '\n' || (c == '\r' && next != '\n'); }) +
+           (ends_with_one ? 1 : 0);
+}
+
+/// How many of the lines have a word.
+std::uint64_t count_rows(TextCursor lines)
+{
+    std::uint64_t rows = 0;
+    while (lines.next_line())
+        ++rows;
+    return rows;
+}
+
+}  // namespace
+
+std::vector<RowRange> line_ranges(const TextCursor& cursor)
+{
+    const std::string_view text = cursor.text();
+    std::vector<RowRange> ranges{{0, 0, cursor.offset(), cursor.line()}};
+    while (text.size() - ranges.back().offset > 2 * kRangeBytes)
+        ranges.push_back({0, 0, cursor.line_begin(ranges.back().offset + kRangeBytes), 0});
+    std::vector<std::uint64_t> lines(ranges.size(), 0);
+    tbb::parallel_for(std::size_t{1}, ranges.size(), [&](std::size_t i) {
+        const std::size_t begin = ranges[i - 1].offset;
+        lines[i] = line_ends(text.substr(begin, ranges[i].offset - begin));
+    });
+    for (std::size_t i = 1; i < ranges.size(); ++i)
+        ranges[i].line = ranges[i - 1].line + lines[i];
+    return ranges;
+}
 
 std::vector<RowRange> row_ranges(const TextCursor& cursor, std::uint64_t count)
 {
-    const std::size_t end = cursor.offset() + cursor.remaining();
-    std::vector<RowRange> ranges{{0, count, cursor.offset(), cursor.line()}};
-    while (end - ranges.back().offset > 2 * kRangeBytes)
-        ranges.push_back({0, count, cursor.line_begin(ranges.back().offset + kRangeBytes), 1});
-    if (ranges.size() == 1)
-        return ranges;
-    struct Counts {
-        std::uint64_t rows, lines;
-    };
-    std::vector<Counts> counts(ranges.size());
-    tbb::parallel_for(std::size_t{0}, ranges.size(), [&](std::size_t i) {
-        const std::size_t range_end = i + 1 < ranges.size() ? ranges[i + 1].offset : end;
-        TextCursor lines = cursor.part(ranges[i].offset, range_end, 0);
-        std::uint64_t rows = 0;
-        while (lines.next_line())
-            ++rows;
-        counts[i] = {rows, lines.line()};
+    std::vector<RowRange> ranges = line_ranges(cursor);
+    std::vector<std::uint64_t> rows(ranges.size(), 0);
+    tbb::parallel_for(std::size_t{1}, ranges.size(), [&](std::size_t i) {
+        const RowRange& before = ranges[i - 1];
+        rows[i] = count_rows(cursor.part(before.offset, ranges[i].offset, before.line));
     });
     std::size_t used = 1;
-    for (; used < ranges.size() && ranges[used - 1].first + counts[used - 1].rows < count; ++used) {
-        RowRange& before = ranges[used - 1];
-        before.end = ranges[used].first = before.first + counts[used - 1].rows;
-        ranges[used].line = before.line + counts[used - 1].lines;
+    while (used < ranges.size() && ranges[used - 1].first + rows[used] < count) {
+        ranges[used].first = ranges[used - 1].end = ranges[used - 1].first + rows[used];
+        ++used;
     }
     ranges.resize(used);
+    ranges.back().end = count;
     return ranges;
 }
 

@@ -100,6 +100,12 @@ public:
         return cursor;
     }
 
+    /// All of it, also what lies before the cursor.
+    [[nodiscard]] std::string_view text() const
+    {
+        return {begin_, static_cast<std::size_t>(end_ - begin_)};
+    }
+
     /// Byte position of the first line that begins behind `offset` and is not joined with the one
     /// before; the text's end where there is none.
     [[nodiscard]] std::size_t line_begin(std::size_t offset) const;

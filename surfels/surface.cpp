@@ -5,8 +5,6 @@
 #include "surfels/for_all.h"
 #include "surfels/owner_ranges.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
@@ -22,7 +20,6 @@ namespace surfelao {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kGrain = 4096;
 
 /// Of the faces around one place, how many are told apart exactly. More come together in the hubs
 /// of fans, whose faces take the normal of the kind that is nearest to theirs.
@@ -91,28 +88,28 @@ public:
 
         // where all are within half the angle of their mean, all are within the angle of each other
         const float half_cosine = std::cos(0.5f * glm::radians(crease));
-        is_bent_.assign(welded.size(), 0);
+        std::vector<std::uint8_t> is_bent(welded.size(), 0);
         for_all(faces.size(), [&](std::size_t t) {
             for (int corner = 0; corner < 3; ++corner) {
                 const std::uint32_t place = welded[geometry.triangles[t][corner]];
                 if (!(glm::dot(means_[place], faces[t].normal) >= half_cosine))
-                    std::atomic_ref(is_bent_[place]).store(1, std::memory_order_relaxed);
+                    std::atomic_ref(is_bent[place]).store(1, std::memory_order_relaxed);
             }
         });
-        std::vector<std::uint32_t> bend_of(welded.size(), kNone);  // number among those that are
-        std::uint32_t bends = 0;                                   // not all smooth
-        for (std::size_t place = 0; place < bend_of.size(); ++place) {
-            if (is_bent_[place] != 0)
-                bend_of[place] = bends++;
+        bend_of_.assign(welded.size(), kNone);
+        std::uint32_t bends = 0;
+        for (std::size_t place = 0; place < bend_of_.size(); ++place) {
+            if (is_bent[place] != 0)
+                bend_of_[place] = bends++;
         }
         if (bends > 0)
-            solve_bends(bend_of, bends);
+            solve_bends(bends);
     }
 
     /// Whether all corners at the place of a vertex have one normal, mean_at() of it.
     [[nodiscard]] bool is_smooth_at(std::uint32_t vertex) const
     {
-        return is_bent_[geometry_.welded[vertex]] == 0 && mean_at(vertex) != glm::vec3(0.0f);
+        return bend_of_[geometry_.welded[vertex]] == kNone && mean_at(vertex) != glm::vec3(0.0f);
     }
     [[nodiscard]] glm::vec3 mean_at(std::uint32_t vertex) const
     {
@@ -122,42 +119,46 @@ public:
     [[nodiscard]] glm::vec3 at(std::size_t triangle, int corner) const
     {
         const std::uint32_t vertex = geometry_.triangles[triangle][corner];
-        if (is_smooth_at(vertex))
+        const std::uint32_t bend = bend_of_[geometry_.welded[vertex]];
+        if (bend == kNone)
             return mean_at(vertex);
         const std::uint32_t index =
             static_cast<std::uint32_t>(3 * triangle) + static_cast<std::uint32_t>(corner);
-        const auto bent = std::ranges::lower_bound(bent_corners_, index);
-        if (bent != bent_corners_.end() && *bent == index)
-            return bent_normals_[static_cast<std::size_t>(bent - bent_corners_.begin())];
-        return mean_at(vertex);
+        const std::span<const std::uint32_t> corners = (*bends_)[bend];
+        return bent_normals_[first_of(corners) +
+                             static_cast<std::size_t>(std::ranges::lower_bound(corners, index) -
+                                                      corners.begin())];
     }
 
 private:
-    void solve_bends(const std::vector<std::uint32_t>& bend_of, std::uint32_t bends)
+    void solve_bends(std::uint32_t bends)
     {
-        const Buckets<std::uint32_t> around(bends, [&](const auto& put) {
+        bends_.emplace(bends, [&](const auto& put) {
             for (std::uint32_t t = 0; t < faces_.size(); ++t) {
                 for (std::uint32_t corner = 0; corner < 3; ++corner) {
-                    const std::uint32_t bend =
-                        bend_of[geometry_.welded[geometry_.triangles[t][static_cast<int>(corner)]]];
+                    const std::uint32_t vertex = geometry_.triangles[t][static_cast<int>(corner)];
+                    const std::uint32_t bend = bend_of_[geometry_.welded[vertex]];
                     if (bend != kNone)
                         put(bend, 3 * t + corner);
                 }
             }
         });
-        std::vector<std::pair<std::uint32_t, glm::vec3>> solved;
-        for (std::uint32_t bend = 0; bend < bends; ++bend)
-            solve_bend(around[bend], solved);
-        std::ranges::sort(solved, {}, &std::pair<std::uint32_t, glm::vec3>::first);
-        for (const auto& [corner, normal] : solved) {
-            bent_corners_.push_back(corner);
-            bent_normals_.push_back(normal);
-        }
+        const std::span<const std::uint32_t> last = (*bends_)[bends - 1];
+        bent_normals_.resize(first_of(last) + last.size());
+        for_all(bends, [&](std::size_t bend) {
+            const std::span<const std::uint32_t> corners = (*bends_)[bend];
+            solve_bend(corners, bent_normals_.data() + first_of(corners));
+        });
     }
 
-    /// The corners at one place.
-    void solve_bend(std::span<const std::uint32_t> corners,
-                    std::vector<std::pair<std::uint32_t, glm::vec3>>& solved) const
+    /// Which of all corners at bends is the first of these.
+    [[nodiscard]] std::size_t first_of(std::span<const std::uint32_t> corners) const
+    {
+        return static_cast<std::size_t>(corners.data() - (*bends_)[0].data());
+    }
+
+    /// The corners at one place, and the first of their normals.
+    void solve_bend(std::span<const std::uint32_t> corners, glm::vec3* solved) const
     {
         struct Kind {
             glm::vec3 normal;
@@ -194,16 +195,17 @@ private:
             normals.push_back(direction_of(sum, weight, own.normal));
         }
         for (std::size_t i = 0; i < corners.size(); ++i)
-            solved.emplace_back(corners[i], normals[kind_of[i]]);
+            solved[i] = normals[kind_of[i]];
     }
 
     const Geometry& geometry_;
     const std::vector<Face>& faces_;
     float crease_cosine_;
-    std::vector<glm::vec3> means_;             ///< per place, over all faces
-    std::vector<std::uint8_t> is_bent_;        ///< per place: some face is far from the mean
-    std::vector<std::uint32_t> bent_corners_;  ///< rising: corners whose normal is another one
-    std::vector<glm::vec3> bent_normals_;
+    std::vector<glm::vec3> means_;        ///< per place, over all faces
+    std::vector<std::uint32_t> bend_of_;  ///< per place: its number among those that are not all
+                                          ///< smooth, or kNone
+    std::optional<Buckets<std::uint32_t>> bends_;  ///< their corners, rising
+    std::vector<glm::vec3> bent_normals_;          ///< of these
 };
 
 /// Gives wedges to corners in rising order.
@@ -388,11 +390,7 @@ std::vector<Receiver> receivers_at(const Geometry& geometry, const Surface& surf
         const float height = offset_at(geometry, point.triangle, offset);
         return Receiver{a + (point.at.x * b + point.at.y * c) + side * height * up, normal, height};
     };
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), kGrain),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i)
-                              receivers[i] = place(points[i]);
-                      });
+    for_all(points.size(), [&](std::size_t i) { receivers[i] = place(points[i]); });
     return receivers;
 }
 

@@ -3,8 +3,8 @@
 
     measure.py BUILD [PART...]      parts: frontier frontier_avx2 scaling stability gpu drawing
                                     readers foreign stated family demo viewers atlas maps
-                                    map_frontier clouds clouds_pcv subdivide pixels origin cubes screen moving
-                                    grids gridpictures;
+                                    map_frontier clouds clouds_pcv subdivide pixels origin cubes
+                                    screen moving grids gridpictures whole_job;
                                     default: all, about an hour on two quiet cores
 
 Every part is one file that says what command made it, of which version and commit, on what
@@ -29,6 +29,7 @@ import time
 
 sys.dont_write_bytecode = True
 import pixel_origin  # noqa: E402
+import whole_job  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 TRIAL = bool(os.environ.get("SURFELAO_TRIAL"))
@@ -230,6 +231,15 @@ def part_scaling(build):
         result[engine] = {"exponent": float(re.search(r"vertices\^([\d.]+)", text).group(1)),
                           "rows": tables_of(text)[0]}
     return result
+
+
+def part_whole_job(build):
+    sizes = ["20000"] if TRIAL else ["200000", "1000000", "10000000"]
+    files = [] if TRIAL else [SHARED / "stanford_dragon_res2.ply", SHARED / "skull.obj"]
+    if absent := [file.stem for file in files if not file.exists()]:
+        raise Absent(f"no {', '.join(absent)} (SURFELAO_MODELS)")
+    return {**provenance(build, f"whole_job.py {' '.join([*(file.stem for file in files), *sizes])}"),
+            "rows": whole_job.measure(build, [*map(str, files), *sizes])}
 
 
 def part_stability(build):
@@ -563,7 +573,7 @@ PARTS = {"frontier": part_frontier, "frontier_avx2": part_frontier_avx2, "scalin
          "clouds_pcv": part_clouds_pcv,
          "pixels": part_pixels, "origin": part_origin, "cubes": part_cubes,
          "screen": part_screen, "moving": part_moving, "grids": part_grids,
-         "gridpictures": part_gridpictures,
+         "gridpictures": part_gridpictures, "whole_job": part_whole_job,
          "subdivide": part_subdivide}
 
 
