@@ -9,6 +9,7 @@ namespace surfelao {
 namespace {
 
 constexpr std::size_t kRowsEach = 4096;
+constexpr int kColumns = 4;
 
 /// Calls body(row) for all rows.
 template <class Body>
@@ -26,14 +27,17 @@ void for_rows(std::size_t count, const Body& body)
         tbb::parallel_for(std::size_t{0}, blocks, block);
 }
 
+/// Per column: r.r and r.z of a residual r and of z, which the preconditioner makes of it.
+using Residual = Eigen::Array<double, kColumns, 2>;
+
 /// The sum of term(row) over all rows, in an order that does not depend on threads.
-template <class Term>
-Eigen::Array4d sum_over_rows(std::size_t count, const Term& term)
+template <class Sum, class Term>
+Sum sum_over_rows(std::size_t count, const Term& term)
 {
-    std::vector<Eigen::Array4d> sums((count + kRowsEach - 1) / kRowsEach, Eigen::Array4d::Zero());
-    for_rows(count, [&](std::size_t row) { sums[row / kRowsEach] += term(row); });
-    Eigen::Array4d whole = Eigen::Array4d::Zero();
-    for (const Eigen::Array4d& sum : sums)
+    std::vector<Sum> sums((count + kRowsEach - 1) / kRowsEach, Sum::Zero());
+    for_rows(count, [&](std::size_t row) { term(row, sums[row / kRowsEach]); });
+    Sum whole = Sum::Zero();
+    for (const Sum& sum : sums)
         whole += sum;
     return whole;
 }
@@ -79,33 +83,36 @@ void conjugate_gradients(const NormalEquations& matrix, const FourColumns& right
     const std::size_t count = matrix.size();
     const std::vector<float> inverse = inverse_diagonal(matrix);
     FourColumns rest(count), step(count), image(count);
+    const auto add_residual = [&](std::size_t row, Residual& sum) {
+        sum.col(0) += product(rest[row], rest[row]);
+        sum.col(1) += product(rest[row], inverse[row] * rest[row]);
+    };
     const Eigen::Array4d enough =
         tolerance * tolerance *
-        sum_over_rows(count, [&](std::size_t row) { return product(right[row], right[row]); });
-    Eigen::Array4d along = sum_over_rows(count, [&](std::size_t row) {
+        sum_over_rows<Eigen::Array4d>(count, [&](std::size_t row, Eigen::Array4d& sum) {
+            sum += product(right[row], right[row]);
+        });
+    Residual residual = sum_over_rows<Residual>(count, [&](std::size_t row, Residual& sum) {
         rest[row] = right[row] - row_times(matrix, row, x);
         step[row] = inverse[row] * rest[row];
-        return product(rest[row], step[row]);
+        add_residual(row, sum);
     });
-    for (int i = 0; i < most_steps; ++i) {
-        const Eigen::Array4d bend = sum_over_rows(count, [&](std::size_t row) {
-            image[row] = row_times(matrix, row, step);
-            return product(step[row], image[row]);
-        });
-        const Eigen::Array4f length = quotient(along, bend);
-        const Eigen::Array4d left = sum_over_rows(count, [&](std::size_t row) {
+    for (int i = 0; i < most_steps && (residual.col(0) > enough).any(); ++i) {
+        const auto bend =
+            sum_over_rows<Eigen::Array4d>(count, [&](std::size_t row, Eigen::Array4d& sum) {
+                image[row] = row_times(matrix, row, step);
+                sum += product(step[row], image[row]);
+            });
+        const Eigen::Array4f length = quotient(residual.col(1), bend);
+        const auto next = sum_over_rows<Residual>(count, [&](std::size_t row, Residual& sum) {
             x[row] += length * step[row];
             rest[row] -= length * image[row];
-            return product(rest[row], rest[row]);
+            add_residual(row, sum);
         });
-        if ((left <= enough).all())
-            return;
-        const Eigen::Array4d next = sum_over_rows(
-            count, [&](std::size_t row) { return product(rest[row], inverse[row] * rest[row]); });
-        const Eigen::Array4f turn = quotient(next, along);
+        const Eigen::Array4f turn = quotient(next.col(1), residual.col(1));
         for_rows(count,
                  [&](std::size_t row) { step[row] = inverse[row] * rest[row] + turn * step[row]; });
-        along = next;
+        residual = next;
     }
 }
 

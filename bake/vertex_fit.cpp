@@ -143,6 +143,14 @@ struct VertexFit::Impl {
         return {1.0 - at.x - at.y, at.x, at.y, 0.0};
     }
 
+    float weight_of(std::uint32_t sample, std::uint32_t corner) const
+    {
+        if (sample < samples.quad_weights.size())
+            return samples.quad_weights[sample][static_cast<int>(corner)];
+        const glm::vec2 at = samples.points[sample].at;
+        return corner == 0 ? 1.0f - at.x - at.y : corner == 1 ? at.x : at.y;
+    }
+
     /// Calls visit(sample) for those of a cell.
     template <class Visit>
     void for_each_sample(std::uint32_t cell, const Visit& visit) const
@@ -266,21 +274,19 @@ Channels VertexFit::Impl::channels_of(std::span<const Occlusion> answers) const
     const Buckets<std::uint32_t>& corners = equations().corners;
     Channels channels{FourColumns(unknown_count), FourColumns(unknown_count)};
     in_blocks(unknown_count, [&](std::size_t unknown) {
-        glm::dvec4 sum(0.0);
-        double weights = 0.0;
+        Eigen::Array4f sum = Eigen::Array4f::Zero();
+        float weights = 0.0f;
         for (const std::uint32_t at : corners[unknown]) {
             for_each_sample(at / 4, [&](std::uint32_t s) {
                 const Occlusion& answer = answers[s];
-                const double weight =
-                    static_cast<double>(samples.areas[s]) * weights_of(s)[static_cast<int>(at % 4)];
-                sum += weight *
-                       glm::dvec4((1.0f - answer.occlusion) * answer.bent_normal, answer.occlusion);
+                const glm::vec3 bent = (1.0f - answer.occlusion) * answer.bent_normal;
+                const float weight = samples.areas[s] * weight_of(s, at % 4);
+                sum += weight * Eigen::Array4f(bent.x, bent.y, bent.z, answer.occlusion);
                 weights += weight;
             });
         }
-        const Eigen::Array4d sums(sum.x, sum.y, sum.z, sum.w);
-        channels.right[unknown] = sums.cast<float>();
-        channels.values[unknown] = (sums / weights).cast<float>();
+        channels.right[unknown] = sum;
+        channels.values[unknown] = sum / std::max(weights, std::numeric_limits<float>::min());
     });
     return channels;
 }
