@@ -263,11 +263,15 @@ bool choose_how(Cell& cell, std::map<Engine, float>& qualities)
 bool edit_how(Cell& cell)
 {
     bool apply = false;
-    if (!cell.screen)
-        apply = edit_engine(cell.settings.engine);
-    else if (!cell.from_maps)  // horizons are those of the thesis
-        apply = edit_screen(*cell.screen) | edit_guard(cell.guard);
-    return apply | (cell.grid && edit_grid(*cell.grid));
+    if (!cell.screen) {
+        apply |= edit_engine(cell.settings.engine);
+    } else if (!cell.from_maps) {  // horizons are those of the thesis
+        apply |= edit_screen(*cell.screen);
+        apply |= edit_guard(cell.guard);
+    }
+    if (cell.grid)
+        apply |= edit_grid(*cell.grid);
+    return apply;
 }
 
 }  // namespace surfelao

@@ -106,6 +106,8 @@ void CubeLayer::ask(const Session& session, const Cell& cell)
 {
     Asked wanted{cell.settings.engine, cell.screen};
     wanted.engine.definition = session.definition();
+    if (wanted.horizon)
+        wanted.engine.definition.ground.reset();  // pictures do not know it
     if (asked_ == wanted || (!wanted.horizon && !session.can_be_asked(wanted.engine)))
         return;
     asked_ = wanted;
@@ -136,10 +138,12 @@ void CubeLayer::answer_next(Shot& shot, const Session& session)
             {shot.model(), asked_->engine, session.shared_engine(asked_->engine), place.sight});
         return;
     }
+    if (!screen_)
+        screen_.emplace(context_);
     Occluders nobody(model.occluding());
     CubeSeconds unused;
     take(make_cube_map(
-        {context_, *model.mesh, shot.mesh(), nobody, screen_}, place.centre,
+        {context_, *model.mesh, shot.mesh(), nobody, *screen_}, place.centre,
         {.engine = *asked_->horizon, .definition = asked_->engine.definition, .offset = offset},
         unused));
 }

@@ -26,7 +26,7 @@ namespace surfelao {
 /// In one thread, the context's.
 class CubeLayer {
 public:
-    explicit CubeLayer(const GlContext& context) : context_(context), screen_(context) {}
+    explicit CubeLayer(const GlContext& context) : context_(context) {}
 
     void forget();  ///< all maps: of another model
     /// Whether a picture may show something else than before.
@@ -83,7 +83,7 @@ private:
     void forget_coverage();
 
     const GlContext& context_;
-    ScreenSpace screen_;
+    std::optional<ScreenSpace> screen_;  ///< of horizons; empty until it is wanted
     std::vector<Place> places_;
     std::optional<Asked> asked_;
     std::optional<CubeProjector> projector_;

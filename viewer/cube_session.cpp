@@ -1,7 +1,6 @@
 #include "viewer/cube_session.h"
 
 #include <exception>
-#include <functional>
 #include <utility>
 
 namespace surfelao {

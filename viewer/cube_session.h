@@ -10,6 +10,7 @@
 #include "viewer/own_engine.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>

@@ -96,7 +96,7 @@ void FilePanel::open_list(const FileLists& files, FileWishes& wishes)
             if (ImGui::Checkbox("##on", &on))
                 wishes.turn = file;
             ImGui::EndDisabled();
-            tip("whether it is in the world; one file is");
+            tip("whether it is in this world; the last one stays");
             ImGui::SameLine();
         }
         const ImGuiStyle& style = ImGui::GetStyle();

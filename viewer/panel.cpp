@@ -155,24 +155,29 @@ bool drags(ImGuiMouseButton button)
     return ImGui::IsMouseDown(button) && !ImGui::IsMouseClicked(button);
 }
 
-/// What is on which side, and the line between.
-void place_labels(float x, const char* left, const char* right)
+/// What is on which side of a line at x, and that line. from: where the pictures begin.
+void place_labels(float from, float x, const char* left, const char* right)
 {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     const ImU32 color = IM_COL32(255, 255, 255, 150);
-    const float margin = 8.0f * ImGui::GetIO().FontGlobalScale;
-    list.AddLine(ImVec2(x, 0.0f), ImVec2(x, ImGui::GetIO().DisplaySize.y), color,
-                 ImGui::GetIO().FontGlobalScale);
-    const auto label = [&](float from, const char* text) {
-        const ImVec2 size = ImGui::CalcTextSize(text);
+    const float scale = ImGui::GetIO().FontGlobalScale, margin = 8.0f * scale;
+    const ImVec2 display = ImGui::GetIO().DisplaySize;
+    list.AddLine(ImVec2(x, 0.0f), ImVec2(x, display.y), color, scale);
+    // on several lines where the picture is narrow
+    const auto label = [&](float low, float high, bool ends, const char* text) {
+        const float room = high - low - 2.0f * margin;
+        if (room < 3.0f * ImGui::GetFontSize())
+            return;
+        const ImVec2 size = ImGui::CalcTextSize(text, nullptr, false, room);
+        const ImVec2 at(ends ? high - margin - size.x : low + margin, margin);
         const float around = 0.5f * margin;
-        list.AddRectFilled(ImVec2(from - around, margin - around),
-                           ImVec2(from + size.x + around, margin + size.y + around),
+        list.AddRectFilled(ImVec2(at.x - around, at.y - around),
+                           ImVec2(at.x + size.x + around, at.y + size.y + around),
                            IM_COL32(0, 0, 0, 160), around);
-        list.AddText(ImVec2(from, margin), IM_COL32_WHITE, text);
+        list.AddText(nullptr, 0.0f, at, IM_COL32_WHITE, text, nullptr, room);
     };
-    label(x - margin - ImGui::CalcTextSize(left).x, left);
-    label(x + margin, right);
+    label(from, x, true, left);
+    label(x, display.x, false, right);
 }
 
 }  // namespace
@@ -265,7 +270,7 @@ PanelInput Panel::build(PanelState& state, const CellView& left_view, const Cell
     const float line =
         left + (display.x - left) * (state.beside == Beside::wipe ? state.wipe : 0.5f);
     if (state.beside != Beside::nothing)
-        place_labels(line, figures.labels.left.c_str(), figures.labels.right.c_str());
+        place_labels(left, line, figures.labels.left.c_str(), figures.labels.right.c_str());
     const bool is_modal = figures.question || files_.is_choosing();
     input.flies = state.flight.is_on && !is_modal && !ImGui::GetIO().WantTextInput;
     if (state.inspects && !is_modal && session.state().model) {
@@ -469,7 +474,8 @@ void Panel::widgets(PanelState& state, const CellView& left, const CellView* rig
             input.solve_again |= ImGui::SmallButton("solve");
             tip("solves it after all");
         }
-        stage_lines(shown_state);
+        if (shown_state.model)
+            stage_lines(shown_state);
         if (state.left.from_maps)
             input.place_maps |= map_lines(left);
         else if (state.left.grid)

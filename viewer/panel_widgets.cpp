@@ -350,7 +350,10 @@ void cell_progress(const CellView& view)
     if (session.solving() && !session.opening())
         progress_line(!session.state().is_solved ? "draft" : "solving", session.solve_progress());
     if (const std::optional<double> done = view.pixel_progress())
-        progress_line("pixels", *done);
+        progress_line(view.cubes().is_busy()  ? "cube maps"
+                      : view.grid().is_busy() ? "cells"
+                                              : "pixels",
+                      *done);
 }
 
 void error_lines(const ShownError& error)

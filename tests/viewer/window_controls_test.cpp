@@ -135,6 +135,7 @@ std::vector<Start> starts()
     all[2] = {"screen-", {}, data / "room.obj"};
     all[2].panel.left.at_pixels = true;
     all[2].panel.left.screen = screen_settings(ScreenMethod::vo, 24);
+    all[2].panel.left.settings.max_distance = {10.0, true};
     all[2].panel.beside = Beside::wipe;
     all[3] = {"animated-", {}, data / "robot.glb"};
     all[4] = {"nothing-", {}, {}};
