@@ -27,6 +27,16 @@ glm::vec3 moved_normal(const glm::dmat3& matrix, glm::vec3 normal)
     return length > 0.0 ? glm::vec3(there / length) : glm::vec3(0.0f);
 }
 
+/// Columns: two edges of a triangle and its unit normal.
+glm::dmat3 basis_of(const std::vector<glm::vec3>& positions, const glm::uvec3& t)
+{
+    const glm::dvec3 first(positions[t.y] - positions[t.x]),
+        second(positions[t.z] - positions[t.x]);
+    const glm::dvec3 normal = glm::cross(first, second);
+    const double length = glm::length(normal);
+    return {first, second, length > 0.0 ? normal / length : glm::dvec3(0.0)};
+}
+
 }  // namespace
 
 Scene read_rest(const std::filesystem::path& input, const ReadOptions& reading)
@@ -94,6 +104,33 @@ void include(const Scene& scene, const std::vector<PartPose>& poses,
             for (int corner = 0; corner < 3; ++corner)
                 box.include(scene.positions[scene.triangles[t][corner]]);
         }
+    }
+}
+
+void follow_triangles(const std::vector<glm::vec3>& made_positions,
+                      const std::vector<glm::vec3>& made_normals, Mesh& mesh)
+{
+    std::vector<glm::dvec3> sums(made_normals.size(), glm::dvec3(0.0));
+    for (std::size_t t = 0; t < mesh.geometry.triangles.size(); ++t) {
+        const glm::uvec3 triangle = mesh.geometry.triangles[t];
+        const glm::dmat3 from = basis_of(made_positions, triangle);
+        const glm::dmat3 to = basis_of(mesh.geometry.positions, triangle);
+        const double area = glm::length(glm::cross(to[0], to[1]));
+        if (!(area > 0.0))
+            continue;
+        const glm::dmat3 turn = glm::inverse(glm::transpose(to)) * glm::transpose(from);
+        for (int corner = 0; corner < 3; ++corner) {
+            const std::uint32_t wedge = mesh.surface.corners[t][corner];
+            const glm::dvec3 normal = turn * glm::dvec3(made_normals[wedge]);
+            const double length = glm::length(normal);
+            if (length > 0.0)
+                sums[wedge] += area / length * normal;
+        }
+    }
+    for (std::size_t wedge = 0; wedge < sums.size(); ++wedge) {
+        const double length = glm::length(sums[wedge]);
+        if (length > 0.0)
+            mesh.surface.normals[wedge] = glm::vec3(sums[wedge] / length);
     }
 }
 

@@ -30,4 +30,9 @@ void move_scene(const Scene& rest, const Motion& motion, const std::vector<PartP
 void include(const Scene& scene, const std::vector<PartPose>& poses,
              const std::vector<bool>& left_out, Box& box);
 
+/// Normals of wedges after their triangles have moved: each triangle takes them along (as the
+/// inverse transpose of its own motion does), the mean by area counts.
+void follow_triangles(const std::vector<glm::vec3>& made_positions,
+                      const std::vector<glm::vec3>& made_normals, Mesh& mesh);
+
 }  // namespace surfelao

@@ -1,41 +1,19 @@
 #include "cli/cube_options.h"
 
 #include "cli/commands.h"
+#include "cli/engine_options.h"
 #include "cli/value_checks.h"
 #include "pixels/cube_placement.h"
 
 #include <CLI/CLI.hpp>
 
 #include <charconv>
-#include <cmath>
 #include <string_view>
 
 namespace surfelao {
 namespace {
 
 constexpr int kMostAutomatic = 1024;
-
-[[noreturn]] void refuse_place(const std::string& text)
-{
-    throw UsageError("--cubemap: \"" + text + "\" is not X:Y:Z.");
-}
-
-glm::dvec3 cube_place_of(const std::string& text)
-{
-    glm::dvec3 place(0.0);
-    std::string_view rest = text;
-    for (int axis = 0; axis < 3; ++axis) {
-        const std::string_view part = rest.substr(0, axis < 2 ? rest.find(':') : rest.npos);
-        const auto [end, error] =
-            std::from_chars(part.data(), part.data() + part.size(), place[axis]);
-        if (error != std::errc() || end != part.data() + part.size() || !std::isfinite(place[axis]))
-            refuse_place(text);
-        if (axis < 2 && part.size() == rest.size())
-            refuse_place(text);
-        rest.remove_prefix(std::min(part.size() + 1, rest.size()));
-    }
-    return place;
-}
 
 /// "auto" or "auto:N"
 int most_of(const std::string& placement)
@@ -102,7 +80,7 @@ CubePlan cube_plan_of(const CubeOptions& options, const Frame& frame)
 {
     CubePlan plan;
     for (const std::string& text : options.places)
-        plan.centres.push_back((cube_place_of(text) - frame.centre) / frame.diagonal);
+        plan.centres.push_back((place_of(text, "--cubemap") - frame.centre) / frame.diagonal);
     if (options.placement == "camera") {
         plan.covered = kCoveredEnough;
     } else if (options.placement || options.places.empty()) {

@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -59,9 +60,6 @@ Length length_of(std::string_view text, const std::string& option)
     return length;
 }
 
-namespace {
-
-/// "1.5:0:-2"
 glm::dvec3 place_of(std::string_view text, const std::string& option)
 {
     glm::dvec3 place;
@@ -76,8 +74,6 @@ glm::dvec3 place_of(std::string_view text, const std::string& option)
     }
     return place;
 }
-
-}  // namespace
 
 void add_engine_options(CLI::App& command, EngineOptions& options,
                         const std::vector<std::string>& names)

@@ -5,6 +5,8 @@
 #include "engines/engine.h"
 #include "files/vertex_colors.h"
 
+#include <glm/vec3.hpp>
+
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +20,9 @@ namespace surfelao {
 
 /// "0.5" or "2%", above 0. Throws UsageError naming the option.
 [[nodiscard]] Length length_of(std::string_view text, const std::string& option);
+
+/// "1.5:0:-2", finite numbers. Throws UsageError naming the option.
+[[nodiscard]] glm::dvec3 place_of(std::string_view text, const std::string& option);
 
 /// What was asked for: empty where an option was not given.
 struct EngineOptions {

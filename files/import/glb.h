@@ -1,9 +1,9 @@
 /// glb.h: a scene of assimp as glTF 2.0.
 ///
 /// Kept: nodes and their names, meshes that several nodes use, normals, all texture coordinates,
-/// the first vertex colours, joints and weights (the rest pose alone, no animations, no morph targets), materials as
-/// far as materials.h says. Points and lines stand there as such. Cameras and lights are left out.
-/// World space is glTF's: metres where the file tells its unit, y up.
+/// the first vertex colours, joints and weights (the rest pose alone, no animations, no morph
+/// targets), materials as far as materials.h says. Points and lines stand there as such. Cameras
+/// and lights are left out. World space is glTF's: metres where the file tells its unit, y up.
 #pragma once
 
 #include "files/import/source_file.h"

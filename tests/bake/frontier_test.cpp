@@ -76,7 +76,7 @@ TEST(Frontier, AnErrorThatIsReachedOnFewScenesHasNoMedian)
         frontier.scenes.push_back(made_up_scene(4.0, 0.05, fine));
     const auto summary = [&] { return summary_of(frontier, Engine::disks, 0.010, Cost::solve); };
     EXPECT_TRUE(stands_for_all(summary()));
-    EXPECT_NE(html_of(frontier).find("<td>2 of 3</td><td>4</td>"), std::string::npos);
+    EXPECT_NE(html_of(frontier).find("<td>2 of 3</td><td>4.00</td>"), std::string::npos);
     frontier.scenes.push_back(made_up_scene(4.0, 0.05, 0.02));
     EXPECT_FALSE(stands_for_all(summary()));
     EXPECT_NE(html_of(frontier).find("<td>2 of 4</td><td>-</td>"), std::string::npos);
