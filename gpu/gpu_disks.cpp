@@ -4,6 +4,7 @@
 #include "gpu/draw.h"
 #include "gpu/receiver_grid.h"
 #include "gpu/rows.h"
+#include "tree/disks/correction.h"
 #include "tree/disks/gather.h"
 #include "tree/ground.h"
 #include "tree/receiver_groups.h"
@@ -32,12 +33,10 @@ struct Record {
     float flat_area = 0.0f;
     std::uint32_t next = 0;
     float area = 0.0f;
-    std::uint32_t first_chunk = 0;
+    std::uint32_t first_chunk = 0;  ///< of a surfel: 1 + its triangle, or 0
     std::uint32_t chunk_count = 0;
 };
 static_assert(sizeof(Record) == 48);
-
-constexpr float kSurfelRadius = -1.0f;
 
 /// Records that a receiver looks at in one draw: far below what any driver ends loops at, and more
 /// than nearly all receivers need.
@@ -53,6 +52,7 @@ constexpr glm::vec4 kAllVisible(0.0f, 0.0f, 0.0f, 1.0f);
 struct Records {
     std::vector<Record> records;
     std::vector<glm::uvec4> chunks;        ///< node, first and end record, 0
+    std::vector<glm::vec4> corners;        ///< two per triangle, as u_corners
     std::vector<std::uint32_t> of_surfel;  ///< record of each surfel
     std::uint32_t two_sided_from = 0;      ///< first record that occludes from both sides
 };
@@ -87,8 +87,14 @@ Records make_records(const Octree& octree)
             const Surfel& surfel = octree.surfels[node.first_surfel + k];
             const std::uint32_t record = self + 1 + k;
             result.of_surfel[node.first_surfel + k] = record;
-            result.records[record] = {surfel.position, kSurfelRadius, surfel.normal,
-                                      surfel.area,     record + 1,    surfel.area};
+            result.records[record] = {surfel.position, -1.0f - surfel.reach, surfel.normal,
+                                      surfel.area,     record + 1,           surfel.area};
+            if (surfel.reach > 0.0f) {
+                for (const glm::vec3& corner : surfel.corners)
+                    result.corners.emplace_back(corner, 0.0f);
+                result.records[record].first_chunk =
+                    static_cast<std::uint32_t>(result.corners.size() / 2);
+            }
         }
     }
     return result;
@@ -172,6 +178,7 @@ struct GpuDisks::Impl {
     const Octree& octree;
     Records records;
     TextureBuffer records_texture;
+    TextureBuffer corners;
     TextureBuffer chunks;
     VertexArray empty;
     mutable std::optional<Corrected> corrected;  ///< by the last solve
@@ -181,6 +188,7 @@ struct GpuDisks::Impl {
           octree(of),
           records(make_records(of)),
           records_texture(in, TexelFormat::rgba32ui, std::span<const Record>(records.records)),
+          corners(in, TexelFormat::rgba32f, std::span<const glm::vec4>(records.corners)),
           chunks(in, TexelFormat::rgba32ui, std::span<const glm::uvec4>(records.chunks)),
           empty(in)
     {
@@ -248,8 +256,7 @@ private:
         for (int pass = 1; pass < options_.passes; ++pass) {
             double change = 0.0;
             for (FarSide& side : sides) {
-                gather(side.gathered, correction_opening(options_.opening),
-                       0.5f * options_.definition.max_distance, nullptr, meter);
+                gather(side.gathered, beyond_settings(options_), nullptr, meter);
                 change += fit(side, pass == 1 ? 1.0f : kDamping);
             }
             average(sides);
@@ -268,8 +275,8 @@ private:
     }
 
     /// ground: what it covers of each slot (upload_ground), where it counts; else null.
-    void gather(GatherGrid& gathered, float opening, float max_distance,
-                const TextureBuffer* ground, ProgressMeter& meter)
+    void gather(GatherGrid& gathered, const GatherSettings& settings, const TextureBuffer* ground,
+                ProgressMeter& meter)
     {
         const bool bunnell = options_.definition.kernel == Kernel::bunnell;
         Program& program = scene_.context.program(
@@ -284,7 +291,9 @@ private:
         }
         program.set("u_records", scene_.records_texture);
         program.set("u_record_count", static_cast<int>(record_count()));
-        program.set("u_opening", opening);
+        program.set("u_corners", scene_.corners);
+        program.set("u_triangles", bunnell || settings.only_disks ? 0 : 1);
+        program.set("u_opening", settings.opening);
         program.set("u_far_front", (*visibility_)[0].color());
         if (two_sided_) {
             const std::uint32_t from = limited_ ? 0 : scene_.records.two_sided_from;
@@ -292,7 +301,7 @@ private:
             program.set("u_far_back", (*visibility_)[1].color());
         }
         if (limited_) {
-            program.set("u_max_distance", max_distance);
+            program.set("u_max_distance", settings.definition.max_distance);
             program.set("u_smooth", options_.definition.falloff == Falloff::smooth ? 1 : 0);
         }
         program.set("u_step_limit", kStepLimit);
@@ -359,8 +368,7 @@ private:
         std::optional<TextureBuffer> ground;
         if (options_.definition.ground)
             ground = upload_ground(scene_.context, options_.definition, groups, receivers);
-        gather(gathered, options_.opening, options_.definition.max_distance,
-               ground ? &*ground : nullptr, meter);
+        gather(gathered, gather_settings(options_), ground ? &*ground : nullptr, meter);
         const TextureBuffer slots = upload_slots(scene_.context, slots_of_receivers(groups, count));
         const Framebuffer rows = make_rows(scene_.context, count, {TexelFormat::rgba32f});
         Program& program = scene_.context.program("fullscreen.vert", "disks_result.frag");

@@ -2,6 +2,7 @@
 #include "disk_record.glsl"
 #include "receiver_grid.glsl"
 #include "rows.glsl"
+#include "triangle_moment.glsl"
 // disks_gather.frag: one fragment is one receiver; it walks the octree and sums what each disk covers.
 //
 // A draw takes a bounded number of steps and leaves off where it stands, for the next draw to go on:
@@ -14,6 +15,8 @@
 //              max_distance is finite; Kernel::bunnell; there is a ground
 // Reads        u_records         octree, 3 texels a record (disk_record.glsl)
 //              u_record_count
+//              u_corners         RGBA32F, 2 texels a triangle: from the centroid to two corners
+//              u_triangles       0: near triangles too are summed as disks (BUNNELL: always 0)
 //              u_two_sided_from  records from here on occlude from both sides   (TWO_SIDED)
 //              u_far_front       per record, in rows: FarVisibility of tree/disks/form_factor.h on the
 //                                side that the casting normal points to: slope.xyz constant
@@ -49,6 +52,8 @@
 
 uniform usamplerBuffer u_records;
 uniform int u_record_count;
+uniform samplerBuffer u_corners;
+uniform int u_triangles;
 uniform sampler2D u_far_front;
 uniform samplerBuffer u_receivers;
 uniform samplerBuffer u_groups;
@@ -120,7 +125,7 @@ void main()
             float distance  = sqrt(distance2) - group.w;
             // wholly below every receiver's horizon (rise_of_cone), or out of reach
             float along   = dot(offset, cone.xyz);
-            float top     = along * cone.w + rise + max(0.0, ball.w);
+            float top     = along * cone.w + rise + (ball.w < 0.0 ? -1.0 - ball.w : ball.w);
             float across2 = (distance2 - along * along) * cone_sin * cone_sin;
             bool  skip    = top < 0.0 && across2 < top * top;
 #if LIMITED
@@ -152,15 +157,12 @@ void main()
         float inverse2  = inverse * inverse / kPi;
         float at_receiver = max(0.0, dot(normal, w));
         float at_disk     = dot(shape.xyz, w);
-        float seen        = far_front.w + dot(far_front.xyz, w);
         float facing      = max(0.0, at_disk);
         float spread      = 0.25;
 #if TWO_SIDED
         if (at >= u_two_sided_from) {
             facing = abs(at_disk);
             spread = 0.5;
-            vec4 far_back = texelFetch(u_far_back, texel_of_index(at), 0);
-            seen = at_disk >= 0.0 ? seen : far_back.w + dot(far_back.xyz, w);
         }
 #endif
         float x = shape.w * inverse2;
@@ -174,6 +176,21 @@ void main()
         float flat_part   = x * facing * max(0.0, at_receiver + second * correction);
         float spread_part = max(0.0, all - x) * spread * at_receiver;
         float form_factor = at_receiver > 0.0 ? (flat_part + spread_part) / (1.0 + all) : 0.0;
+#endif
+        if (u_triangles != 0 && ball.w < 0.0 && links.z != 0u && x >= kNearDisk) {
+            int  corners = 2 * int(links.z - 1u);
+            vec3 moment  = moment_of_triangle(c, texelFetch(u_corners, corners).xyz,
+                                              texelFetch(u_corners, corners + 1).xyz, normal);
+            float cover  = dot(moment, normal);
+            form_factor  = facing > 0.0 ? abs(cover) : 0.0;
+            w            = unit_or_zero(cover < 0.0 ? -moment : moment);
+        }
+        float seen = far_front.w + dot(far_front.xyz, w);
+#if TWO_SIDED
+        if (at >= u_two_sided_from && at_disk < 0.0) {
+            vec4 far_back = texelFetch(u_far_back, texel_of_index(at), 0);
+            seen = far_back.w + dot(far_back.xyz, w);
+        }
 #endif
         form_factor *= clamp(seen, 0.0, 1.0);
         float weight = 1.0;

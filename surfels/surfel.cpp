@@ -13,30 +13,91 @@ namespace {
 /// A vertex that has given this much of its area away has nothing left but rounding.
 constexpr float kRest = 1e-5f;
 
-struct LargeTriangle {
-    glm::uvec3 corners;
-    double area;
+using Corners = std::array<glm::dvec3, 3>;
+
+/// A triangle whose area its corners cannot stand for.
+struct LoneTriangle {
+    glm::uvec3 vertices;
+    Corners corners;
 };
 
-/// The triangles above an area; of several over the same places only the first, as in
-/// Geometry::areas.
-std::vector<LargeTriangle> large_triangles(const Geometry& geometry, double area)
+double area_of(const Corners& corners)
 {
-    std::vector<LargeTriangle> large;
+    return 0.5 * glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+}
+
+glm::dvec3 normal_of(const Corners& corners)
+{
+    return glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+}
+
+/// From which corner its longest side leads to the next.
+int longest_side(const Corners& corners)
+{
+    int longest = 0;
+    for (int i = 1; i < 3; ++i) {
+        if (glm::distance(corners[i], corners[(i + 1) % 3]) >
+            glm::distance(corners[longest], corners[(longest + 1) % 3]))
+            longest = i;
+    }
+    return longest;
+}
+
+/// Large or long, but no sliver, of which there would be more and more pieces.
+bool is_to_cut(const Corners& corners, double largest)
+{
+    const int side = longest_side(corners);
+    const double length = glm::distance(corners[side], corners[(side + 1) % 3]);
+    const double area = area_of(corners);
+    return area > largest ||
+           (area > kLeastCut * largest && length > kLongestSide * std::sqrt(largest));
+}
+
+/// Of several over the same places only the first, as in Geometry::areas.
+std::vector<LoneTriangle> lone_triangles(const Geometry& geometry, double largest)
+{
+    std::vector<LoneTriangle> lone;
     std::set<std::array<std::uint32_t, 3>> places;
     for (const glm::uvec3 t : geometry.triangles) {
-        const glm::dvec3 a(geometry.positions[t.x]);
-        const glm::dvec3 b(geometry.positions[t.y]);
-        const glm::dvec3 c(geometry.positions[t.z]);
-        const double triangle_area = 0.5 * glm::length(glm::cross(b - a, c - a));
-        if (triangle_area <= area)
+        const Corners corners{geometry.positions[t.x], geometry.positions[t.y],
+                              geometry.positions[t.z]};
+        if (area_of(corners) == 0.0)
             continue;
+        const glm::vec3 normal(normal_of(corners));
         std::array place{geometry.welded[t.x], geometry.welded[t.y], geometry.welded[t.z]};
+        const bool sharp = std::ranges::any_of(place, [&](std::uint32_t vertex) {
+            return glm::dot(geometry.normals[vertex], normal) < kSharp;
+        });
+        if (!sharp && !is_to_cut(corners, largest))
+            continue;
         std::ranges::sort(place);
         if (places.insert(place).second)
-            large.push_back({t, triangle_area});
+            lone.push_back({t, corners});
     }
-    return large;
+    return lone;
+}
+
+/// Appends the triangle, or what it is cut into.
+void add_cells(const Corners& corners, double largest, const glm::vec3& normal,
+               std::vector<Surfel>& surfels)
+{
+    const int side = longest_side(corners);
+    const glm::dvec3 a = corners[side], b = corners[(side + 1) % 3], c = corners[(side + 2) % 3];
+    if (is_to_cut(corners, largest)) {
+        const glm::dvec3 middle = 0.5 * (a + b);
+        add_cells({a, middle, c}, largest, normal, surfels);
+        add_cells({middle, b, c}, largest, normal, surfels);
+        return;
+    }
+    const glm::dvec3 centroid = (a + b + c) / 3.0;
+    double reach = 0.0;
+    for (const glm::dvec3& corner : corners)
+        reach = std::max(reach, glm::distance(corner, centroid));
+    surfels.push_back({glm::vec3(centroid),
+                       static_cast<float>(area_of(corners)),
+                       normal,
+                       static_cast<float>(reach),
+                       {glm::vec3(a - centroid), glm::vec3(b - centroid)}});
 }
 
 }  // namespace
@@ -46,8 +107,7 @@ std::vector<Surfel> surfels_at_vertices(const Geometry& geometry)
     std::vector<Surfel> surfels;
     for (std::size_t v = 0; v < geometry.positions.size(); ++v) {
         if (geometry.areas[v] > 0.0f)
-            surfels.push_back(
-                {geometry.positions[v], geometry.areas[v], geometry.normals[v], 0.0f});
+            surfels.push_back({geometry.positions[v], geometry.areas[v], geometry.normals[v]});
     }
     return surfels;
 }
@@ -68,42 +128,26 @@ SurfelCloud surfels_of(const Geometry& geometry)
 
 SurfelCloud surfels_of(const Geometry& part, double largest)
 {
-    const std::vector<LargeTriangle> large = large_triangles(part, largest);
+    const std::vector<LoneTriangle> lone = lone_triangles(part, largest);
 
     // what the corners have left
     std::vector<float> areas = part.areas;
-    for (const LargeTriangle& triangle : large) {
+    for (const LoneTriangle& triangle : lone) {
         for (int corner = 0; corner < 3; ++corner)
-            areas[part.welded[triangle.corners[corner]]] -= static_cast<float>(triangle.area / 3.0);
+            areas[part.welded[triangle.vertices[corner]]] -=
+                static_cast<float>(area_of(triangle.corners) / 3.0);
     }
     SurfelCloud cloud;
     for (std::uint32_t v = 0; v < areas.size(); ++v) {
         if (areas[v] > kRest * part.areas[v]) {
-            cloud.surfels.push_back({part.positions[v], areas[v], part.normals[v], 0.0f});
+            cloud.surfels.push_back({part.positions[v], areas[v], part.normals[v]});
             cloud.vertices.push_back(v);
         }
     }
 
-    for (const LargeTriangle& triangle : large) {
-        const glm::dvec3 a(part.positions[triangle.corners.x]);
-        const glm::dvec3 b(part.positions[triangle.corners.y]);
-        const glm::dvec3 c(part.positions[triangle.corners.z]);
-        const glm::vec3 normal(glm::normalize(glm::cross(b - a, c - a)));
-        const int cells = static_cast<int>(std::ceil(std::sqrt(triangle.area / largest)));
-        const auto add = [&](double u, double v) {
-            cloud.surfels.push_back({glm::vec3(a + (b - a) * (u / cells) + (c - a) * (v / cells)),
-                                     static_cast<float>(triangle.area / cells / cells), normal,
-                                     0.0f});
-            cloud.vertices.push_back(triangle.corners.x);
-        };
-        // rows of cells that lie like the triangle, and between them those that stand on their tip
-        for (int v = 0; v < cells; ++v) {
-            for (int u = 0; u + v < cells; ++u) {
-                add(u + 1.0 / 3.0, v + 1.0 / 3.0);
-                if (u + v + 1 < cells)
-                    add(u + 2.0 / 3.0, v + 2.0 / 3.0);
-            }
-        }
+    for (const LoneTriangle& triangle : lone) {
+        add_cells(triangle.corners, largest, glm::vec3(normal_of(triangle.corners)), cloud.surfels);
+        cloud.vertices.resize(cloud.surfels.size(), triangle.vertices.x);
     }
     return cloud;
 }

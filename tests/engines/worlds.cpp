@@ -101,9 +101,8 @@ void add_open_worlds(Worlds& worlds)
 // rectangle might stand for both sides of an edge, 24 cells (halves of three make no power of two)
 // had 0.952, 0.981 and 0.992.
 // Disks: inside a sphere each subtends its share of the sphere's area whatever the place, so the
-// sum is 1 but for the nearest disks, where the kernel saturates (0.985 to 1). A vertex on a room's
-// edge has a tilted normal, and what its own triangles hide (0.29) belongs to no disk; a cell from
-// the next wall it is 0.94 and up.
+// sum is 1 but for the nearest disks, where the kernel saturates (0.985 to 1). A room's vertices on
+// edges have tilted normals; on its faces, away from the edges, its disks are round.
 void add_closed_worlds(Worlds& worlds)
 {
     worlds.push_back({"RoomMean",

@@ -3,6 +3,7 @@
 #include "differences.h"
 #include "gpu/answers.h"
 #include "scenes.h"
+#include "surfels/surfel.h"
 #include "surfels/topology.h"
 #include "tests/gpu/contexts.h"
 #include "tests/vertex_receivers.h"
@@ -43,6 +44,14 @@ struct World {
         for (std::size_t i = 0; mixed && i < sides.size(); i += 3)
             sides[i] = OccluderSide::both;
         octree = build_octree(surfels, sides);
+    }
+
+    /// Of triangles, as large as in the scene but for those above an area.
+    World(const Scene& scene, OccluderSide side, double largest)
+        : geometry(make_geometry(scene)), receivers(vertex_receivers(geometry))
+    {
+        const SurfelCloud cloud = surfels_of(geometry, largest);
+        octree = build_octree(cloud.surfels, std::vector<OccluderSide>(cloud.surfels.size(), side));
     }
 };
 
@@ -94,6 +103,16 @@ TEST(GpuDisks, MixedSidesEqualTheCpu)
 {
     expect_twins(World(scenes::bumpy_sphere(12), true), {.passes = 3}, "mixed sides");
     expect_twins(World(scenes::room({0, 0, 0}, {1, 2, 1}, 8), true), {.passes = 3}, "a room");
+}
+
+TEST(GpuDisks, TrianglesEqualTheCpu)
+{
+    for (const OccluderSide side : {OccluderSide::back, OccluderSide::both}) {
+        const World world(scenes::room({0, 0, 0}, {1, 2, 1}, 2), side, 2e-3);
+        ASSERT_GT(world.octree.surfels.front().reach, 0.0f);
+        expect_twins(world, {.passes = 3}, "triangles");
+        expect_twins(world, {.definition = {.max_distance = 0.3f}}, "triangles, cut off");
+    }
 }
 
 TEST(GpuDisks, LimitsFalloffKernelAndStrengthEqualTheCpu)

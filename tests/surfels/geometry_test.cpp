@@ -83,9 +83,28 @@ TEST(SurfelCloud, LargeTrianglesBecomeManyDisksInTheirPlane)
         EXPECT_LE(std::abs(surfel.position.x), 0.5f);
         EXPECT_EQ(surfel.position.z, 0.0f);
         EXPECT_LE(surfel.area, 0.5f / kFewestSurfels);
+        const glm::vec3 a = surfel.corners[0], b = surfel.corners[1];
+        EXPECT_NEAR(1.5f * glm::length(glm::cross(a, b)), surfel.area, 1e-9);
+        EXPECT_FLOAT_EQ(surfel.reach,
+                        std::max({glm::length(a), glm::length(b), glm::length(a + b)}));
         mean += glm::dvec3(surfel.position) / static_cast<double>(cloud.surfels.size());
     }
     EXPECT_NEAR(glm::length(mean), 0.0, 1e-6);  // the square's middle
+}
+
+// A needle of no area to speak of is not cut, however long.
+TEST(SurfelCloud, ThereAreNoMorePiecesOfSliversThanTheirAreaIsWorth)
+{
+    Scene scene = unit_square();
+    for (int i = 0; i < 8; ++i) {
+        const auto first = static_cast<std::uint32_t>(scene.positions.size());
+        const double x = 0.1 * i;
+        for (const glm::dvec3 corner : {glm::dvec3(x, 0, 1), {x + 1e-7, 0, 1}, {x, 1, 1}})
+            scene.positions.emplace_back(corner);
+        scene.triangles.push_back({first, first + 1, first + 2});
+    }
+    const std::size_t square = surfels_of(make_geometry(unit_square())).surfels.size();
+    EXPECT_EQ(surfels_of(make_geometry(scene)).surfels.size(), square + 8 * 3);
 }
 
 TEST(SurfelCloud, DoubledLargeTrianglesCountOnce)
@@ -98,9 +117,9 @@ TEST(SurfelCloud, DoubledLargeTrianglesCountOnce)
     EXPECT_NEAR(area_of(surfels), 0.5, 1e-6);
 }
 
-TEST(SurfelCloud, AFineMeshStaysAsItIs)
+TEST(SurfelCloud, AFineSmoothMeshStaysAsItIs)
 {
-    const Geometry geometry = make_geometry(scenes::bumpy_sphere(64));
+    const Geometry geometry = make_geometry(scenes::sphere({0, 0, 0}, 1.0, 64));
     const std::vector<Surfel> plain = surfels_at_vertices(geometry);
     const SurfelCloud cloud = surfels_of(geometry);
     ASSERT_EQ(cloud.surfels.size(), plain.size());

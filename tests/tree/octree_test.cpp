@@ -149,8 +149,8 @@ TEST(Octree, SkippingThroughBothTreesVisitsEverySurfel)
 // above any leaf.
 TEST(Octree, CoincidentSurfelsEndInOneLeaf)
 {
-    std::vector<Surfel> surfels(100, Surfel{{0.25f, 0.25f, 0.25f}, 0.5f, {0, 0, 1}, 0.0f});
-    surfels.push_back({{0.5f, 0.5f, 0.5f}, 0.5f, {0, 0, 1}, 0.0f});
+    std::vector<Surfel> surfels(100, Surfel{{0.25f, 0.25f, 0.25f}, 0.5f, {0, 0, 1}});
+    surfels.push_back({{0.5f, 0.5f, 0.5f}, 0.5f, {0, 0, 1}});
     const Octree octree = build_octree(surfels, {}, {.leaf_surfels = 1});
     ASSERT_EQ(octree.nodes.size(), 3u);
     EXPECT_EQ(octree.nodes[1].surfel_count, 100u);
@@ -159,8 +159,8 @@ TEST(Octree, CoincidentSurfelsEndInOneLeaf)
 
 TEST(Octree, NormalsThatCancelLeaveNoFlatArea)
 {
-    const std::vector<Surfel> surfels = {{{0, 0, 0}, 1.0f, {0, 0, 1}, 0.0f},
-                                         {{0, 0, 0}, 1.0f, {0, 0, -1}, 0.0f}};
+    const std::vector<Surfel> surfels = {{{0, 0, 0}, 1.0f, {0, 0, 1}},
+                                         {{0, 0, 0}, 1.0f, {0, 0, -1}}};
     const Octree octree = build_octree(surfels);
     EXPECT_EQ(octree.nodes[0].flatness, 0.0f);
     EXPECT_EQ(octree.nodes[0].normal, glm::vec3(0.0f));

@@ -1,5 +1,6 @@
 #include "tree/disks/brute_force.h"
 
+#include "tree/disks/correction.h"
 #include "tree/disks/form_factor.h"
 
 #include <glm/geometric.hpp>
@@ -25,29 +26,36 @@ struct Far {
 /// far[0]: on the side of the casting normal; far[1]: on the other.
 using FarSides = std::vector<Far>[2];
 
-Sum gather(const Octree& octree, const FarSides& far, const Definition& definition,
-           bool all_two_sided, const Receiver& receiver)
+Sum gather(const Octree& octree, const FarSides& far, const GatherSettings& settings,
+           const Receiver& receiver)
 {
+    const Definition& definition = settings.definition;
     Sum sum;
     const glm::dvec3 position(receiver.position);
     const glm::dvec3 normal(receiver.normal);
     for (std::size_t s = 0; s < octree.surfels.size(); ++s) {
         const Surfel& surfel = octree.surfels[s];
-        const bool two_sided = all_two_sided || s >= octree.two_sided_surfels;
+        const bool two_sided = settings.all_two_sided || s >= octree.two_sided_surfels;
         const glm::dvec3 c = glm::dvec3(surfel.position) - position;
         const double distance = std::sqrt(glm::dot(c, c) + double{kTinyLength} * kTinyLength);
-        const glm::dvec3 w = c / distance;
-        const Far& beyond = far[glm::dot(w, glm::dvec3(surfel.normal)) < 0.0 ? 1 : 0][s];
+        const bool behind = glm::dot(c, glm::dvec3(surfel.normal)) >= 0.0;
+        const Far& beyond = far[behind ? 0 : 1][s];
+        glm::dvec3 w = c / distance;
+        double share =
+            disk_form_factor(definition.kernel, position, normal,
+                             {surfel.position, surfel.normal, surfel.area, surfel.area, two_sided});
+        if (!settings.only_disks && is_near_triangle(definition.kernel, c, surfel)) {
+            const glm::dvec3 moment = triangle_moment(c, normal, surfel);
+            share = two_sided || behind ? glm::dot(moment, normal) : 0.0;
+            w = moment / std::max(glm::length(moment), double{kTinyLength});
+        }
         double weight = distance_weight(definition, distance, surfel.area);
         if (definition.ground) {
             const GroundSight sight = sight_of(*definition.ground, receiver.position);
             weight = std::max(0.0, weight - ground_weight(definition, sight, c, surfel.area));
         }
         const double term =
-            disk_form_factor(
-                definition.kernel, position, normal,
-                {surfel.position, surfel.normal, surfel.area, surfel.area, two_sided}) *
-            weight * std::clamp(beyond.constant + glm::dot(beyond.slope, w), 0.0, 1.0);
+            share * weight * std::clamp(beyond.constant + glm::dot(beyond.slope, w), 0.0, 1.0);
         sum.occlusion += term;
         sum.direction += term * w;
     }
@@ -70,11 +78,9 @@ DiskResult solve_disks_brute_force(const Octree& octree, std::span<const Receive
                                    const DiskOptions& options)
 {
     const std::size_t count = octree.surfels.size();
-    const bool limited = std::isfinite(options.definition.max_distance);
-    const bool two_sided = limited || octree.two_sided_surfels < count;
-    Definition beyond = options.definition;
-    beyond.max_distance *= 0.5f;
-    beyond.ground.reset();
+    const GatherSettings settings = gather_settings(options);
+    const GatherSettings beyond = beyond_settings(options);
+    const bool two_sided = settings.all_two_sided || octree.two_sided_surfels < count;
 
     DiskResult result;
     FarSides far = {std::vector<Far>(count), std::vector<Far>(count)};
@@ -86,7 +92,7 @@ DiskResult solve_disks_brute_force(const Octree& octree, std::span<const Receive
             tbb::parallel_for(std::size_t{0}, count, [&](std::size_t s) {
                 const Receiver& at = asked[s];
                 const glm::vec3 normal = at.normal;
-                const Sum sum = capped(gather(octree, before, beyond, limited, at));
+                const Sum sum = capped(gather(octree, before, beyond, at));
                 const glm::dvec3 mean = 2.0 / 3.0 * glm::dvec3(normal);
                 const glm::dvec3 slope = -4.0 * (sum.direction - sum.occlusion * mean);
                 const double constant = 1.0 - sum.occlusion - glm::dot(slope, mean);
@@ -112,7 +118,7 @@ DiskResult solve_disks_brute_force(const Octree& octree, std::span<const Receive
     tbb::parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t i) {
         if (receivers[i].normal == glm::vec3(0.0f))
             return;
-        const Sum sum = gather(octree, far, options.definition, limited, receivers[i]);
+        const Sum sum = gather(octree, far, settings, receivers[i]);
         const glm::dvec3 normal(receivers[i].normal);
         const glm::dvec3 open = 2.0 / 3.0 * normal - capped(sum).direction;
         Occlusion& out = result.occlusion[i];

@@ -23,8 +23,11 @@ constexpr std::size_t kGroupsPerTask = 16;
 
 GatherSettings gather_settings(const DiskOptions& options)
 {
-    return {
-        options.definition, options.opening, std::isfinite(options.definition.max_distance), {}};
+    return {options.definition,
+            options.opening,
+            std::isfinite(options.definition.max_distance),
+            false,
+            {}};
 }
 
 GatherSettings beyond_settings(const DiskOptions& options)
@@ -32,6 +35,7 @@ GatherSettings beyond_settings(const DiskOptions& options)
     GatherSettings beyond = gather_settings(options);
     beyond.definition.max_distance *= 0.5f;
     beyond.definition.ground.reset();
+    beyond.only_disks = true;
     beyond.opening = correction_opening(options.opening);
     return beyond;
 }

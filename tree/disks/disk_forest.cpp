@@ -127,6 +127,9 @@ void DiskForest::move(const Body& body)
                     surfel.position = glm::vec3(placed_point(surfel.position, body.placement));
                     surfel.normal = moved_normal(body.placement, surfel.normal);
                     surfel.area *= scale * scale;
+                    surfel.reach *= scale;
+                    for (glm::vec3& corner : surfel.corners)
+                        corner = scale * moved_normal(body.placement, corner);
                     octree_.surfels[static_cast<std::uint32_t>(i) + surfel_shift] = surfel;
                 }
             });

@@ -20,11 +20,15 @@
 /// A ground is no disk: what it covers is added as a whole (tree/ground.h), and disks count only
 /// where it does not, or where they are nearer and a falloff makes that more.
 ///
-/// Known limits: surfaces nearer to each other than three times the vertex spacing; the foot of a
-/// concave edge (what a vertex's own triangles hide from it is no disk's: 0.29 too little at a
-/// right angle); closed rooms with much in them (every ray passes many layers); a ground of few
-/// triangles that is hundreds of times as wide as the model on it (surfels_of cuts triangles by the
-/// size of the whole scene, not by what is near them).
+/// Nearer than three radii a disk is no likeness of what it stands for. Where that is one triangle
+/// (surfels_of: large ones, long ones and those at edges) the triangle is summed there, exactly and
+/// cut at the horizon: coarse meshes and hard edges are as right as fine smooth ones.
+///
+/// Known limits: surfaces nearer to each other than three times the vertex spacing; many layers one
+/// behind the other (foliage, machines: a linear function of the direction does not tell which of
+/// them a ray leaves through, and two passes do not settle); a ground of few triangles that is
+/// hundreds of times as wide as the model on it (surfels_of cuts triangles by the size of the whole
+/// scene, not by what is near them: what lies beyond a piece is one function for all of it).
 ///
 /// Based on:
 ///   Bunnell. Dynamic Ambient Occlusion and Indirect Lighting. GPU Gems 2, ch. 14. 2005

@@ -1,5 +1,7 @@
 #include "tree/disks/form_factor.h"
 
+#include <vector>
+
 namespace surfelao {
 
 double disk_form_factor(Kernel kernel, const glm::dvec3& receiver, const glm::dvec3& normal,
@@ -25,6 +27,33 @@ double disk_form_factor(Kernel kernel, const glm::dvec3& receiver, const glm::dv
         at_receiver * (2.0 - 3.0 * at_disk * at_disk) + at_disk * glm::dot(normal, m);
     const double flat = x * facing * std::max(0.0, at_receiver + second * correction);
     return (flat + spread * at_receiver) / (1.0 + all);
+}
+
+glm::dvec3 triangle_moment(const glm::dvec3& c, const glm::dvec3& normal, const Surfel& surfel)
+{
+    const glm::dvec3 a(surfel.corners[0]), b(surfel.corners[1]);
+    const glm::dvec3 corners[] = {c + a, c + b, c - a - b};
+    std::vector<glm::dvec3> above;
+    for (int i = 0; i < 3; ++i) {
+        const glm::dvec3& from = corners[i];
+        const glm::dvec3& to = corners[(i + 1) % 3];
+        const double at_from = glm::dot(from, normal), at_to = glm::dot(to, normal);
+        if (at_from > 0.0)
+            above.push_back(from);
+        if ((at_from > 0.0) != (at_to > 0.0))
+            above.push_back(from + at_from / (at_from - at_to) * (to - from));
+    }
+    glm::dvec3 moment(0.0);
+    for (std::size_t i = 0; i < above.size(); ++i) {
+        const glm::dvec3& from = above[i];
+        const glm::dvec3& to = above[(i + 1) % above.size()];
+        const glm::dvec3 across = glm::cross(from, to);
+        const double sine = glm::length(across);
+        if (sine > 0.0)
+            moment +=
+                std::atan2(sine, glm::dot(from, to)) / (2.0 * std::numbers::pi * sine) * across;
+    }
+    return glm::dot(moment, normal) < 0.0 ? -moment : moment;
 }
 
 double distance_weight(const Definition& definition, double distance, double area)

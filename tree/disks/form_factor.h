@@ -14,9 +14,10 @@
 ///
 ///     F = x h / (1 + x) * (cR + x (cR (2 - 3 h^2) + h (n.m)))
 ///
-/// Nearer than that a disk is no likeness of the mesh around it and the first factor alone,
-/// A h cR / (pi d^2 + A), errs less. A disk counts as above the horizon when its centre is: cutting
-/// the rim was measured to be worse, since the surface that the disk stands for bends away.
+/// Nearer than that a disk is no likeness of the mesh around it. Where it is a triangle's, the
+/// triangle is summed (triangle_moment); else the first factor alone, A h cR / (pi d^2 + A), errs
+/// less. A disk counts as above the horizon when its centre is: cutting the rim was measured to be
+/// worse, since the surface that the disk stands for bends away. Triangles are cut.
 ///
 /// The part of a cluster's area that its mean normal does not explain, area - flat_area, counts as
 /// spread over all orientations: it shows a quarter of itself to any side (half when two-sided).
@@ -25,9 +26,13 @@
 ///   Bunnell. Dynamic Ambient Occlusion and Indirect Lighting. GPU Gems 2, ch. 14. 2005
 ///   Hoberock, Jia. High-Quality Ambient Occlusion. GPU Gems 3, ch. 12. 2007
 ///   Engleson. Point-based ambient occlusion (report). 2011
+///   Baum, Rushmeier, Winget. Improving Radiosity Solutions Through the Use of Analytically
+///     Determined Form-Factors. 1989: triangle_moment
+///   Hill, Heitz. Real-Time Area Lighting: a Journey from Research to Production. 2016: its arcs
 #pragma once
 
 #include "surfels/occlusion.h"
+#include "surfels/surfel.h"
 #include "tree/ground.h"
 
 #include <glm/geometric.hpp>
@@ -66,6 +71,30 @@ inline constexpr float kTinyLength = 1e-8f;
 /// The unweighted form factor in [0, 1 + 1/9]; 0 below the horizon or, one-sided, from in front.
 [[nodiscard]] double disk_form_factor(Kernel kernel, const glm::dvec3& receiver,
                                       const glm::dvec3& normal, const DiskShape& disk);
+
+/// Whether the triangle of a surfel, if it has one, is summed instead of its disk. c: from the
+/// receiver to its centre.
+[[nodiscard]] inline bool is_near_triangle(Kernel kernel, const glm::dvec3& c, const Surfel& surfel)
+{
+    return kernel == Kernel::cosine && surfel.reach > 0.0f &&
+           surfel.area * std::numbers::inv_pi >=
+               kNearDisk * (glm::dot(c, c) + double{kTinyLength} * kTinyLength);
+}
+
+/// Of the triangle of a surfel, as far as it is above the receiver's horizon: the integral of the
+/// direction over its solid angle, by pi, turned to above the horizon; its component along the
+/// normal is the form factor. By its edges (Lambert):
+///
+///     sum over them of  angle between the ends / 2 pi * unit normal of the plane through both
+///
+/// c: from the receiver to its centre.
+[[nodiscard]] glm::dvec3 triangle_moment(const glm::dvec3& c, const glm::dvec3& normal,
+                                         const Surfel& surfel);
+
+/// For the same in float: the angle over its sine and 2 pi is, for cosines y >= 0,
+/// (k0 + k1 y + k2 y^2) / (k3 + k4 y + y^2) within 4e-5 of itself; for others by reflection.
+inline constexpr float kArc[] = {0.8543985f, 0.4965155f, 0.0145206f, 3.4175940f, 4.1616724f};
+inline constexpr float kLeastSine2 = 1e-14f;  ///< the reflection's: a float's rounding, squared
 
 /// The share of a disk at this distance that counts: hit_weight of its centre, and without falloff
 /// the share of its width that lies within max_distance, so that nothing jumps at the limit. A disk

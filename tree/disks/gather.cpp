@@ -21,6 +21,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::CappedTag<float, kGroupSize>;
 using Vec = hn::Vec<Tag>;
 
+using Mask = hn::Mask<Tag>;
+
 struct Vec3 {
     Vec x, y, z;
 };
@@ -45,7 +47,8 @@ struct Disk {
     float all;     ///< area / pi
     float spread;  ///< (area - flat_area) / pi, times the share of it that is seen from any side
     const FarVisibility* front;
-    const FarVisibility* back;  ///< null: one-sided
+    const FarVisibility* back;    ///< null: one-sided
+    const Surfel* triangle = {};  ///< null: round
 };
 
 /// The receivers of one vector and what they have summed up so far.
@@ -56,6 +59,83 @@ struct Sums {
     Vec3 towards;  ///< the ground, straight to it
     Vec height;    ///< >= 0, over it or below it
 };
+
+HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b)
+{
+    return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)),
+            hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+            hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+
+HWY_INLINE Vec3 add(const Vec3& a, const Vec3& b)
+{
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+
+HWY_INLINE Vec3 scaled(const Vec3& a, const Vec& s)
+{
+    return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
+}
+
+HWY_INLINE Vec3 select(const Mask& mask, const Vec3& a, const Vec3& b)
+{
+    return {hn::IfThenElse(mask, a.x, b.x), hn::IfThenElse(mask, a.y, b.y),
+            hn::IfThenElse(mask, a.z, b.z)};
+}
+
+/// A vector of no length stays one.
+HWY_INLINE Vec3 unit(const Vec3& a)
+{
+    const Tag tag;
+    const Vec length2 = hn::Max(dot(a, a), hn::Set(tag, kTinyLength * kTinyLength));
+    return scaled(a, hn::Div(hn::Set(tag, 1.0f), hn::Sqrt(length2)));
+}
+
+/// What the arc between two unit vectors adds to triangle_moment(); (Hill, Heitz 2016)'s rational
+/// function of the cosine for the angle over its sine and 2 pi.
+HWY_INLINE Vec3 moment_of_arc(const Vec3& a, const Vec3& b)
+{
+    const Tag tag;
+    const auto set = [&](float value) { return hn::Set(tag, value); };
+    const Vec x = dot(a, b);
+    const Vec y = hn::Abs(x);
+    const Vec above =
+        hn::Add(set(kArc[0]), hn::Mul(hn::Add(set(kArc[1]), hn::Mul(set(kArc[2]), y)), y));
+    const Vec below = hn::Add(set(kArc[3]), hn::Mul(hn::Add(set(kArc[4]), y), y));
+    const Vec acute = hn::Div(above, below);
+    const Vec3 across = cross(a, b);
+    const Vec sine2 = hn::Max(dot(across, across), set(kLeastSine2));
+    const Vec obtuse = hn::Sub(hn::Div(set(0.5f), hn::Sqrt(sine2)), acute);
+    return scaled(across, hn::IfThenElse(hn::Gt(x, hn::Zero(tag)), acute, obtuse));
+}
+
+/// triangle_moment() for all lanes. c: from the receivers to its centroid.
+HWY_INLINE Vec3 moment_of_triangle(const Surfel& triangle, const Vec3& c, const Vec3& normal)
+{
+    const Tag tag;
+    const Vec zero = hn::Zero(tag);
+    const auto corner = [&](const glm::vec3& from_centroid) {
+        return unit(add(c, {hn::Set(tag, from_centroid.x), hn::Set(tag, from_centroid.y),
+                            hn::Set(tag, from_centroid.z)}));
+    };
+    const Vec3 corners[] = {corner(triangle.corners[0]), corner(triangle.corners[1]),
+                            corner(-triangle.corners[0] - triangle.corners[1])};
+    const Vec heights[] = {dot(corners[0], normal), dot(corners[1], normal),
+                           dot(corners[2], normal)};
+    Vec3 moment = {zero, zero, zero}, leaves = moment, returns = moment;
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        const Mask from = hn::Gt(heights[i], zero), to = hn::Gt(heights[j], zero);
+        const Vec3 horizon = unit(
+            add(scaled(corners[i], hn::Abs(heights[j])), scaled(corners[j], hn::Abs(heights[i]))));
+        const Vec3 arc =
+            moment_of_arc(select(from, corners[i], horizon), select(to, corners[j], horizon));
+        moment = select(hn::Or(from, to), add(moment, arc), moment);
+        leaves = select(hn::AndNot(to, from), horizon, leaves);
+        returns = select(hn::AndNot(from, to), horizon, returns);
+    }
+    return add(moment, moment_of_arc(leaves, returns));
+}
 
 /// ground_weight() for one disk.
 template <bool kLimited>
@@ -124,11 +204,20 @@ HWY_INLINE void add_disk(const Disk& disk, const Definition& definition, Sums& s
         form_factor = hn::IfThenElseZero(hn::Gt(at_receiver, zero), form_factor);
     }
 
-    Vec seen =
-        hn::Add(hn::Set(tag, disk.front->constant), hn::Mul(dot(c, disk.front->slope), inverse));
+    Vec3 w = scaled(c, inverse);
+    const Mask near = hn::Ge(x, hn::Set(tag, kNearDisk));
+    if (!kBunnell && disk.triangle && !hn::AllFalse(tag, near)) {
+        const Vec3 moment = moment_of_triangle(*disk.triangle, c, sums.normal);
+        const Vec cover = hn::Abs(dot(moment, sums.normal));
+        const Mask casts = kTwoSided ? near : hn::And(near, hn::Gt(at_disk, zero));
+        form_factor = hn::IfThenElse(near, hn::IfThenElseZero(casts, cover), form_factor);
+        // the moment points along the normal of a triangle whose corners turn the one way
+        w = select(near, unit(scaled(moment, hn::CopySign(one, dot(moment, sums.normal)))), w);
+    }
+
+    Vec seen = hn::Add(hn::Set(tag, disk.front->constant), dot(w, disk.front->slope));
     if (kTwoSided) {
-        const Vec other =
-            hn::Add(hn::Set(tag, disk.back->constant), hn::Mul(dot(c, disk.back->slope), inverse));
+        const Vec other = hn::Add(hn::Set(tag, disk.back->constant), dot(w, disk.back->slope));
         seen = hn::IfThenElse(hn::Ge(at_disk, zero), seen, other);
     }
     form_factor = hn::Mul(form_factor, hn::Min(one, hn::Max(zero, seen)));
@@ -155,10 +244,7 @@ HWY_INLINE void add_disk(const Disk& disk, const Definition& definition, Sums& s
         form_factor = hn::Mul(form_factor, weight);
 
     sums.occlusion = hn::Add(sums.occlusion, form_factor);
-    const Vec along = hn::Mul(form_factor, inverse);
-    sums.direction.x = hn::Add(sums.direction.x, hn::Mul(along, c.x));
-    sums.direction.y = hn::Add(sums.direction.y, hn::Mul(along, c.y));
-    sums.direction.z = hn::Add(sums.direction.z, hn::Mul(along, c.z));
+    sums.direction = add(sums.direction, scaled(w, form_factor));
 }
 
 /// Indices that grow without a check per element: room() first, then write at end().
@@ -186,7 +272,6 @@ struct DiskList {
 using IndexTag = hn::RebindToUnsigned<Tag>;
 using OffsetTag = hn::RebindToSigned<Tag>;
 using Indices = hn::Vec<IndexTag>;
-using Mask = hn::Mask<Tag>;
 
 /// The next indices of a queue; lanes from `count` on are 0 and not in `valid`.
 struct Batch {
@@ -335,12 +420,13 @@ void list_disks(const Octree& octree, const ReceiverGroup& group, const GatherSe
         const Vec3 offset =
             from_center(group, gather_field(first.position, kSurfelStride, batch.indices));
         const Vec3 normal = gather_field(first.normal, kSurfelStride, batch.indices);
+        const Vec reach_up = gather_field(&first.reach, kSurfelStride, batch.indices);
         // one-sided and facing all receivers: occludes none of them
         const Mask one_sided =
             hn::RebindMask(tag, hn::Lt(batch.indices, hn::Set(index_tag, two_sided)));
         const Mask facing = hn::And(one_sided, hn::Lt(dot(offset, normal), behind));
         const Mask out =
-            hn::Or(facing, below_horizons(group, offset, dot(offset, offset), hn::Zero(tag)));
+            hn::Or(facing, below_horizons(group, offset, dot(offset, offset), reach_up));
         append(list.surfels, batch.indices, hn::AndNot(out, batch.valid));
     }
 }
@@ -372,8 +458,14 @@ HWY_INLINE void add_list(const Octree& octree, const EmitterVisibility& visibili
         const std::uint32_t s = list.surfels.items[k];
         const Surfel& surfel = octree.surfels[s];
         const float area = surfel.area * kInvPi;
-        Disk disk = {surfel.position, surfel.normal, area, area, 0.0f, &visibility.surfel_front[s],
-                     nullptr};
+        Disk disk = {surfel.position,
+                     surfel.normal,
+                     area,
+                     area,
+                     0.0f,
+                     &visibility.surfel_front[s],
+                     nullptr,
+                     surfel.reach > 0.0f && !settings.only_disks ? &surfel : nullptr};
         if (s < two_sided_surfels) {
             add_disk<false, kBunnell, kLimited, kGround>(disk, settings.definition, sums);
         } else {
@@ -383,8 +475,8 @@ HWY_INLINE void add_list(const Octree& octree, const EmitterVisibility& visibili
     }
 }
 
-void add(const Octree& octree, const EmitterVisibility& visibility, const DiskList& list,
-         const GatherSettings& settings, Sums& sums)
+void add_disks(const Octree& octree, const EmitterVisibility& visibility, const DiskList& list,
+               const GatherSettings& settings, Sums& sums)
 {
     const bool limited = std::isfinite(settings.definition.max_distance);
     if (settings.definition.ground && limited)
@@ -434,7 +526,7 @@ void gather(const Octree& octree, const EmitterVisibility& visibility, const Rec
                          {zero, zero, zero},    {zero, zero, zero},  zero};
             if (settings.definition.ground)
                 look_at(*settings.definition.ground, sums);
-            add(octree, visibility, list, settings, sums);
+            add_disks(octree, visibility, list, settings, sums);
 
             HWY_ALIGN float lanes[4][kGroupSize];
             hn::Store(sums.occlusion, tag, lanes[0]);

@@ -41,6 +41,7 @@ struct GatherSettings {
     Definition definition = {};
     float opening = 0.35f;
     bool all_two_sided = false;  ///< treat one-sided surfels as two-sided
+    bool only_disks = false;     ///< near triangles too are summed as disks
     NodeRange left_out[2] = {};  ///< trees whose root stands in one of them are not looked at
 };
 
