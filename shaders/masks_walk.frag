@@ -168,9 +168,10 @@ void main()
         float own_away = shared ? away : dot(normal, ball.xyz - position);
         bool  dropped = u_one_sided != 0 && (last.w & kMaskSolid) != 0u && own_away < 0.0;
         // cracks are beside what is wide enough for them
-        bool  sheet = !exact && (last.w & kMaskSheet) != 0u &&
-                     kMaskNarrowSheet * kMaskNarrowSheet * dot(to_node, to_node) <
-                         dot(axis_a + axis_b, axis_a + axis_b);
+        float narrow = min(kMaskNarrowSheet, 0.5 * u_cluster);
+        vec3  side   = axis_a + axis_b;
+        bool  sheet  = !exact && (last.w & kMaskSheet) != 0u &&
+                      narrow * narrow * dot(to_node, to_node) < dot(side, side);
         float grow    = sheet && (last.w & kMaskHollow) != 0u && away < 0.0 ? kMaskHollowGrowth : 1.0;
         vec3  skew = u_face * uintBitsToFloat(texelFetch(u_nodes, at * 4 + 1).xyz);
         axis_a     = u_face * axis_a;

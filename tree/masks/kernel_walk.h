@@ -137,10 +137,10 @@ SURFELAO_MASK_INLINE Sight16 see(float graze, float limit, const Group16& group,
 }
 
 /// Whether the shorter side of a cluster is wide enough for cracks beside it.
-SURFELAO_MASK_INLINE Bool16 wide(const Node16& node, Float16 distance)
+SURFELAO_MASK_INLINE Bool16 wide(const MaskSettings& settings, const Node16& node, Float16 distance)
 {
     const Vector16 side = node.axis_a() + node.axis_b();
-    const Float16 least = all(kMaskNarrowSheet) * distance;
+    const Float16 least = min(all(kMaskNarrowSheet), all(0.5f * settings.cluster)) * distance;
     return least * least < dot(side, side);
 }
 
@@ -227,7 +227,7 @@ void walk(const MaskWorld& world, const ReceiverGroup& of, MaskBuffer<std::uint3
             select(all(limit) < farthest, all(settings.crossing), all(1.0f));
         const Bool16 one_sided = nonzero(node.links() & solid);
         const Bool16 exact = node.open_radius() < exact_radius;
-        const Bool16 sheet = without(node.is_sheet(), exact) & wide(node, sight.distance);
+        const Bool16 sheet = without(node.is_sheet(), exact) & wide(settings, node, sight.distance);
         // a front that is hollow goes on beyond its rim
         const Bool16 hollow = node.is_hollow() & (sight.away < zero);
         const Bool16 small = exact | (node.open_radius() < cluster * sight.distance);
