@@ -31,6 +31,15 @@ public:
         return bake;
     }
 
+    /// The same, for the only time.
+    VertexBake bake_once(const EngineSettings& engine)
+    {
+        VertexBake bake = solved(engine);
+        release_engines();
+        finish(bake);
+        return bake;
+    }
+
     /// Answers without values.
     VertexBake solved(const EngineSettings& engine)
     {
@@ -102,7 +111,7 @@ VertexBake bake_vertices(const Mesh& mesh, const VertexTarget& target, const Eng
                          const Offset& offset, std::uint32_t check, const StageProgress& progress,
                          Occluders* occluders)
 {
-    return Baker(mesh, target, offset, check, progress, occluders).bake(engine);
+    return Baker(mesh, target, offset, check, progress, occluders).bake_once(engine);
 }
 
 VertexBake solve_share(const Mesh& mesh, const VertexTarget& target, const EngineSettings& engine,
