@@ -213,10 +213,12 @@ TEST(Foreign, TexturesBesideTheFileAreFound)
 TEST(Foreign, ResultsAreGlbPlyAndObj)
 {
     const TemporaryFolder folder;
-    const Scene scene = read_scene(folder.file("board.dae", collada_board("plain")));
+    const fs::path board = folder.file("board.dae", collada_board("plain"));
+    const Scene scene = read_scene(board);
     const std::vector<Occlusion> answers(4, Occlusion{.occlusion = 0.5f});
     for (const char* name : {"board.glb", "board.ply", "board.obj"}) {
         const fs::path result = folder / name;
+        EXPECT_NO_THROW(check_output(board, result)) << name;
         write_scene(result, scene, answers);
         EXPECT_TRUE(has_vertex(read_scene(result), {1, .5, -2})) << name;
     }
