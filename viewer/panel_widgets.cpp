@@ -464,7 +464,8 @@ void histogram(const Session& session)
                        ImGui::GetColorU32(ImGuiCol_FrameBg));
     for (std::size_t i = 0; i < bins.size(); ++i) {
         const float left = corner.x + step * static_cast<float>(i);
-        const float height = size.y * std::sqrt(static_cast<float>(bins[i])) / std::max(most, 1.0f);
+        const float height = (size.y - ImGui::GetTextLineHeight()) *  // below the title
+                             std::sqrt(static_cast<float>(bins[i])) / std::max(most, 1.0f);
         list.AddRectFilled(ImVec2(left, corner.y + size.y - height),
                            ImVec2(left + step - 1.0f, corner.y + size.y),
                            ImGui::GetColorU32(ImGuiCol_PlotHistogram));
