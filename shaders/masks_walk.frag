@@ -168,7 +168,7 @@ void main()
         float own_away = shared ? away : dot(normal, ball.xyz - position);
         bool  dropped = u_one_sided != 0 && (last.w & kMaskSolid) != 0u && own_away < 0.0;
         // cracks are beside what is wide enough for them
-        float narrow = min(kMaskNarrowSheet, 0.5 * u_cluster);
+        float narrow = min(kMaskNarrowSheet, kMaskNarrowCluster * u_cluster);
         vec3  side   = axis_a + axis_b;
         bool  sheet  = !exact && (last.w & kMaskSheet) != 0u &&
                       narrow * narrow * dot(to_node, to_node) < dot(side, side);

@@ -140,7 +140,8 @@ SURFELAO_MASK_INLINE Sight16 see(float graze, float limit, const Group16& group,
 SURFELAO_MASK_INLINE Bool16 wide(const MaskSettings& settings, const Node16& node, Float16 distance)
 {
     const Vector16 side = node.axis_a() + node.axis_b();
-    const Float16 least = min(all(kMaskNarrowSheet), all(0.5f * settings.cluster)) * distance;
+    const Float16 least =
+        min(all(kMaskNarrowSheet), all(kMaskNarrowCluster * settings.cluster)) * distance;
     return least * least < dot(side, side);
 }
 
