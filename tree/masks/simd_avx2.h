@@ -204,8 +204,9 @@ SURFELAO_MASK_INLINE Bool16 nonzero(Int16 x)
 }
 SURFELAO_MASK_INLINE __m256i bits_from8(__m256 x)
 {
-    // the second operand is what comes out for NaN
-    const __m256 from = _mm256_min_ps(_mm256_max_ps(x, _mm256_setzero_ps()), _mm256_set1_ps(32.0f));
+    // the second operand is what comes out for NaN; what no integer holds becomes 2^31, and by so
+    // much, as by all above 31, everything is shifted out
+    const __m256 from = _mm256_max_ps(x, _mm256_setzero_ps());
     return _mm256_sllv_epi32(_mm256_set1_epi32(-1), _mm256_cvttps_epi32(_mm256_ceil_ps(from)));
 }
 SURFELAO_MASK_INLINE Int16 bits_from(Float16 x)
