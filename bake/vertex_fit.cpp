@@ -3,8 +3,8 @@
 #include "bake/fit_cells.h"
 #include "bake/normal_equations.h"
 #include "surfels/buckets.h"
+#include "surfels/for_all.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
@@ -26,16 +26,6 @@ constexpr std::size_t kGrain = 4096;
 /// right to some 1e-4.
 constexpr double kTolerance = 1e-4;
 constexpr int kMostSteps = 100;
-
-template <class Body>
-void in_blocks(std::size_t count, const Body& body)
-{
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i)
-                              body(i);
-                      });
-}
 
 /// Per vertex; kUnused where no triangle uses it. At each place, vertices whose normals are smooth
 /// with those of an earlier one share its unknown.
@@ -273,7 +263,7 @@ Channels VertexFit::Impl::channels_of(std::span<const Occlusion> answers) const
 {
     const Buckets<std::uint32_t>& corners = equations().corners;
     Channels channels{FourColumns(unknown_count), FourColumns(unknown_count)};
-    in_blocks(unknown_count, [&](std::size_t unknown) {
+    for_all(unknown_count, [&](std::size_t unknown) {
         Eigen::Array4f sum = Eigen::Array4f::Zero();
         float weights = 0.0f;
         for (const std::uint32_t at : corners[unknown]) {
@@ -294,7 +284,7 @@ Channels VertexFit::Impl::channels_of(std::span<const Occlusion> answers) const
 std::vector<Occlusion> VertexFit::Impl::values_of(const Channels& channels) const
 {
     std::vector<Occlusion> values(unknowns.size());
-    in_blocks(values.size(), [&](std::size_t v) {
+    for_all(values.size(), [&](std::size_t v) {
         values[v].bent_normal = surface.normals[v];
         if (unknowns[v] == kUnused)
             return;
