@@ -1,6 +1,7 @@
 #include "tree/masks/masks.h"
 
 #include "differences.h"
+#include "family.h"
 #include "scenes.h"
 #include "surfels/errors.h"
 #include "tests/vertex_receivers.h"
@@ -147,6 +148,25 @@ TEST(MaskWorlds, ErrorAgainstTheOracleFallsWithQuality)
         EXPECT_LT(error, last) << quality;
         last = error;
     }
+}
+
+// Springs, blocks and balls: what stands open between the turns of a wire is no crack, and its
+// strips are no wider than they are.
+TEST(MaskWorlds, WiresAreAsOpenAsTheyAre)
+{
+    constexpr std::uint32_t kSprings = 141;
+    constexpr std::size_t kStep = 8;
+    const Geometry geometry = make_geometry(scenes::family_scene(kSprings));
+    const std::vector<Receiver> receivers = vertex_receivers(geometry);
+    const std::vector<Occlusion> good = solve(geometry, receivers, {});
+    std::vector<Receiver> some;
+    for (std::size_t i = 0; i < receivers.size(); i += kStep)
+        some.push_back(receivers[i]);
+    const std::vector<Occlusion> exact = solve(geometry, some, {.exact = true});
+    double darker = 0.0;
+    for (std::size_t i = 0; i < some.size(); ++i)
+        darker += good[i * kStep].occlusion - exact[i].occlusion;
+    EXPECT_NEAR(darker / static_cast<double>(some.size()), 0.0, 0.0045);
 }
 
 TEST(MaskWorlds, RefusesWhatItDoesNotMeasure)
