@@ -8,18 +8,16 @@ namespace surfelao {
 void CubeSession::start(std::function<void(News&, const Progress&)> work)
 {
     is_running_ = true;
-    worker_.start([this, number = ++number_, work = std::move(work)](const Progress& progress) {
-        auto news = std::make_unique<News>();
+    worker_.start([this, number = news_.ask(), work = std::move(work)](const Progress& progress) {
+        News news;
         try {
-            work(*news, progress);
+            work(news, progress);
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& error) {
-            news->failure = error.what();
+            news.failure = error.what();
         }
-        const std::lock_guard lock(mailbox_);
-        news_ = std::move(news);
-        news_number_ = number;
+        news_.post(number, std::move(news));
     });
 }
 
@@ -47,20 +45,14 @@ void CubeSession::place(std::shared_ptr<const Model> model)
 void CubeSession::cancel()
 {
     is_running_ = false;
-    ++number_;
+    news_.ask();
     worker_.cancel();
 }
 
 CubeSession::News CubeSession::update()
 {
-    std::unique_ptr<News> news;
-    std::uint64_t number = 0;
-    {
-        const std::lock_guard lock(mailbox_);
-        news = std::move(news_);
-        number = news_number_;
-    }
-    if (!news || number != number_ || !is_running_)
+    std::optional<News> news = news_.take();
+    if (!news || !is_running_)
         return {};
     is_running_ = false;
     return std::move(*news);

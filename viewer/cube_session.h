@@ -6,13 +6,12 @@
 #include "pixels/cube_map.h"
 #include "pixels/cube_placement.h"
 #include "viewer/background_worker.h"
+#include "viewer/mailbox.h"
 #include "viewer/model.h"
 #include "viewer/own_engine.h"
 
-#include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 
@@ -52,14 +51,8 @@ public:
 private:
     void start(std::function<void(News&, const Progress&)> work);
     bool is_running_ = false, is_placing_ = false;
-    std::uint64_t number_ = 0;  ///< of what runs; other answers are dropped
-    OwnEngine own_;             ///< used by the background thread alone
-
-    // written by the background thread
-    std::mutex mailbox_;
-    std::unique_ptr<News> news_;
-    std::uint64_t news_number_ = 0;
-
+    OwnEngine own_;  ///< used by the background thread alone
+    Mailbox<News> news_;
     BackgroundWorker worker_;  // last: its thread writes to the above
 };
 

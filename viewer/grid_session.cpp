@@ -32,28 +32,26 @@ void GridSession::start()
 {
     message_.clear();
     was_cancelled_ = false;
-    worker_.start([this, number = ++number_, question = question_](const Progress& progress) {
-        auto news = std::make_unique<News>();
-        news->number = number;
+    worker_.start([this, number = news_.ask(), question = question_](const Progress& progress) {
+        News news;
         try {
             const auto in_stage = [&](std::string_view stage, double done) {
                 return progress(stage == "repair" ? 1.0 : done);  // which is short
             };
-            news->bake = std::make_shared<const GridBake>(bake_grid(
+            news.bake = std::make_shared<const GridBake>(bake_grid(
                 question.model->occluding(), question.grid, question.engine, 0, in_stage));
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& error) {
-            news->failure = error.what();
+            news.failure = error.what();
         }
-        const std::lock_guard lock(mailbox_);
-        news_ = std::move(news);
+        news_.post(number, std::move(news));
     });
 }
 
 void GridSession::forget()
 {
-    ++number_;
+    news_.ask();
     is_asked_ = was_cancelled_ = false;
     found_.reset();
     message_.clear();
@@ -62,12 +60,8 @@ void GridSession::forget()
 
 bool GridSession::update()
 {
-    std::unique_ptr<News> news;
-    {
-        const std::lock_guard lock(mailbox_);
-        news = std::move(news_);
-    }
-    if (!news || news->number != number_)
+    const std::optional<News> news = news_.take();
+    if (!news)
         return false;
     message_ = news->failure;
     found_ = news->bake;

@@ -5,11 +5,10 @@
 #include "bake/grid_target.h"
 #include "engines/engine.h"
 #include "viewer/background_worker.h"
+#include "viewer/mailbox.h"
 #include "viewer/model.h"
 
-#include <cstdint>
 #include <memory>
-#include <mutex>
 #include <string>
 
 namespace surfelao {
@@ -48,16 +47,12 @@ private:
     bool is_asked_ = false, was_cancelled_ = false;
     std::shared_ptr<const GridBake> found_;
     std::string message_;
-    std::uint64_t number_ = 0;  ///< of the question; answers to others are dropped
 
     struct News {
-        std::uint64_t number = 0;
         std::shared_ptr<const GridBake> bake;
         std::string failure;  ///< if not empty, there is no grid
     };
-    std::mutex mailbox_;
-    std::unique_ptr<News> news_;  // written by the background thread
-
+    Mailbox<News> news_;
     BackgroundWorker worker_;  // last: its thread writes to the above
 };
 

@@ -66,23 +66,20 @@ void Mover::take_base(const Session& session, bool is_other_file)
 void Mover::load()
 {
     message_.clear();
-    const std::uint64_t number = ++load_number_;
-    loader_.start([this, number, base = base_, movables = movables_,
+    loader_.start([this, number = found_.ask(), base = base_, movables = movables_,
                    animation = chosen_ && !motion_ ? std::optional(animation_name())
                                                    : std::nullopt](const Progress&) {
-        auto found = std::make_unique<Found>();
-        found->number = number;
-        found->movables = movables;
+        Found found;
+        found.movables = movables;
         try {
             if (!movables)
-                found->movables = std::make_shared<const Movables>(movables_of(*base->mesh));
+                found.movables = std::make_shared<const Movables>(movables_of(*base->mesh));
             if (animation)
-                found->motion = std::make_shared<const Motion>(base->mesh->scene, *animation);
+                found.motion = std::make_shared<const Motion>(base->mesh->scene, *animation);
         } catch (const std::exception& error) {
-            found->failure = error.what();
+            found.failure = error.what();
         }
-        const std::lock_guard lock(mailbox_);
-        found_ = std::move(found);
+        found_.post(number, std::move(found));
     });
 }
 
@@ -94,12 +91,8 @@ std::string Mover::animation_name() const
 
 void Mover::take_found()
 {
-    std::unique_ptr<Found> found;
-    {
-        const std::lock_guard lock(mailbox_);
-        found = std::move(found_);
-    }
-    if (!found || found->number != load_number_)
+    const std::optional<Found> found = found_.take();
+    if (!found)
         return;
     message_ = found->failure;
     if (!found->failure.empty())

@@ -9,6 +9,7 @@
 #include "files/motion.h"
 #include "files/scene_io.h"
 #include "viewer/background_worker.h"
+#include "viewer/mailbox.h"
 #include "viewer/model_pose.h"
 #include "viewer/movables.h"
 #include "viewer/moving_session.h"
@@ -18,7 +19,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -92,7 +92,6 @@ public:
 private:
     /// What the loader finds.
     struct Found {
-        std::uint64_t number = 0;
         std::shared_ptr<const Movables> movables;
         std::shared_ptr<const Motion> motion;
         std::string failure;
@@ -139,9 +138,7 @@ private:
     std::shared_ptr<const MovingFrame> shown_;
     double last_frame_at_ = 0.0, rate_ = 0.0;
 
-    std::uint64_t load_number_ = 0;
-    std::mutex mailbox_;
-    std::unique_ptr<Found> found_;  ///< guarded by mailbox_
+    Mailbox<Found> found_;
     MovingSession moving_;
     BackgroundWorker loader_;  // last: its thread writes to the above
 };

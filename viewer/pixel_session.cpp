@@ -61,7 +61,7 @@ std::vector<glm::vec4> picture_of(const SeenPixels& seen, std::span<const Occlus
 
 void PixelSession::forget()
 {
-    ++number_;
+    found_.ask();
     answers_ = {};
     worker_.cancel();
 }
@@ -70,7 +70,7 @@ void PixelSession::solve(PixelQuestion question)
 {
     forget();
     worker_.start(
-        [this, number = number_, question = std::move(question)](const Progress& progress) {
+        [this, number = found_.ask(), question = std::move(question)](const Progress& progress) {
             try {
                 find(number, question, progress);
             } catch (const Cancelled&) {
@@ -78,7 +78,7 @@ void PixelSession::solve(PixelQuestion question)
             } catch (const std::exception& error) {
                 PixelAnswers failed;
                 failed.message = error.what();
-                post(number, failed);
+                found_.post(number, std::move(failed));
             }
         });
 }
@@ -108,7 +108,7 @@ void PixelSession::find(std::uint64_t number, const PixelQuestion& question,
         for (const std::uint32_t i : sample)
             found.sample.pixels.push_back(seen.pixels[i]);
         found.sample.values = solve_some(chosen_receivers(seen, sample));
-        post(number, found);
+        found_.post(number, found);
     }
     if (!question.whole)
         return;
@@ -116,33 +116,19 @@ void PixelSession::find(std::uint64_t number, const PixelQuestion& question,
         const std::vector<Occlusion> values = solve_some(chosen_receivers(seen, draft));
         found.picture = picture_of(seen, fill_draft(seen, question.view.eye, draft, values));
         found.is_draft = true;
-        post(number, found);
+        found_.post(number, found);
     }
     Stopwatch watch;
     found.picture = picture_of(seen, solve_some(seen.receivers));
     found.seconds = watch.lap();
     found.is_draft = false;
-    post(number, found);
-}
-
-void PixelSession::post(std::uint64_t number, const PixelAnswers& found)
-{
-    auto copy = std::make_unique<PixelAnswers>(found);
-    const std::lock_guard lock(mailbox_);
-    found_ = std::move(copy);
-    found_number_ = number;
+    found_.post(number, std::move(found));
 }
 
 bool PixelSession::update()
 {
-    std::unique_ptr<PixelAnswers> found;
-    std::uint64_t number = 0;
-    {
-        const std::lock_guard lock(mailbox_);
-        found = std::move(found_);
-        number = found_number_;
-    }
-    if (!found || number != number_)
+    std::optional<PixelAnswers> found = found_.take();
+    if (!found)
         return false;
     answers_ = std::move(*found);
     return true;

@@ -10,6 +10,7 @@
 #include "gpu/g_buffer.h"
 #include "surfels/occlusion.h"
 #include "viewer/background_worker.h"
+#include "viewer/mailbox.h"
 #include "viewer/model.h"
 #include "viewer/own_engine.h"
 
@@ -18,7 +19,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -79,17 +79,10 @@ public:
 
 private:
     void find(std::uint64_t number, const PixelQuestion& question, const Progress& progress);
-    void post(std::uint64_t number, const PixelAnswers& found);
 
     PixelAnswers answers_;
-    std::uint64_t number_ = 0;  ///< of the question; answers to others are dropped
-    OwnEngine own_;             ///< used by the background thread alone
-
-    // written by the background thread
-    std::mutex mailbox_;
-    std::unique_ptr<PixelAnswers> found_;
-    std::uint64_t found_number_ = 0;
-
+    OwnEngine own_;  ///< used by the background thread alone
+    Mailbox<PixelAnswers> found_;
     BackgroundWorker worker_;  // last: its thread writes to the above
 };
 
