@@ -265,18 +265,6 @@ private:
     SurfaceSamples& samples_;
 };
 
-}  // namespace
-
-double area_of(const Geometry& geometry, std::size_t triangle)
-{
-    const glm::uvec3 t = geometry.triangles[triangle];
-    const glm::dvec3 a(geometry.positions[t.x]);
-    return 0.5 * glm::length(glm::cross(glm::dvec3(geometry.positions[t.y]) - a,
-                                        glm::dvec3(geometry.positions[t.z]) - a));
-}
-
-namespace {
-
 /// How many samples so many triangles have together.
 double wanted_of(std::size_t triangles)
 {

@@ -17,7 +17,4 @@ namespace surfelao {
 
 inline constexpr std::size_t kQuadsEverywhere = 1u << 16;
 
-/// In the unit frame, squared.
-[[nodiscard]] double area_of(const Geometry& geometry, std::size_t triangle);
-
 }  // namespace surfelao

@@ -108,10 +108,4 @@ inline constexpr float kLeastSine2 = 1e-14f;  ///< the reflection's: a float's r
 [[nodiscard]] double ground_weight(const Definition& definition, const GroundSight& sight,
                                    const glm::dvec3& c, double area);
 
-/// FarVisibility in direction w, in [0, 1].
-[[nodiscard]] inline double visibility_towards(const FarVisibility& far, const glm::dvec3& w)
-{
-    return std::clamp(far.constant + glm::dot(glm::dvec3(far.slope), w), 0.0, 1.0);
-}
-
 }  // namespace surfelao
