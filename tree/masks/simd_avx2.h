@@ -282,26 +282,40 @@ SURFELAO_MASK_INLINE void load_transposed(const float* base, const std::uint32_t
     }
 }
 
+constexpr int kByteRows = 8;
 struct Bytes {
-    __m256i a, b;
+    __m256i v;
 };
 SURFELAO_MASK_INLINE Bytes operator+(Bytes x, Bytes y)
 {
-    return {_mm256_add_epi8(x.a, y.a), _mm256_add_epi8(x.b, y.b)};
+    return {_mm256_add_epi8(x.v, y.v)};
 }
 SURFELAO_MASK_INLINE Bytes operator-(Bytes x, Bytes y)
 {
-    return {_mm256_sub_epi8(x.a, y.a), _mm256_sub_epi8(x.b, y.b)};
+    return {_mm256_sub_epi8(x.v, y.v)};
 }
-SURFELAO_MASK_INLINE Bytes bytes_of(Int16 x)
+SURFELAO_MASK_INLINE Bytes operator&(Bytes x, Bytes y)
 {
-    return {x.a, x.b};
+    return {_mm256_and_si256(x.v, y.v)};
 }
-SURFELAO_MASK_INLINE Bytes nibble_counts(Int16 x)
+SURFELAO_MASK_INLINE Bytes all_bytes(std::uint32_t four)
+{
+    return {_mm256_set1_epi32(static_cast<int>(four))};
+}
+SURFELAO_MASK_INLINE Bytes load_bytes(const std::uint32_t* rows)
+{
+    return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(rows))};
+}
+template <int kBy>
+SURFELAO_MASK_INLINE Bytes shift_right(Bytes x)
+{
+    return {_mm256_srli_epi32(x.v, kBy)};
+}
+SURFELAO_MASK_INLINE Bytes nibble_counts(Bytes x)
 {
     const __m256i count =
         _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4));
-    return {_mm256_shuffle_epi8(count, x.a), _mm256_shuffle_epi8(count, x.b)};
+    return {_mm256_shuffle_epi8(count, x.v)};
 }
 struct ByteSum {
     __m256i v;  ///< 16 bits each, at most 4 * 48 * 127
@@ -309,8 +323,7 @@ struct ByteSum {
     SURFELAO_MASK_INLINE void add(Bytes x, const std::int8_t* table)
     {
         const auto* at = reinterpret_cast<const __m256i*>(table);
-        v = _mm256_add_epi16(v, _mm256_maddubs_epi16(x.a, _mm256_load_si256(at)));
-        v = _mm256_add_epi16(v, _mm256_maddubs_epi16(x.b, _mm256_load_si256(at + 1)));
+        v = _mm256_add_epi16(v, _mm256_maddubs_epi16(x.v, _mm256_load_si256(at)));
     }
 };
 SURFELAO_MASK_INLINE void total(const ByteSum (&sum)[6], std::int32_t (&out)[6])

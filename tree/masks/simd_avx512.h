@@ -238,7 +238,8 @@ SURFELAO_MASK_INLINE void load_transposed(const float* base, const std::uint32_t
     }
 }
 
-/// A small number for each byte of 16 words.
+/// As many rows of a face as a register holds, and a small number for each of their bytes.
+constexpr int kByteRows = 16;
 struct Bytes {
     __m512i v;
 };
@@ -250,13 +251,27 @@ SURFELAO_MASK_INLINE Bytes operator-(Bytes a, Bytes b)
 {
     return {_mm512_sub_epi8(a.v, b.v)};
 }
-/// Byte 4 i + k of the result stands at bits 8 k .. + 7 of lane i.
-SURFELAO_MASK_INLINE Bytes bytes_of(Int16 a)
+SURFELAO_MASK_INLINE Bytes operator&(Bytes a, Bytes b)
 {
-    return {a.v};
+    return {_mm512_and_si512(a.v, b.v)};
+}
+SURFELAO_MASK_INLINE Bytes all_bytes(std::uint32_t four)
+{
+    return {_mm512_set1_epi32(static_cast<int>(four))};
+}
+/// Byte 4 i + k stands at bits 8 k .. + 7 of row i.
+SURFELAO_MASK_INLINE Bytes load_bytes(const std::uint32_t* rows)
+{
+    return {_mm512_loadu_si512(rows)};
+}
+/// Row by row.
+template <int kBy>
+SURFELAO_MASK_INLINE Bytes shift_right(Bytes a)
+{
+    return {_mm512_srli_epi32(a.v, kBy)};
 }
 /// Set bits of each byte; all are below 16.
-SURFELAO_MASK_INLINE Bytes nibble_counts(Int16 a)
+SURFELAO_MASK_INLINE Bytes nibble_counts(Bytes a)
 {
     const __m128i count = _mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4);
     return {_mm512_shuffle_epi8(_mm512_broadcast_i32x4(count), a.v)};
