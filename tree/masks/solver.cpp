@@ -113,7 +113,8 @@ private:
             at_leaf_(group, in, in_count, from_above, workspace);
             return;
         }
-        MaskShared shared = from_above;
+        MaskShared shared;
+        copy(from_above, world_.settings.limits.count, shared);
         const auto visit_child = [&](std::uint32_t child, const std::uint32_t* list,
                                      std::size_t count) {
             visit(group.first_child + child, list, count, shared, level + 1);
