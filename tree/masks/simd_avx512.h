@@ -184,11 +184,13 @@ SURFELAO_MASK_INLINE Float16 as_float(Int16 a)
 {
     return {_mm512_castsi512_ps(a.v)};
 }
-/// All 32 bits from bit ceil(a) upward: all for a <= 0 or NaN, none for a > 31.
-SURFELAO_MASK_INLINE Int16 bits_from(Float16 a)
+/// All 32 bits from bit ceil(at - shift) upward, to within rounding: all for what is negative or
+/// NaN, none for what is above 31.
+SURFELAO_MASK_INLINE Int16 bits_from(Float16 at, Float16 shift)
 {
-    const __m512i from = _mm512_cvt_roundps_epu32(_mm512_max_ps(a.v, _mm512_setzero_ps()),
-                                                  _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC);
+    const __m512i from =
+        _mm512_cvt_roundps_epu32(_mm512_max_ps((at - shift).v, _mm512_setzero_ps()),
+                                 _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC);
     return {_mm512_sllv_epi32(_mm512_set1_epi32(-1), from)};
 }
 /// The chosen lanes, moved together to the front; what follows them is undefined.

@@ -212,12 +212,13 @@ SURFELAO_MASK_INLINE Float16 as_float(const Int16& x)
 {
     return each<Float16>([&](int i) { return reinterpret_cast<Float4>(x.v[i]); });
 }
-SURFELAO_MASK_INLINE Int16 bits_from(const Float16& x)
+SURFELAO_MASK_INLINE Int16 bits_from(const Float16& at, const Float16& shift)
 {
     return each<Int16>([&](int i) {
         // NaN is not above 0
+        const Float4 x = at.v[i] - shift.v[i];
         const Float4 zero = {}, most = zero + 32.0f;
-        Float4 from = x.v[i] > 0.0f ? x.v[i] : zero;
+        Float4 from = x > 0.0f ? x : zero;
         from = from < 32.0f ? from : most;
         Bool4 first = __builtin_convertvector(from, Bool4);
         first -= __builtin_convertvector(first, Float4) < from;
