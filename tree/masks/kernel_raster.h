@@ -191,8 +191,8 @@ SURFELAO_MASK_INLINE void set_bits(std::uint32_t* mask, Int16 bits)
 /// the receiver's masks in `masks`, a pair for each limit. A polygon is set within the nearest
 /// limit that it does not cross, and cut within those that it does. kCut: there are limits.
 template <int kCorners, int kStride, bool kSheet, bool kCut>
-void draw(const MaskRaster& raster, const MaskLimits& limits, const float* corner,
-          const std::uint32_t* target, unsigned count, std::uint32_t* masks)
+void draw_polygons(const MaskRaster& raster, const MaskLimits& limits, const float* corner,
+                   const std::uint32_t* target, unsigned count, std::uint32_t* masks)
 {
     Vector16 c[kCorners];
     load_corners<kCorners, kStride>(corner, c);
@@ -243,6 +243,16 @@ void draw(const MaskRaster& raster, const MaskLimits& limits, const float* corne
             }
         }
     }
+}
+
+template <int kCorners, int kStride, bool kSheet>
+void draw(const MaskRaster& raster, const MaskLimits& limits, const float* corner,
+          const std::uint32_t* target, unsigned count, std::uint32_t* masks)
+{
+    const auto draw_them = limits.distance[0] < __builtin_inff()
+                               ? draw_polygons<kCorners, kStride, kSheet, true>
+                               : draw_polygons<kCorners, kStride, kSheet, false>;
+    draw_them(raster, limits, corner, target, count, masks);
 }
 
 /// The bits above the plane through the receiver with normal n.

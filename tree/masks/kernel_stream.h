@@ -139,10 +139,7 @@ public:
 private:
     void draw_first(unsigned count)
     {
-        const auto draw_polygons = limits_.distance[0] < __builtin_inff()
-                                       ? draw<kCorners, 2 * kLanes, kSheet, true>
-                                       : draw<kCorners, 2 * kLanes, kSheet, false>;
-        draw_polygons(raster_, limits_, corner_[0], target_, count, masks_);
+        draw<kCorners, 2 * kLanes, kSheet>(raster_, limits_, corner_[0], target_, count, masks_);
         if (slope_ != nullptr)
             slope_->template add<kCorners, 2 * kLanes>(corner_[0], count);
     }
