@@ -109,6 +109,13 @@ struct MaskShared {
     MaskFlow flow;
 };
 
+/// `to` becomes `from` within the first `limits` limits; beyond them stands anything.
+inline void copy(const MaskShared& from, unsigned limits, MaskShared& to)
+{
+    __builtin_memcpy(to.mask, from.mask, limits * sizeof from.mask[0]);
+    to.flow = from.flow;
+}
+
 /// What a leaf group has found within one limit of some of the nodes, to be taken up together with
 /// others.
 struct MaskKept {

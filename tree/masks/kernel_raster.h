@@ -31,13 +31,13 @@ SURFELAO_MASK_INLINE Int16 cone_bits(const MaskRaster& raster, float na, float n
     const Float16 root = sqrt(max(root2, zero)) * all(k);
     const Float16 b = p * all(nu);
     const Float16 scale = all(kMaskHalfColumns / a);
-    const Float16 first = fms(root - b, scale, shift) + all(kMaskHalfColumns);
-    const Float16 second = fms(zero - root - b, scale, shift) + all(kMaskHalfColumns);
+    const Float16 first = fma(root - b, scale, all(kMaskHalfColumns));
+    const Float16 second = fma(zero - root - b, scale, all(kMaskHalfColumns));
     if (a < 0.0f) {
-        const Int16 between = bits_from(first) & ~bits_from(second);
+        const Int16 between = bits_from(first, shift) & ~bits_from(second, shift);
         return select((root2 > zero) & (p > zero), between, all(0u));
     }
-    return nu > 0.0f ? bits_from(first) : ~bits_from(second);
+    return nu > 0.0f ? bits_from(first, shift) : ~bits_from(second, shift);
 }
 
 /// Of 16 polygons: corner i stands in rows 3 i to 3 i + 2 of `kStride` floats.
@@ -189,17 +189,17 @@ SURFELAO_MASK_INLINE void set_bits(std::uint32_t* mask, Int16 bits)
 /// Sixteen polygons at once up to the edges, then each by itself, 16 rows at a time.
 /// corner: 3 kCorners rows of `kStride` floats, relative to the receiver; target: word offset of
 /// the receiver's masks in `masks`, a pair for each limit. A polygon is set within the nearest
-/// limit that it does not cross, and cut within those that it does.
-template <int kCorners, int kStride, bool kSheet>
-void draw(const MaskRaster& raster, const MaskLimits& limits, const float* corner,
-          const std::uint32_t* target, unsigned count, std::uint32_t* masks)
+/// limit that it does not cross, and cut within those that it does. kCut: there are limits.
+template <int kCorners, int kStride, bool kSheet, bool kCut>
+void draw_polygons(const MaskRaster& raster, const MaskLimits& limits, const float* corner,
+                   const std::uint32_t* target, unsigned count, std::uint32_t* masks)
 {
     Vector16 c[kCorners];
     load_corners<kCorners, kStride>(corner, c);
     const auto planes = planes_of<kCorners>(c);
     Bool16 drawn = first_lanes(count) & (nonzero(as_int(planes.volume) & all(0x7fffffffu)));
     Cuts cuts;
-    if (limits.distance[0] < __builtin_inff())
+    if constexpr (kCut)
         find_cuts<kCorners>(c, limits, drawn, cuts);
     Bool16 in[kMaskFaces];
     find_faces<kCorners>(c, drawn, in);
@@ -220,11 +220,10 @@ void draw(const MaskRaster& raster, const MaskLimits& limits, const float* corne
             for (int i = 0; i < kCorners; ++i) {
                 const Float16 at =
                     fma(all(lines.slope[axis][i][lane]), row_v, all(lines.start[face][i][lane]));
-                inside =
-                    and_xor(inside, bits_from(at - row_shift), all(lines.below[axis][i][lane]));
+                inside = and_xor(inside, bits_from(at, row_shift), all(lines.below[axis][i][lane]));
             }
             std::uint32_t* mask = masks + target[lane] + kMaskFaceWords * face;
-            if ((cuts.lanes >> lane & 1u) == 0) {
+            if (!kCut || (cuts.lanes >> lane & 1u) == 0) {
                 set_bits<kSheet>(mask, inside);
                 continue;
             }
@@ -246,6 +245,16 @@ void draw(const MaskRaster& raster, const MaskLimits& limits, const float* corne
     }
 }
 
+template <int kCorners, int kStride, bool kSheet>
+void draw(const MaskRaster& raster, const MaskLimits& limits, const float* corner,
+          const std::uint32_t* target, unsigned count, std::uint32_t* masks)
+{
+    const auto draw_them = limits.distance[0] < __builtin_inff()
+                               ? draw_polygons<kCorners, kStride, kSheet, true>
+                               : draw_polygons<kCorners, kStride, kSheet, false>;
+    draw_them(raster, limits, corner, target, count, masks);
+}
+
 /// The bits above the plane through the receiver with normal n.
 inline void horizon(const MaskRaster& raster, const float* n, std::uint32_t* above)
 {
@@ -258,7 +267,7 @@ inline void horizon(const MaskRaster& raster, const float* n, std::uint32_t* abo
         const float scale = (turned ? kMaskHalfColumns : -kMaskHalfColumns) / size;
         const float slope = n[v] * scale, start = kMaskHalfColumns + na * scale;
         const Int16 from =
-            bits_from(fma(all(slope), load(raster.row_v), all(start) - load(raster.row_shift)));
+            bits_from(fma(all(slope), load(raster.row_v), all(start)), load(raster.row_shift));
         store(above + kMaskFaceWords * face, turned ? ~from : from);
     }
 }

@@ -131,6 +131,7 @@ struct Masks16 {
     alignas(64) std::uint32_t horizons[kLanes * kMaskMostLimits * kMaskWords];
     alignas(64) std::uint32_t target[kLanes];  ///< where the masks of each begin in `drawn`
     float normals[kLanes][3];
+    bool as_before[kLanes];  ///< has the sky of the receiver before it
 
     /// All that is shared or kept, and what is no sky as if it were covered. kept: null for none.
     SURFELAO_MASK_INLINE Masks16(const MaskWorld& world, const MaskShared& shared,
@@ -145,7 +146,12 @@ struct Masks16 {
         }
         for (unsigned i = 0; i < receivers.count; ++i) {
             std::uint32_t* above = horizons + i * skies * kMaskWords;
-            horizon(*world.raster, normals[i], above);
+            as_before[i] = i > 0 && !world.settings.has_ground &&
+                           std::memcmp(normals[i], normals[i - 1], sizeof normals[i]) == 0;
+            if (as_before[i])
+                std::memcpy(above, above - kMaskWords, kMaskWords * sizeof *above);
+            else
+                horizon(*world.raster, normals[i], above);
             for (unsigned k = 1; k < skies; ++k)
                 std::memcpy(above + k * kMaskWords, above, kMaskWords * sizeof *above);
             for (unsigned k = 0; k < skies; ++k)
@@ -239,20 +245,17 @@ void draw_lists(const MaskWorld& world, const MaskScratch& scratch, const Receiv
 }
 
 /// How much of the sky of one receiver with normal n is open, between 0 and 1 to rounding, cracks
-/// counted as closed where much is covered. A sky smaller than a bit is open. `open` becomes the
-/// bits that count as open.
+/// counted as closed where much is covered. A sky smaller than a bit is open. weight: of `above`.
+/// `open` becomes the bits that count as open.
 SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32_t* mask,
-                                       const std::uint32_t* above, const float* n,
+                                       const std::uint32_t* above, float weight, const float* n,
                                        std::uint32_t* open)
 {
     const MaskRaster& raster = *world.raster;
     open_bits(above, mask, open);
-    First of_open, of_above;
-    first_moments(raster, open, above, of_open, of_above);
-    const float weight = of_above.along(n);
     if (!(weight > 0.0f))
         return 1.0f;
-    float openness = of_open.along(n) / weight;
+    float openness = first_moments(raster, open).along(n) / weight;
     const float fill_weight = (1.0f - openness - world.settings.fill_from) / kMaskFillRange;
     if (!(world.settings.fill && fill_weight > 0.0f && openness > 0.0f))
         return openness;
@@ -307,13 +310,17 @@ void answer(const MaskWorld& world, const ReceiverGroup& group, const MaskShared
     const Visible visible = visible_of(world, shared, group.axis);
     alignas(64) float changes[kLanes];
     store(changes, changes_at(shared.flow, all_receivers));
+    float weight = 0.0f;  // of the sky
     for (unsigned i = 0; i < receivers.count; ++i) {
         const float* n = masks.normals[i];
         float openness = 0.0f, above = 0.0f, seen = 0.0f, m[6] = {};
         for (unsigned k = 0; k < limits.count; ++k) {
             alignas(64) std::uint32_t open[kMaskWords];
+            if (k < masks.skies && !masks.as_before[i])
+                weight = first_moments(*world.raster, masks.sky(i, k)).along(n);
             const float open_share =
-                limits.weight[k] * openness_of(world, masks.of(i, k), masks.sky(i, k), n, open);
+                limits.weight[k] *
+                openness_of(world, masks.of(i, k), masks.sky(i, k), weight, n, open);
             // the sky's size is exact, bits tell how much of it is open
             openness += open_share;
             seen += receivers.sky[k][i] * open_share;
@@ -341,7 +348,8 @@ void solve(const MaskWorld& world, const ReceiverGroup& group, const std::uint32
            std::size_t in_count, const MaskShared& from_above, const MaskReceivers& receivers,
            MaskAnswers& answers, MaskScratch& scratch)
 {
-    MaskShared shared = from_above;
+    MaskShared shared;
+    copy(from_above, world.settings.limits.count, shared);
     open_rest(world, group, in, in_count, shared, scratch);
     Masks16 masks(world, shared, receivers, nullptr, 0);
     const Receivers16 all_receivers = receivers_of(receivers, masks);
@@ -354,7 +362,8 @@ void keep(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_
           std::size_t in_count, const MaskShared& from_above, const MaskReceivers& receivers,
           MaskKept* kept, std::size_t stride, MaskScratch& scratch)
 {
-    MaskShared shared = from_above;
+    MaskShared shared;
+    copy(from_above, world.settings.limits.count, shared);
     open_rest(world, group, in, in_count, shared, scratch);
     Masks16 masks(world, shared, receivers, nullptr, 0);
     draw_lists(world, scratch, receivers_of(receivers, masks), receivers.count, false, masks);

@@ -27,47 +27,64 @@ struct Second {
     std::int32_t at[6] = {};
 };
 
-/// Set bits among the kPart-th kBits of each byte of a face.
+/// Set bits among the kPart-th kBits of each byte.
 template <int kBits, int kPart>
-SURFELAO_MASK_INLINE Bytes counts(Int16 face)
+SURFELAO_MASK_INLINE Bytes counts(Bytes rows)
 {
     constexpr std::uint32_t chosen = kBits == 2 ? 0x03030303u : 0x0f0f0f0fu;
-    return nibble_counts(shift_right<kBits * kPart>(face) & all(chosen));
+    return nibble_counts(shift_right<kBits * kPart>(rows) & all_bytes(chosen));
 }
 
-/// Set bits of the two faces of an axis.
+/// Some rows of the two faces of an axis: set bits.
 struct FacePair {
     Bytes both;  ///< the sum
     Bytes more;  ///< what the front has more than the back, plus all that a face can have
 
     template <int kBits, int kPart>
-    SURFELAO_MASK_INLINE static FacePair of(Int16 front, Int16 back)
+    SURFELAO_MASK_INLINE static FacePair of(Bytes front, Bytes back)
     {
         constexpr std::uint32_t full = 0x01010101u * kBits;
         const Bytes ahead = counts<kBits, kPart>(front), behind = counts<kBits, kPart>(back);
-        return {ahead + behind, ahead + (bytes_of(all(full)) - behind)};
+        return {ahead + behind, ahead + (all_bytes(full) - behind)};
     }
 };
 
+/// From the byte `at` of each face on.
 template <int kAxis, int kPart>
-SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, Int16 front, Int16 back, ByteSum* sum)
+SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, int at, Bytes front, Bytes back,
+                                    ByteSum* sum)
 {
     const auto faces = FacePair::of<2, kPart>(front, back);
-    sum[kAxis].add(faces.more, raster.first[0][kPart]);
-    sum[(kAxis + 1) % 3].add(faces.both, raster.first[1][kPart]);
-    sum[(kAxis + 2) % 3].add(faces.both, raster.first[2][kPart]);
+    sum[kAxis].add(faces.more, raster.first[0][kPart] + at);
+    sum[(kAxis + 1) % 3].add(faces.both, raster.first[1][kPart] + at);
+    sum[(kAxis + 2) % 3].add(faces.both, raster.first[2][kPart] + at);
 }
 
 template <int kAxis>
+SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, const std::uint32_t* mask, int row,
+                                    ByteSum* sum)
+{
+    const Bytes front = load_bytes(mask + 2 * kAxis * kMaskFaceWords + row);
+    const Bytes back = load_bytes(mask + (2 * kAxis + 1) * kMaskFaceWords + row);
+    add_first<kAxis, 0>(raster, 4 * row, front, back, sum);
+    add_first<kAxis, 1>(raster, 4 * row, front, back, sum);
+    add_first<kAxis, 2>(raster, 4 * row, front, back, sum);
+    add_first<kAxis, 3>(raster, 4 * row, front, back, sum);
+}
+
+/// As many rows at a time as a register holds: their sums stay in registers.
 SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, const std::uint32_t* mask,
                                     ByteSum* sum)
 {
-    const Int16 front = load(mask + 2 * kAxis * kMaskFaceWords);
-    const Int16 back = load(mask + (2 * kAxis + 1) * kMaskFaceWords);
-    add_first<kAxis, 0>(raster, front, back, sum);
-    add_first<kAxis, 1>(raster, front, back, sum);
-    add_first<kAxis, 2>(raster, front, back, sum);
-    add_first<kAxis, 3>(raster, front, back, sum);
+    ByteSum part[3] = {};
+#pragma GCC unroll 1
+    for (int row = 0; row < kMaskRows; row += kByteRows) {
+        add_first<0>(raster, mask, row, part);
+        add_first<1>(raster, mask, row, part);
+        add_first<2>(raster, mask, row, part);
+    }
+    for (int k = 0; k < 3; ++k)
+        sum[k] = part[k];
 }
 
 SURFELAO_MASK_INLINE First first_of(const MaskRaster& raster, const std::int32_t* totals)
@@ -78,28 +95,22 @@ SURFELAO_MASK_INLINE First first_of(const MaskRaster& raster, const std::int32_t
     return first;
 }
 
-SURFELAO_MASK_INLINE First first_moments(const MaskRaster& raster, const std::uint32_t* mask)
+inline First first_moments(const MaskRaster& raster, const std::uint32_t* mask)
 {
     ByteSum sum[6] = {};
-    add_first<0>(raster, mask, sum);
-    add_first<1>(raster, mask, sum);
-    add_first<2>(raster, mask, sum);
+    add_first(raster, mask, sum);
     std::int32_t totals[6];
     total(sum, totals);
     return first_of(raster, totals);
 }
 
 /// Of two masks.
-SURFELAO_MASK_INLINE void first_moments(const MaskRaster& raster, const std::uint32_t* a,
-                                        const std::uint32_t* b, First& of_a, First& of_b)
+inline void first_moments(const MaskRaster& raster, const std::uint32_t* a, const std::uint32_t* b,
+                          First& of_a, First& of_b)
 {
-    ByteSum sum[6] = {};
-    add_first<0>(raster, a, sum);
-    add_first<0>(raster, b, sum + 3);
-    add_first<1>(raster, a, sum);
-    add_first<1>(raster, b, sum + 3);
-    add_first<2>(raster, a, sum);
-    add_first<2>(raster, b, sum + 3);
+    ByteSum sum[6];
+    add_first(raster, a, sum);
+    add_first(raster, b, sum + 3);
     std::int32_t totals[6];
     total(sum, totals);
     of_a = first_of(raster, totals);
@@ -108,35 +119,38 @@ SURFELAO_MASK_INLINE void first_moments(const MaskRaster& raster, const std::uin
 
 /// Products of axes i and i + 1 stand at 3 + i.
 template <int kAxis, int kPart>
-SURFELAO_MASK_INLINE void add_second(const MaskRaster& raster, Int16 front, Int16 back,
+SURFELAO_MASK_INLINE void add_second(const MaskRaster& raster, int at, Bytes front, Bytes back,
                                      ByteSum* sum)
 {
     constexpr int u = (kAxis + 1) % 3, v = (kAxis + 2) % 3;
     const auto faces = FacePair::of<4, kPart>(front, back);
-    sum[kAxis].add(faces.both, raster.second[0][kPart]);
-    sum[3 + kAxis].add(faces.more, raster.second[1][kPart]);
-    sum[3 + v].add(faces.more, raster.second[2][kPart]);
-    sum[u].add(faces.both, raster.second[3][kPart]);
-    sum[3 + u].add(faces.both, raster.second[4][kPart]);
-    sum[v].add(faces.both, raster.second[5][kPart]);
+    sum[kAxis].add(faces.both, raster.second[0][kPart] + at);
+    sum[3 + kAxis].add(faces.more, raster.second[1][kPart] + at);
+    sum[3 + v].add(faces.more, raster.second[2][kPart] + at);
+    sum[u].add(faces.both, raster.second[3][kPart] + at);
+    sum[3 + u].add(faces.both, raster.second[4][kPart] + at);
+    sum[v].add(faces.both, raster.second[5][kPart] + at);
 }
 
 template <int kAxis>
-SURFELAO_MASK_INLINE void add_second(const MaskRaster& raster, const std::uint32_t* mask,
+SURFELAO_MASK_INLINE void add_second(const MaskRaster& raster, const std::uint32_t* mask, int row,
                                      ByteSum* sum)
 {
-    const Int16 front = load(mask + 2 * kAxis * kMaskFaceWords);
-    const Int16 back = load(mask + (2 * kAxis + 1) * kMaskFaceWords);
-    add_second<kAxis, 0>(raster, front, back, sum);
-    add_second<kAxis, 1>(raster, front, back, sum);
+    const Bytes front = load_bytes(mask + 2 * kAxis * kMaskFaceWords + row);
+    const Bytes back = load_bytes(mask + (2 * kAxis + 1) * kMaskFaceWords + row);
+    add_second<kAxis, 0>(raster, 4 * row, front, back, sum);
+    add_second<kAxis, 1>(raster, 4 * row, front, back, sum);
 }
 
-SURFELAO_MASK_INLINE Second second_moments(const MaskRaster& raster, const std::uint32_t* mask)
+inline Second second_moments(const MaskRaster& raster, const std::uint32_t* mask)
 {
     ByteSum sum[6] = {};
-    add_second<0>(raster, mask, sum);
-    add_second<1>(raster, mask, sum);
-    add_second<2>(raster, mask, sum);
+#pragma GCC unroll 1
+    for (int row = 0; row < kMaskRows; row += kByteRows) {
+        add_second<0>(raster, mask, row, sum);
+        add_second<1>(raster, mask, row, sum);
+        add_second<2>(raster, mask, row, sum);
+    }
     Second second;
     total(sum, second.at);
     for (int k = 0; k < 3; ++k)

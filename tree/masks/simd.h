@@ -5,8 +5,9 @@
 /// code of a wide set can be linked into a narrow one. The same results in all three but for the
 /// rounding of fused products and of reciprocals.
 ///
-/// Float16 and Int16 are sixteen numbers, Bool16 sixteen truth values, Bytes sixty-four small
-/// numbers, ByteSum a sum of products of such; simd_avx512.h says what each operation does.
+/// Float16 and Int16 are sixteen numbers, Bool16 sixteen truth values, Bytes as many small numbers
+/// as a register has bytes, ByteSum a sum of products of such; simd_avx512.h says what each
+/// operation does.
 #pragma once
 
 // All in one function, and checked at each step, would take a compiler minutes.

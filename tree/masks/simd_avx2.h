@@ -202,23 +202,29 @@ SURFELAO_MASK_INLINE Bool16 nonzero(Int16 x)
     return {_mm256_castsi256_ps(_mm256_xor_si256(_mm256_cmpeq_epi32(x.a, zero), ones)),
             _mm256_castsi256_ps(_mm256_xor_si256(_mm256_cmpeq_epi32(x.b, zero), ones))};
 }
-SURFELAO_MASK_INLINE __m256i bits_from8(__m256 x)
+SURFELAO_MASK_INLINE __m256i bits_from8(__m256 at, __m256 shift)
 {
-    // the second operand is what comes out for NaN; what no integer holds becomes 2^31, and by so
-    // much, as by all above 31, everything is shifted out
-    const __m256 from = _mm256_max_ps(x, _mm256_setzero_ps());
-    return _mm256_sllv_epi32(_mm256_set1_epi32(-1), _mm256_cvttps_epi32(_mm256_ceil_ps(from)));
+    // the nearest to half a column more is what rounding up gives, but next to whole columns, and
+    // the half is taken off the shift, which is the same for many; the second operand is what comes
+    // out for NaN; what no integer holds becomes 2^31, and by so much, as by all above 31,
+    // everything is shifted out
+    const __m256 half = _mm256_set1_ps(0.49999f);
+    const __m256 from = _mm256_sub_ps(at, _mm256_sub_ps(shift, half));
+    return _mm256_sllv_epi32(_mm256_set1_epi32(-1),
+                             _mm256_cvtps_epi32(_mm256_max_ps(from, _mm256_setzero_ps())));
 }
-SURFELAO_MASK_INLINE Int16 bits_from(Float16 x)
+SURFELAO_MASK_INLINE Int16 bits_from(Float16 at, Float16 shift)
 {
-    return {bits_from8(x.a), bits_from8(x.b)};
+    return {bits_from8(at.a, shift.a), bits_from8(at.b, shift.b)};
 }
 
 /// For each of 256 masks the chosen lanes first.
 struct PackTable {
     alignas(32) std::uint32_t lane[256][8];
+    alignas(32) std::uint32_t turned[9][8];  ///< lanes, turned upward by so many
+    alignas(32) std::uint32_t first[9][8];   ///< ~0 in so many
 
-    constexpr PackTable() : lane()
+    constexpr PackTable() : lane(), turned(), first()
     {
         for (unsigned mask = 0; mask < 256; ++mask) {
             unsigned count = 0;
@@ -227,21 +233,32 @@ struct PackTable {
                     lane[mask][count++] = i;
             }
         }
+        for (unsigned count = 0; count <= 8; ++count) {
+            for (unsigned i = 0; i < 8; ++i) {
+                turned[count][i] = (i - count) & 7u;
+                first[count][i] = i < count ? ~0u : 0u;
+            }
+        }
     }
 };
 constexpr PackTable kPackTable;
+
+SURFELAO_MASK_INLINE __m256i load8(const std::uint32_t* p)
+{
+    return _mm256_load_si256(reinterpret_cast<const __m256i*>(p));
+}
 
 SURFELAO_MASK_INLINE Float16 pack(Float16 x, Bool16 m)
 {
     const auto low = static_cast<unsigned>(_mm256_movemask_ps(m.a));
     const auto high = static_cast<unsigned>(_mm256_movemask_ps(m.b));
-    const auto turn = [](unsigned mask) {
-        return _mm256_load_si256(reinterpret_cast<const __m256i*>(kPackTable.lane[mask]));
-    };
-    alignas(32) float both[16];
-    _mm256_store_ps(both, _mm256_permutevar8x32_ps(x.a, turn(low)));
-    _mm256_storeu_ps(both + __builtin_popcount(low), _mm256_permutevar8x32_ps(x.b, turn(high)));
-    return load(both);
+    const int count = __builtin_popcount(low);
+    // the upper half goes on where the lower one ends
+    const __m256i behind =
+        _mm256_permutevar8x32_epi32(load8(kPackTable.lane[high]), load8(kPackTable.turned[count]));
+    const __m256 a = _mm256_permutevar8x32_ps(x.a, load8(kPackTable.lane[low]));
+    const __m256 b = _mm256_permutevar8x32_ps(x.b, behind);
+    return {_mm256_blendv_ps(b, a, _mm256_castsi256_ps(load8(kPackTable.first[count]))), b};
 }
 SURFELAO_MASK_INLINE Int16 pack(Int16 x, Bool16 m)
 {
@@ -282,26 +299,40 @@ SURFELAO_MASK_INLINE void load_transposed(const float* base, const std::uint32_t
     }
 }
 
+constexpr int kByteRows = 8;
 struct Bytes {
-    __m256i a, b;
+    __m256i v;
 };
 SURFELAO_MASK_INLINE Bytes operator+(Bytes x, Bytes y)
 {
-    return {_mm256_add_epi8(x.a, y.a), _mm256_add_epi8(x.b, y.b)};
+    return {_mm256_add_epi8(x.v, y.v)};
 }
 SURFELAO_MASK_INLINE Bytes operator-(Bytes x, Bytes y)
 {
-    return {_mm256_sub_epi8(x.a, y.a), _mm256_sub_epi8(x.b, y.b)};
+    return {_mm256_sub_epi8(x.v, y.v)};
 }
-SURFELAO_MASK_INLINE Bytes bytes_of(Int16 x)
+SURFELAO_MASK_INLINE Bytes operator&(Bytes x, Bytes y)
 {
-    return {x.a, x.b};
+    return {_mm256_and_si256(x.v, y.v)};
 }
-SURFELAO_MASK_INLINE Bytes nibble_counts(Int16 x)
+SURFELAO_MASK_INLINE Bytes all_bytes(std::uint32_t four)
+{
+    return {_mm256_set1_epi32(static_cast<int>(four))};
+}
+SURFELAO_MASK_INLINE Bytes load_bytes(const std::uint32_t* rows)
+{
+    return {_mm256_loadu_si256(reinterpret_cast<const __m256i*>(rows))};
+}
+template <int kBy>
+SURFELAO_MASK_INLINE Bytes shift_right(Bytes x)
+{
+    return {_mm256_srli_epi32(x.v, kBy)};
+}
+SURFELAO_MASK_INLINE Bytes nibble_counts(Bytes x)
 {
     const __m256i count =
         _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4));
-    return {_mm256_shuffle_epi8(count, x.a), _mm256_shuffle_epi8(count, x.b)};
+    return {_mm256_shuffle_epi8(count, x.v)};
 }
 struct ByteSum {
     __m256i v;  ///< 16 bits each, at most 4 * 48 * 127
@@ -309,8 +340,7 @@ struct ByteSum {
     SURFELAO_MASK_INLINE void add(Bytes x, const std::int8_t* table)
     {
         const auto* at = reinterpret_cast<const __m256i*>(table);
-        v = _mm256_add_epi16(v, _mm256_maddubs_epi16(x.a, _mm256_load_si256(at)));
-        v = _mm256_add_epi16(v, _mm256_maddubs_epi16(x.b, _mm256_load_si256(at + 1)));
+        v = _mm256_add_epi16(v, _mm256_maddubs_epi16(x.v, _mm256_load_si256(at)));
     }
 };
 SURFELAO_MASK_INLINE void total(const ByteSum (&sum)[6], std::int32_t (&out)[6])

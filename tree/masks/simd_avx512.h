@@ -184,11 +184,13 @@ SURFELAO_MASK_INLINE Float16 as_float(Int16 a)
 {
     return {_mm512_castsi512_ps(a.v)};
 }
-/// All 32 bits from bit ceil(a) upward: all for a <= 0 or NaN, none for a > 31.
-SURFELAO_MASK_INLINE Int16 bits_from(Float16 a)
+/// All 32 bits from bit ceil(at - shift) upward, to within rounding: all for what is negative or
+/// NaN, none for what is above 31.
+SURFELAO_MASK_INLINE Int16 bits_from(Float16 at, Float16 shift)
 {
-    const __m512i from = _mm512_cvt_roundps_epu32(_mm512_max_ps(a.v, _mm512_setzero_ps()),
-                                                  _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC);
+    const __m512i from =
+        _mm512_cvt_roundps_epu32(_mm512_max_ps((at - shift).v, _mm512_setzero_ps()),
+                                 _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC);
     return {_mm512_sllv_epi32(_mm512_set1_epi32(-1), from)};
 }
 /// The chosen lanes, moved together to the front; what follows them is undefined.
@@ -238,7 +240,8 @@ SURFELAO_MASK_INLINE void load_transposed(const float* base, const std::uint32_t
     }
 }
 
-/// A small number for each byte of 16 words.
+/// As many rows of a face as a register holds, and a small number for each of their bytes.
+constexpr int kByteRows = 16;
 struct Bytes {
     __m512i v;
 };
@@ -250,13 +253,27 @@ SURFELAO_MASK_INLINE Bytes operator-(Bytes a, Bytes b)
 {
     return {_mm512_sub_epi8(a.v, b.v)};
 }
-/// Byte 4 i + k of the result stands at bits 8 k .. + 7 of lane i.
-SURFELAO_MASK_INLINE Bytes bytes_of(Int16 a)
+SURFELAO_MASK_INLINE Bytes operator&(Bytes a, Bytes b)
 {
-    return {a.v};
+    return {_mm512_and_si512(a.v, b.v)};
+}
+SURFELAO_MASK_INLINE Bytes all_bytes(std::uint32_t four)
+{
+    return {_mm512_set1_epi32(static_cast<int>(four))};
+}
+/// Byte 4 i + k stands at bits 8 k .. + 7 of row i.
+SURFELAO_MASK_INLINE Bytes load_bytes(const std::uint32_t* rows)
+{
+    return {_mm512_loadu_si512(rows)};
+}
+/// Row by row.
+template <int kBy>
+SURFELAO_MASK_INLINE Bytes shift_right(Bytes a)
+{
+    return {_mm512_srli_epi32(a.v, kBy)};
 }
 /// Set bits of each byte; all are below 16.
-SURFELAO_MASK_INLINE Bytes nibble_counts(Int16 a)
+SURFELAO_MASK_INLINE Bytes nibble_counts(Bytes a)
 {
     const __m128i count = _mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4);
     return {_mm512_shuffle_epi8(_mm512_broadcast_i32x4(count), a.v)};

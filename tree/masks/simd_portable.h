@@ -212,12 +212,13 @@ SURFELAO_MASK_INLINE Float16 as_float(const Int16& x)
 {
     return each<Float16>([&](int i) { return reinterpret_cast<Float4>(x.v[i]); });
 }
-SURFELAO_MASK_INLINE Int16 bits_from(const Float16& x)
+SURFELAO_MASK_INLINE Int16 bits_from(const Float16& at, const Float16& shift)
 {
     return each<Int16>([&](int i) {
         // NaN is not above 0
+        const Float4 x = at.v[i] - shift.v[i];
         const Float4 zero = {}, most = zero + 32.0f;
-        Float4 from = x.v[i] > 0.0f ? x.v[i] : zero;
+        Float4 from = x > 0.0f ? x : zero;
         from = from < 32.0f ? from : most;
         Bool4 first = __builtin_convertvector(from, Bool4);
         first -= __builtin_convertvector(first, Float4) < from;
@@ -261,6 +262,7 @@ SURFELAO_MASK_INLINE void load_transposed(const float* base, const std::uint32_t
     }
 }
 
+constexpr int kByteRows = 16;
 struct Bytes {
     Byte16 v[4];
 };
@@ -272,15 +274,33 @@ SURFELAO_MASK_INLINE Bytes operator-(const Bytes& x, const Bytes& y)
 {
     return each<Bytes>([&](int i) { return x.v[i] - y.v[i]; });
 }
-SURFELAO_MASK_INLINE Bytes bytes_of(const Int16& x)
+SURFELAO_MASK_INLINE Bytes operator&(const Bytes& x, const Bytes& y)
+{
+    return each<Bytes>([&](int i) { return x.v[i] & y.v[i]; });
+}
+SURFELAO_MASK_INLINE Bytes all_bytes(std::uint32_t four)
+{
+    const Word4 words = Word4{} + four;
+    return each<Bytes>([&](int) { return reinterpret_cast<Byte16>(words); });
+}
+SURFELAO_MASK_INLINE Bytes load_bytes(const std::uint32_t* rows)
 {
     static_assert(std::endian::native == std::endian::little);
-    return each<Bytes>([&](int i) { return reinterpret_cast<Byte16>(x.v[i]); });
+    Bytes bytes;
+    std::memcpy(bytes.v, rows, sizeof bytes.v);
+    return bytes;
 }
-SURFELAO_MASK_INLINE Bytes nibble_counts(const Int16& x)
+template <int kBy>
+SURFELAO_MASK_INLINE Bytes shift_right(const Bytes& x)
+{
+    return each<Bytes>(
+        [&](int i) { return reinterpret_cast<Byte16>(reinterpret_cast<Word4>(x.v[i]) >> kBy); });
+}
+SURFELAO_MASK_INLINE Bytes nibble_counts(const Bytes& x)
 {
     return each<Bytes>([&](int i) {
-        const Word4 pairs = x.v[i] - (x.v[i] >> 1 & 0x05050505u);
+        const Word4 words = reinterpret_cast<Word4>(x.v[i]);
+        const Word4 pairs = words - (words >> 1 & 0x05050505u);
         return reinterpret_cast<Byte16>((pairs & 0x03030303u) + (pairs >> 2 & 0x03030303u));
     });
 }

@@ -113,27 +113,33 @@ private:
             at_leaf_(group, in, in_count, from_above, workspace);
             return;
         }
-        MaskShared shared = from_above;
         const auto visit_child = [&](std::uint32_t child, const std::uint32_t* list,
-                                     std::size_t count) {
+                                     std::size_t count, const MaskShared& shared) {
             visit(group.first_child + child, list, count, shared, level + 1);
         };
+        if (group.end - group.begin <= kMaskLeastSharing) {
+            visit_child(0, in, in_count, from_above);
+            visit_child(1, in, in_count, from_above);
+            return;
+        }
+        MaskShared shared;
+        copy(from_above, world_.settings.limits.count, shared);
         if (group.end - group.begin > kMaskParallelReceivers) {
             // a thread that waits may take up other groups meanwhile: this list is nobody else's
             MaskBuffer<std::uint32_t> list;
             solver_.kernel_.descend(world_, group, in, in_count, list, shared, workspace.scratch);
             const std::vector<std::uint32_t> kept(list.data, list.data + list.count);
             release(list);
-            tbb::parallel_invoke([&] { visit_child(0, kept.data(), kept.size()); },
-                                 [&] { visit_child(1, kept.data(), kept.size()); });
+            tbb::parallel_invoke([&] { visit_child(0, kept.data(), kept.size(), shared); },
+                                 [&] { visit_child(1, kept.data(), kept.size(), shared); });
         } else {
             if (workspace.lists.size() <= level)
                 workspace.lists.resize(level + 1);
             solver_.kernel_.descend(world_, group, in, in_count, workspace.lists[level], shared,
                                     workspace.scratch);
             const MaskBuffer<std::uint32_t> list = workspace.lists[level];
-            visit_child(0, list.data, list.count);
-            visit_child(1, list.data, list.count);
+            visit_child(0, list.data, list.count, shared);
+            visit_child(1, list.data, list.count, shared);
         }
     }
 
