@@ -25,7 +25,9 @@
 // Writes     out_share         RGBA32F: integral of n.w over the hemisphere, over the open bits, over
 //                              those left open by filling, over those left open by closing
 //            out_bent, out_bent_filled, out_bent_closed
-//                              RGBA32F: integral of w (n.w) over the same bits, mask frame, 0
+//                              RGBA32F: integral of w (n.w) over the same bits, mask frame | 0; of
+//                              out_bent_filled: integral of n.w over the bits left open by filling
+//                              beside narrow clusters too
 // CPU twin   first_moments and second_moments in tree/masks/kernel_sums.h, horizon and take_ground in
 //            _raster.h, fill and close in _cracks.h
 #ifndef GROUND
@@ -108,6 +110,15 @@ uint grown_across(uint rows[18], int y)
     return rows[y + 1] | low | beside(low, y - 1, y) | high | beside(high, y + 1, y);
 }
 
+// What filling leaves open in row y and what touches it: a notch in the rim of an opening is most
+// likely part of it.
+uint rim_of(uint filled[18], int y)
+{
+    uint left = ~filled[1 + y];
+    return left | (left << 1) | (left >> 1) | (y > 0 ? ~filled[y] : 0u) |
+           (y < 15 ? ~filled[2 + y] : 0u);
+}
+
 #if GROUND
 // The bits of quarter q that the ground covers, seen from a signed height over it.
 uvec4 ground_bits(float height, int q)
@@ -164,18 +175,19 @@ void main()
         return;
 
     // cracks of one bit: neighbours on both sides are set, and a sheet has set one of them
-    uint filled[18];
-    filled[0] = filled[17] = 0u;
+    uint filled[18], all_filled[18];  // the second: whoever has set them
+    filled[0] = filled[17] = all_filled[0] = all_filled[17] = 0u;
     for (int y = 0; y < 16; ++y) {
         uint m    = closed[1 + y];
         uint l    = sheets[1 + y];
         uint low  = closed[y];
         uint high = closed[2 + y];
-        uint sides   = (m << 1) & (m >> 1) & ((l << 1) | (l >> 1));
+        uint sides   = (m << 1) & (m >> 1);
         uint stacked = low & beside(low, y - 1, y) & high & beside(high, y + 1, y);
         uint near    = sheets[y] | beside(sheets[y], y - 1, y) | sheets[2 + y] |
                     beside(sheets[2 + y], y + 1, y);
-        filled[1 + y] = m | sides | (stacked & near);
+        filled[1 + y]     = m | (sides & ((l << 1) | (l >> 1))) | (stacked & near);
+        all_filled[1 + y] = m | sides | stacked;
     }
     // cracks of two bits: grown by one bit along the rows, then across them, and shrunk again, where
     // a sheet has set a bit nearby
@@ -186,8 +198,9 @@ void main()
         grown[1 + y]      = grown_across(filled, y);
         wide_sheets[1 + y] = l | (l << 1) | (l >> 1);
     }
-    Sums cracks  = kNothing;
-    Sums closing = kNothing;
+    Sums cracks     = kNothing;
+    Sums all_cracks = kNothing;
+    Sums closing    = kNothing;
     for (int y = 0; y < 16; ++y) {
         uint m       = filled[1 + y];
         uint wide    = m | (m << 1) | (m >> 1);
@@ -195,17 +208,14 @@ void main()
         uint low     = grown[y];
         uint high    = grown[2 + y];
         uint columns = grown[1 + y] & low & beside(low, y - 1, y) & high & beside(high, y + 1, y);
-        // a notch in the rim of what filling leaves open is most likely part of it
-        uint left    = ~m;
-        uint rim     = left | (left << 1) | (left >> 1) | (y > 0 ? ~filled[y] : 0u) |
-                   (y < 15 ? ~filled[2 + y] : 0u);
-        add(cracks, y, ~closed[1 + y] & ~rim);
+        add(cracks, y, ~closed[1 + y] & ~rim_of(filled, y));
+        add(all_cracks, y, ~closed[1 + y] & ~rim_of(all_filled, y));
         add(closing, y, (m | ((rows | columns) & grown_across(wide_sheets, y))) & ~closed[1 + y]);
     }
     Sums rest = Sums(open.first - cracks.first, open.second - cracks.second,
                      open.rest - cracks.rest);
     out_share.z     = along(rest, n);
-    out_bent_filled = bent(rest, n);
+    out_bent_filled = vec4(bent(rest, n).xyz, along(open, n) - along(all_cracks, n));
     rest = Sums(open.first - closing.first, open.second - closing.second, open.rest - closing.rest);
     out_share.w     = along(rest, n);
     out_bent_closed = bent(rest, n);

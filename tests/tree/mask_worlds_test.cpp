@@ -169,6 +169,24 @@ TEST(MaskWorlds, WiresAreAsOpenAsTheyAre)
     EXPECT_NEAR(darker / static_cast<double>(some.size()), 0.0, 0.0045);
 }
 
+// From inside of a smooth body nothing is open, however narrow its clusters are drawn.
+TEST(MaskWorlds, BodiesAreClosedFromInside)
+{
+    constexpr std::uint32_t kKnot = 16;
+    constexpr std::size_t kStep = 16;
+    const Geometry geometry = make_geometry(scenes::family_scene(kKnot));
+    const std::vector<Receiver> outside = vertex_receivers(geometry);
+    std::vector<Receiver> inside;
+    for (std::size_t i = 0; i < outside.size(); i += kStep) {
+        const Receiver& there = outside[i];
+        inside.push_back({there.position - 2.0f * kVertexOffset * there.normal, -there.normal});
+    }
+    const std::vector<Occlusion> exact = solve(geometry, inside, {.exact = true});
+    for (const float quality : {MaskOptions::kGood, MaskOptions::kBest, MaskOptions::kFinest})
+        EXPECT_LT(rms_difference(exact, solve(geometry, inside, {.quality = quality})), 0.003)
+            << quality;
+}
+
 TEST(MaskWorlds, RefusesWhatItDoesNotMeasure)
 {
     const Geometry geometry = make_geometry(scenes::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1));

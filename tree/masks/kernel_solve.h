@@ -255,20 +255,31 @@ SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32
     open_bits(above, mask, open);
     if (!(weight > 0.0f))
         return 1.0f;
-    float openness = first_moments(raster, open).along(n) / weight;
-    const float fill_weight = (1.0f - openness - world.settings.fill_from) / kMaskFillRange;
-    if (!(world.settings.fill && fill_weight > 0.0f && openness > 0.0f))
-        return openness;
+    const float drawn = first_moments(raster, open).along(n) / weight;
+    const float fill_weight = (1.0f - drawn - world.settings.fill_from) / kMaskFillRange;
+    if (!(world.settings.fill && fill_weight > 0.0f && drawn > 0.0f))
+        return drawn;
 
     alignas(64) std::uint32_t filled[kMaskWords];
-    for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
-        // what lies below the horizon is no opening
-        const Int16 closed = load(mask + w) | ~load(above + w);
-        store(filled + w, fill(raster, closed, load(mask + kMaskWords + w)));
-        store(open + w, openings(~closed, load(filled + w)));
-    }
-    const float cracks = openness - first_moments(raster, open).along(n) / weight;
-    openness -= (fill_weight < 1.0f ? fill_weight : 1.0f) * kMaskFillShare * cracks;
+    // what cracks are worth; beside_all: beside narrow clusters too
+    const auto cracks_of = [&](bool beside_all) {
+        for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
+            // what lies below the horizon is no opening
+            const Int16 closed = load(mask + w) | ~load(above + w);
+            const Int16 sheets = beside_all ? closed : load(mask + kMaskWords + w);
+            store(filled + w, fill(raster, closed, sheets));
+            store(open + w, openings(~closed, load(filled + w)));
+        }
+        return drawn - first_moments(raster, open).along(n) / weight;
+    };
+    const float fill_share = (fill_weight < 1.0f ? fill_weight : 1.0f) * kMaskFillShare;
+    const float cracks = cracks_of(false);
+    float openness = drawn - fill_share * cracks;
+
+    const float narrow_weight = (1.0f - openness - kMaskNarrowFrom) / kMaskNarrowRange;
+    if (narrow_weight > 0.0f && openness > 0.0f)
+        openness -=
+            (narrow_weight < 1.0f ? narrow_weight : 1.0f) * fill_share * (cracks_of(true) - cracks);
 
     const float close_weight = (1.0f - openness - kMaskCloseFrom) / kMaskCloseRange;
     if (!(world.settings.close > 0.0f && close_weight > 0.0f && openness > 0.0f))
