@@ -177,7 +177,7 @@ std::vector<Occlusion> bake_at_vertices(const Job& job, BakeReport& report,
     stage.lap();
     report.misfit = target->misfit(baked.answers, baked.values);
     target.reset();
-    baked.answers = {};
+    baked.answers = std::vector<Occlusion>();
     std::vector<std::string> written_notes;
     tbb::parallel_invoke(
         [&] {

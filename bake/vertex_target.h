@@ -77,7 +77,7 @@ public:
     [[nodiscard]] std::span<const Receiver> receivers() const { return receivers_; }
 
     /// There are none from now on: answers and what is made of them take memory of their own.
-    void forget_receivers() { receivers_ = {}; }
+    void forget_receivers() { receivers_ = std::vector<Receiver>(); }  // {} would keep the room
 
     /// Samples are gone until they are unfolded (VertexFit::fold): meanwhile only the receivers are
     /// asked for.
