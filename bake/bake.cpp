@@ -53,8 +53,7 @@ void take(const VertexBake& bake, BakeReport& report)
 
 namespace {
 
-/// One file of a world, and the engines of the whole; null where it is the only one: then what they
-/// built is gone as soon as they have answered, for what follows needs the memory.
+/// One file of a world, and the engines of the whole; null where it is the only one.
 struct Job {
     std::shared_ptr<const Mesh> mesh;
     Occluders* occluders = nullptr;
@@ -76,35 +75,48 @@ VertexBake bake_merged(const Mesh& mesh, const VertexTarget& target, const BakeS
             throw InputError(settings.input.string() + ": no part answers receiver " +
                              std::to_string(i));
     }
-    VertexBake bake = bake_answers(mesh, target, settings.engine, offset, settings.check,
-                                   std::move(answers), progress);
-    bake.surfels = merged.surfels;
-    bake.residual = merged.residual;
-    return bake;
+    VertexBake solved;
+    solved.engine = settings.engine;
+    solved.answers = std::move(answers);
+    solved.surfels = merged.surfels;
+    solved.residual = merged.residual;
+    return bake_answers(mesh, target, std::move(solved), offset, settings.check, progress);
 }
 
-VertexBake answer(const Job& job, const VertexTarget& target, const StageProgress& progress,
-                  BakeReport& report)
+/// engines: of this bake alone, gone as soon as they have answered; empty: those of the job, or
+/// none. The target's receivers are gone then too: large meshes need the memory.
+VertexBake answer(const Job& job, std::optional<Occluders>& engines, VertexTarget& target,
+                  const StageProgress& progress, BakeReport& report)
 {
     const BakeSettings& settings = report.settings;
     const Mesh& mesh = *job.mesh;
     const Offset offset = offset_of(settings.target, mesh.geometry.frame);
-    VertexBake bake = settings.merged ? bake_merged(mesh, target, settings, offset, progress)
-                      : settings.error
-                          ? bake_to_error(mesh, target, settings.engine, offset, *settings.error,
-                                          settings.check, progress, job.occluders)
-                          : bake_vertices(mesh, target, settings.engine, offset, settings.check,
-                                          progress, job.occluders);
+    VertexBake bake;
+    if (settings.merged) {
+        bake = bake_merged(mesh, target, settings, offset, progress);
+    } else if (settings.error) {
+        bake = bake_to_error(mesh, target, settings.engine, offset, *settings.error, settings.check,
+                             progress, engines ? &*engines : job.occluders);
+    } else {
+        target.fold();
+        VertexBake solved =
+            solve_vertices(mesh, target, settings.engine, progress,
+                           engines ? &*engines : job.occluders, [&] { target.forget_receivers(); });
+        engines.reset();
+        target.forget_receivers();
+        target.unfold();
+        bake = bake_answers(mesh, target, std::move(solved), offset, settings.check, progress);
+    }
     take(bake, report);
     return bake;
 }
 
 /// Solves a share and writes its file.
-void bake_part(const Mesh& mesh, const VertexTarget& target, BakeReport& report,
-               const StageProgress& progress)
+void bake_part(const Mesh& mesh, Occluders& occluders, const VertexTarget& target,
+               BakeReport& report, const StageProgress& progress)
 {
     const BakeSettings& settings = report.settings;
-    const VertexBake solved = solve_share(mesh, target, settings.engine, progress);
+    const VertexBake solved = solve_vertices(mesh, target, settings.engine, progress, &occluders);
     report.surfels = solved.surfels;
     report.residual = solved.residual;
     static_cast<VertexBakeSeconds&>(report.seconds) = solved.seconds;
@@ -138,18 +150,34 @@ std::vector<Occlusion> bake_at_vertices(const Job& job, BakeReport& report,
 {
     const BakeSettings& settings = report.settings;
     const std::shared_ptr<const Mesh>& mesh = job.mesh;
+    std::optional<Occluders> own;
+    PrepareSeconds built;
+    if (job.occluders == nullptr && !settings.merged) {
+        // building needs much memory on the way: it is done before there is what will be asked
+        enter(progress, "build");
+        built = own.emplace(mesh->occluding()).prepared_for(settings.engine).seconds();
+    }
+    const auto add_built = [&] {
+        report.seconds.surfels += built.surfels;
+        report.seconds.tree += built.tree;
+    };
     Stopwatch stage;
-    const VertexTarget target(mesh, settings.target);
-    report.receivers = target.receivers().size();
+    std::optional<VertexTarget> target(std::in_place, mesh, settings.target);
+    report.receivers = target->receivers().size();
     report.seconds.read += stage.lap();
     if (settings.share) {
-        bake_part(*mesh, target, report, progress);
+        bake_part(*mesh, own ? *own : *job.occluders, *target, report, progress);
+        add_built();
         return {};
     }
-    VertexBake baked = answer(job, target, progress, report);
+    VertexBake baked = answer(job, own, *target, progress, report);
+    add_built();
 
     enter(progress, "write");
     stage.lap();
+    report.misfit = target->misfit(baked.answers, baked.values);
+    target.reset();
+    baked.answers = std::vector<Occlusion>();
     std::vector<std::string> written_notes;
     tbb::parallel_invoke(
         [&] {
@@ -162,7 +190,6 @@ std::vector<Occlusion> bake_at_vertices(const Job& job, BakeReport& report,
                                          .unbaked = mesh->unbaked});
         },
         [&] {  // a writer leaves cores idle
-            report.misfit = target.misfit(baked.answers, baked.values);
             report.notes = notes_of({*mesh, analyse_topology(mesh->geometry),
                                      settings.engine.definition, baked.values, report.misfit});
         });

@@ -36,12 +36,6 @@ const Prepared& JudgedBaker::prepared_for(const EngineSettings& engine, double& 
     return prepared;
 }
 
-void JudgedBaker::release_engines()
-{
-    if (own_)
-        own_.emplace(own_->geometry());
-}
-
 bool JudgedBaker::take_more_points()
 {
     if (count_ >= kMostSearchPoints)

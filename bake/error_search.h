@@ -66,9 +66,6 @@ protected:
     /// Adds what it takes to `surfels` and `tree`, in seconds.
     const Prepared& prepared_for(const EngineSettings& engine, double& surfels, double& tree);
 
-    /// Engines that were prepared here alone are gone: what follows needs the memory.
-    void release_engines();
-
     [[nodiscard]] const Geometry& occluding() const { return occluders_->geometry(); }
 
     std::uint32_t count_;

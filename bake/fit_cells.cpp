@@ -187,7 +187,8 @@ public:
 
     void add_quad(const Quad& quad, std::uint32_t rows, double area)
     {
-        begin(quad.unknowns);
+        samples_.quads.push_back(quad.unknowns);
+        samples_.first_sample.push_back(static_cast<std::uint32_t>(samples_.points.size()));
         const auto& [a, b, c, d] = quad.places;
         const std::size_t first = samples_.areas.size();
         if (rows == 1) {
@@ -216,11 +217,6 @@ public:
         }
         for (std::size_t s = first; s < samples_.areas.size(); ++s)
             samples_.areas[s] *= static_cast<float>(area / sum);
-    }
-
-    void begin(glm::uvec4 unknowns)
-    {
-        samples_.cells.push_back({unknowns, static_cast<std::uint32_t>(samples_.points.size())});
     }
 
 private:
@@ -353,12 +349,12 @@ void for_each_place(std::uint32_t rows, const Put& put)
     }
 }
 
-/// Appends the cells and samples of the triangles, all threads. rows: of each; 0: it is no cell.
-void add_triangles(const Geometry& geometry, std::span<const std::uint32_t> unknowns,
-                   std::span<const double> areas, std::span<const std::uint8_t> rows,
-                   SurfaceSamples& samples)
+}  // namespace
+
+void add_triangles(std::span<const double> areas, SurfaceSamples& samples)
 {
     constexpr std::size_t kBlock = 4096;
+    const std::vector<std::uint8_t>& rows = samples.rows;
     struct Start {
         std::size_t cell, sample;
     };
@@ -374,10 +370,11 @@ void add_triangles(const Geometry& geometry, std::span<const std::uint32_t> unkn
             starts[b + 1].sample += std::size_t{rows[t]} * rows[t];
         }
     });
-    starts[0] = {samples.cells.size(), samples.points.size()};
+    starts[0] = {samples.first_sample.size(), samples.points.size()};
     for (std::size_t b = 1; b < starts.size(); ++b)
         starts[b] = {starts[b - 1].cell + starts[b].cell, starts[b - 1].sample + starts[b].sample};
-    samples.cells.resize(starts.back().cell);
+    samples.first_sample.resize(starts.back().cell + 1);
+    samples.first_sample.back() = static_cast<std::uint32_t>(starts.back().sample);
     samples.points.resize(starts.back().sample);
     samples.areas.resize(starts.back().sample);
     for_each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
@@ -385,10 +382,7 @@ void add_triangles(const Geometry& geometry, std::span<const std::uint32_t> unkn
         for (std::size_t t = begin; t < end; ++t) {
             if (rows[t] == 0)
                 continue;
-            const glm::uvec3 corners = geometry.triangles[t];
-            samples.cells[at.cell++] = {
-                {unknowns[corners.x], unknowns[corners.y], unknowns[corners.z], FitCell::kNoCorner},
-                static_cast<std::uint32_t>(at.sample)};
+            samples.first_sample[at.cell++] = static_cast<std::uint32_t>(at.sample);
             for_each_place(rows[t], [&](glm::vec2 place) {
                 samples.points[at.sample] = {static_cast<std::uint32_t>(t), place};
                 samples.areas[at.sample++] =
@@ -398,14 +392,25 @@ void add_triangles(const Geometry& geometry, std::span<const std::uint32_t> unkn
     });
 }
 
-}  // namespace
+void drop_triangles(SurfaceSamples& samples)
+{
+    const auto cut = [](auto& list, std::size_t count) {
+        list.resize(count);
+        list.shrink_to_fit();
+    };
+    cut(samples.points, samples.quad_weights.size());
+    cut(samples.areas, samples.quad_weights.size());
+    cut(samples.first_sample, samples.quads.size());
+}
 
 SurfaceSamples samples_of(const Geometry& geometry, std::span<const std::uint32_t> unknowns)
 {
     const auto count = static_cast<std::uint32_t>(geometry.triangles.size());
     const std::vector<double> areas = triangle_areas(geometry);
     const Density density(geometry, areas);
-    std::vector<std::uint8_t> rows(count);
+    SurfaceSamples samples;
+    std::vector<std::uint8_t>& rows = samples.rows;
+    rows.resize(count);
     for_all(count, [&](std::size_t t) {
         rows[t] =
             static_cast<std::uint8_t>(density.rows_of(static_cast<std::uint32_t>(t), areas[t]));
@@ -419,16 +424,14 @@ SurfaceSamples samples_of(const Geometry& geometry, std::span<const std::uint32_
     std::vector<Quad> quads;
     if (!among.empty())
         quads = QuadFinder(geometry, unknowns, among).quads;
-    SurfaceSamples samples;
-    samples.cells.reserve(count - quads.size() + 1);
+    samples.first_sample.reserve(count - quads.size() + 1);
     Sampler sampler(samples);
     for (const Quad& quad : quads) {
         const double area = areas[quad.triangles[0]] + areas[quad.triangles[1]];
         sampler.add_quad(quad, density.rows_of(quad.triangles[0], area), area);
         rows[quad.triangles[0]] = rows[quad.triangles[1]] = 0;
     }
-    add_triangles(geometry, unknowns, areas, rows, samples);
-    sampler.begin(glm::uvec4(FitCell::kNoCorner));
+    add_triangles(areas, samples);
     return samples;
 }
 

@@ -15,6 +15,12 @@ namespace surfelao {
 [[nodiscard]] SurfaceSamples samples_of(const Geometry& geometry,
                                         std::span<const std::uint32_t> unknowns);
 
+/// Appends the cells and samples of the triangles to those of the quads. areas: triangle_areas().
+void add_triangles(std::span<const double> areas, SurfaceSamples& samples);
+
+/// Leaves those of the quads.
+void drop_triangles(SurfaceSamples& samples);
+
 inline constexpr std::size_t kQuadsEverywhere = 1u << 16;
 
 }  // namespace surfelao

@@ -134,7 +134,8 @@ ErrorCheck::ErrorCheck(std::vector<double> measure, std::span<const double> dens
         points_.push_back({place, sum / (whole * density[place.triangle] * count)});
 }
 
-void ErrorCheck::add_floor(const VertexTarget& target, std::span<const double> density)
+void ErrorCheck::add_floor(const VertexTarget& target, std::span<const double> density,
+                           const ReceiversOf& receivers_of)
 {
     if (target.samples() == nullptr)
         return;
@@ -145,12 +146,15 @@ void ErrorCheck::add_floor(const VertexTarget& target, std::span<const double> d
     for (std::size_t i = 0; i < measure.size(); ++i)
         measure[i] *= density[samples.points[i].triangle];
     const double sum = sum_of(measure);
+    std::vector<SurfacePoint> places;
     for (const std::uint32_t i : stratified(measure, count)) {
         const double share = whole * density[samples.points[i].triangle];
         samples_.push_back(
             {samples.points[i], sum / (share * static_cast<double>(count)), 0.0f, 0.0f, i});
-        receivers_.push_back(target.receivers()[i]);
+        places.push_back(samples.points[i]);
     }
+    const std::vector<Receiver> more = receivers_of(places);
+    receivers_.insert(receivers_.end(), more.begin(), more.end());
 }
 
 void ErrorCheck::trace(const Definition& definition, const Shown& shown, const Progress& progress,

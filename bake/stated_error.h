@@ -97,9 +97,9 @@ public:
     ErrorCheck(std::vector<double> measure, std::span<const double> density,
                const ReceiversOf& receivers_of, const Geometry& occluders, std::uint32_t count);
 
-    /// For values that are fitted: asks at samples of the target too, for the floor. target must
-    /// outlive this; before trace().
-    void add_floor(const VertexTarget& target, std::span<const double> density);
+    /// Of values that are fitted: asks at samples of the target too, for the floor; before trace().
+    void add_floor(const VertexTarget& target, std::span<const double> density,
+                   const ReceiversOf& receivers_of);
 
     /// Before trace(): points inside of bodies (hidden_texels.h) that err by more than kSuspicious
     /// count no more either. Nobody sees them, and maps show there what is beside them.

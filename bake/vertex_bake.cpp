@@ -31,24 +31,16 @@ public:
         return bake;
     }
 
-    /// The same, for the only time.
-    VertexBake bake_once(const EngineSettings& engine)
-    {
-        VertexBake bake = solved(engine);
-        release_engines();
-        finish(bake);
-        return bake;
-    }
-
     /// Answers without values.
-    VertexBake solved(const EngineSettings& engine)
+    VertexBake solved(const EngineSettings& engine, const std::function<void()>& forget = {})
     {
         const Prepared& prepared = prepared_for(engine, seconds_.surfels, seconds_.tree);
         VertexBake bake;
         bake.engine = engine;
         bake.surfels = prepared.surfel_count();
         enter("solve");
-        Solution solution = solve(prepared, target_.receivers(), engine, progress_in("solve"));
+        Solution solution =
+            solve(prepared, target_.receivers(), engine, progress_in("solve"), forget);
         seconds_.solve += solution.seconds;
         bake.residual = solution.residual;
         bake.answers = std::move(solution.occlusion);
@@ -59,6 +51,7 @@ public:
     /// Values of the answers, and their error.
     void finish(VertexBake& bake)
     {
+        seconds_ = bake.seconds;
         enter("fit");
         Stopwatch watch;
         bake.values = target_.values(bake.answers);
@@ -85,15 +78,13 @@ private:
             return displayed(geometry, bake.values, point);
         };
         if (!check_) {
+            const auto receivers_of = [&](std::span<const SurfacePoint> points) {
+                return receivers_at(geometry, mesh_.surface, points, offset_);
+            };
             const std::vector<double> density =
                 density_for(geometry, target_, bake.answers, bake.values);
-            check_.emplace(
-                geometry, density,
-                [&](std::span<const SurfacePoint> points) {
-                    return receivers_at(geometry, mesh_.surface, points, offset_);
-                },
-                occluding(), count_);
-            check_->add_floor(target_, density);
+            check_.emplace(geometry, density, receivers_of, occluding(), count_);
+            check_->add_floor(target_, density, receivers_of);
             check_->trace(bake.engine.definition, shown, progress_in("check"), asked_);
         }
         return check_->error_of(shown, bake.answers);
@@ -108,27 +99,24 @@ private:
 }  // namespace
 
 VertexBake bake_vertices(const Mesh& mesh, const VertexTarget& target, const EngineSettings& engine,
-                         const Offset& offset, std::uint32_t check, const StageProgress& progress,
-                         Occluders* occluders)
+                         const Offset& offset, std::uint32_t check, const StageProgress& progress)
 {
-    return Baker(mesh, target, offset, check, progress, occluders).bake_once(engine);
+    return bake_answers(mesh, target, solve_vertices(mesh, target, engine, progress), offset, check,
+                        progress);
 }
 
-VertexBake solve_share(const Mesh& mesh, const VertexTarget& target, const EngineSettings& engine,
-                       const StageProgress& progress)
+VertexBake solve_vertices(const Mesh& mesh, const VertexTarget& target,
+                          const EngineSettings& engine, const StageProgress& progress,
+                          Occluders* occluders, const std::function<void()>& forget)
 {
-    return Baker(mesh, target, {}, 0, progress, nullptr).solved(engine);
+    return Baker(mesh, target, {}, 0, progress, occluders).solved(engine, forget);
 }
 
-VertexBake bake_answers(const Mesh& mesh, const VertexTarget& target, const EngineSettings& engine,
-                        const Offset& offset, std::uint32_t check, std::vector<Occlusion> answers,
-                        const StageProgress& progress)
+VertexBake bake_answers(const Mesh& mesh, const VertexTarget& target, VertexBake solved,
+                        const Offset& offset, std::uint32_t check, const StageProgress& progress)
 {
-    VertexBake bake;
-    bake.engine = engine;
-    bake.answers = std::move(answers);
-    Baker(mesh, target, offset, check, progress, nullptr).finish(bake);
-    return bake;
+    Baker(mesh, target, offset, check, progress, nullptr).finish(solved);
+    return solved;
 }
 
 VertexBake bake_to_error(const Mesh& mesh, const VertexTarget& target, const EngineSettings& engine,

@@ -37,25 +37,25 @@ struct VertexBake {
     VertexBakeSeconds seconds;
 };
 
-/// occluders: in the mesh's frame; null: prepared for what occludes the mesh (Mesh::occluding).
+/// Answers without values. occluders: in the mesh's frame; null: prepared for what occludes it
+/// (Mesh::occluding). Of a share (settings.share of `engine`) those that it asks. forget: as in
+/// solve(). Throws as prepare() and solve(), and Cancelled where progress says so.
+[[nodiscard]] VertexBake solve_vertices(const Mesh& mesh, const VertexTarget& target,
+                                        const EngineSettings& engine,
+                                        const StageProgress& progress = {},
+                                        Occluders* occluders = nullptr,
+                                        const std::function<void()>& forget = {});
+
+/// With values of all answers, and their error; the target's receivers are not needed any more.
 /// check: points of the statement of error; 0: none. The values are the same whatever it is.
-/// Throws as prepare() and solve(), and Cancelled where progress says so.
+[[nodiscard]] VertexBake bake_answers(const Mesh& mesh, const VertexTarget& target,
+                                      VertexBake solved, const Offset& offset, std::uint32_t check,
+                                      const StageProgress& progress = {});
+
+/// Both, one after the other.
 [[nodiscard]] VertexBake bake_vertices(const Mesh& mesh, const VertexTarget& target,
                                        const EngineSettings& engine, const Offset& offset,
-                                       std::uint32_t check, const StageProgress& progress = {},
-                                       Occluders* occluders = nullptr);
-
-/// A share of the answers (settings.share of `engine`), without values: what is neither fitted nor
-/// judged before all are there. Throws as bake_vertices().
-[[nodiscard]] VertexBake solve_share(const Mesh& mesh, const VertexTarget& target,
-                                     const EngineSettings& engine,
-                                     const StageProgress& progress = {});
-
-/// What bake_vertices() makes of answers that are at hand.
-[[nodiscard]] VertexBake bake_answers(const Mesh& mesh, const VertexTarget& target,
-                                      const EngineSettings& engine, const Offset& offset,
-                                      std::uint32_t check, std::vector<Occlusion> answers,
-                                      const StageProgress& progress = {});
+                                       std::uint32_t check, const StageProgress& progress = {});
 
 /// By the cheapest of masks at any quality and rays at any number whose error is below `error` with
 /// its whole interval. Costs are those that settings have on the median model, so that equal input

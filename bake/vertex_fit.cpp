@@ -55,10 +55,11 @@ std::vector<std::uint32_t> unknowns_of(const Geometry& geometry, const Surface& 
     return found;
 }
 
-int corner_count(const FitCell& cell)
-{
-    return cell.unknowns.w == FitCell::kNoCorner ? 3 : 4;
-}
+/// The unknowns at the corners of a cell; a triangle has three.
+struct Cell {
+    glm::uvec4 unknowns{kUnused};
+    int corners = 3;
+};
 
 }  // namespace
 
@@ -115,13 +116,22 @@ struct VertexFit::Impl {
     Buckets<std::uint32_t> corners_of_unknowns() const
     {
         return {unknown_count, [this](const auto& put) {
-                    for (std::uint32_t cell = 0; cell + 1 < samples.cells.size(); ++cell) {
-                        const FitCell& own = samples.cells[cell];
-                        for (int corner = 0; corner < corner_count(own); ++corner)
+                    for (std::uint32_t cell = 0; cell + 1 < samples.first_sample.size(); ++cell) {
+                        const Cell own = cell_at(cell);
+                        for (int corner = 0; corner < own.corners; ++corner)
                             put(own.unknowns[corner],
                                 4 * cell + static_cast<std::uint32_t>(corner));
                     }
                 }};
+    }
+
+    Cell cell_at(std::uint32_t cell) const
+    {
+        if (cell < samples.quads.size())
+            return {samples.quads[cell], 4};
+        const glm::uvec3 t =
+            geometry.triangles[samples.points[samples.first_sample[cell]].triangle];
+        return {{unknowns[t.x], unknowns[t.y], unknowns[t.z], kUnused}, 3};
     }
 
     /// Of a sample at the corners of its cell.
@@ -145,19 +155,18 @@ struct VertexFit::Impl {
     template <class Visit>
     void for_each_sample(std::uint32_t cell, const Visit& visit) const
     {
-        for (std::uint32_t s = samples.cells[cell].first_sample;
-             s < samples.cells[cell + 1].first_sample; ++s)
+        for (std::uint32_t s = samples.first_sample[cell]; s < samples.first_sample[cell + 1]; ++s)
             visit(s);
     }
 
-    glm::dvec4 row_of(std::uint32_t cell, int corner) const;
+    glm::dvec4 row_of(std::uint32_t cell, const Cell& own, int corner) const;
     void make_matrix(const Buckets<std::uint32_t>& corners, NormalEquations& matrix) const;
     Channels channels_of(std::span<const Occlusion> answers) const;
     std::vector<Occlusion> values_of(const Channels& channels) const;
 };
 
 /// What a cell adds to the row of one of its corners: an entry for each corner.
-glm::dvec4 VertexFit::Impl::row_of(std::uint32_t cell, int corner) const
+glm::dvec4 VertexFit::Impl::row_of(std::uint32_t cell, const Cell& own, int corner) const
 {
     glm::dvec4 row(0.0);
     double area = 0.0;
@@ -167,8 +176,7 @@ glm::dvec4 VertexFit::Impl::row_of(std::uint32_t cell, int corner) const
         area += static_cast<double>(samples.areas[s]);
     });
     // edges that meet at the corner: in a quad either cut gives half of its two triangles' edges
-    const FitCell& own = samples.cells[cell];
-    const int count = corner_count(own);
+    const int count = own.corners;
     bool at_edge = false;
     for (int each = 0; each < count; ++each)
         at_edge |= edged[own.unknowns[each]];
@@ -199,9 +207,9 @@ void VertexFit::Impl::make_matrix(const Buckets<std::uint32_t>& corners,
         for (std::size_t unknown = index * kGrain; unknown < end; ++unknown) {
             row.clear();
             for (const std::uint32_t at : corners[unknown]) {
-                const FitCell& cell = samples.cells[at / 4];
-                const glm::dvec4 entries = row_of(at / 4, static_cast<int>(at % 4));
-                for (int corner = 0; corner < corner_count(cell); ++corner)
+                const Cell cell = cell_at(at / 4);
+                const glm::dvec4 entries = row_of(at / 4, cell, static_cast<int>(at % 4));
+                for (int corner = 0; corner < cell.corners; ++corner)
                     row.emplace_back(cell.unknowns[corner], entries[corner]);
             }
             std::ranges::stable_sort(row, {}, &Entry::first);
@@ -247,6 +255,16 @@ VertexFit& VertexFit::operator=(VertexFit&&) noexcept = default;
 const SurfaceSamples& VertexFit::samples() const
 {
     return impl_->samples;
+}
+
+void VertexFit::fold()
+{
+    drop_triangles(impl_->samples);
+}
+
+void VertexFit::unfold()
+{
+    add_triangles(triangle_areas(impl_->geometry), impl_->samples);
 }
 
 std::vector<std::uint32_t> VertexFit::unused_vertices() const

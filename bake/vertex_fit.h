@@ -52,23 +52,20 @@ inline constexpr std::uint64_t kMostSamplesEach = 8;
 inline constexpr std::uint64_t kMoreByPiece = 2048;
 inline constexpr std::uint32_t kMostSampleRows = 32;  ///< of a triangle or quad: 32^2 samples
 
-/// What the sum over the samples runs over: triangles, and planar quads of two of them. A file, or
-/// whoever draws it, cuts a quad either way; so its samples see the mean of both interpolations,
-/// and neither the values nor the samples depend on the cut at hand.
-struct FitCell {
-    glm::uvec4 unknowns;             ///< at its corners; the last is kNoCorner in a triangle
-    std::uint32_t first_sample = 0;  ///< those up to the next cell's are its own
-    static constexpr std::uint32_t kNoCorner = 0xffffffff;
-};
-
-/// Samples by cell. A triangle is cut into m^2 equal ones, a quad into m^2 cells of its bilinear
-/// map, with a sample near the middle of each: evenly spread, and the same from whichever corner
-/// one looks but for kSampleShift. A quad with m = 1 has one for each of its triangles instead.
+/// Samples by cell, over which their sum runs: a triangle, or a planar quad of two. A
+/// file, or whoever draws it, cuts a quad either way; so its samples see the mean of both
+/// interpolations, and neither the values nor the samples depend on the cut at hand.
+///
+/// A triangle is cut into m^2 equal ones, a quad into m^2 cells of its bilinear map, with a sample
+/// near the middle of each: evenly spread, and the same from whichever corner one looks but for
+/// kSampleShift. A quad with m = 1 has one for each of its triangles instead.
 struct SurfaceSamples {
     std::vector<SurfacePoint> points;
-    std::vector<float> areas;             ///< that each stands for; unit frame
-    std::vector<glm::vec4> quad_weights;  ///< of the samples in quads, which come first
-    std::vector<FitCell> cells;           ///< and one more, where the samples end
+    std::vector<float> areas;                 ///< that each stands for; unit frame
+    std::vector<glm::vec4> quad_weights;      ///< of the samples in quads, which come first
+    std::vector<glm::uvec4> quads;            ///< the first cells: unknowns at their corners
+    std::vector<std::uint32_t> first_sample;  ///< of each cell; and one more, where they end
+    std::vector<std::uint8_t> rows;           ///< m of each triangle; 0: it is in a quad
 };
 
 /// In sides of the small triangles, away from their middles. Built things are symmetric: in a ship
@@ -97,6 +94,11 @@ public:
 
     [[nodiscard]] const SurfaceSamples& samples() const;
 
+    /// Samples and their cells are gone until unfolded, which is quick: engines that answer
+    /// meanwhile have the memory. In between nothing else is asked. O(triangles), all threads.
+    void fold();
+    void unfold();
+
     /// One per scene vertex: occlusion, cut to [0, 1], and the bent normal: the direction of the
     /// fitted visibility times bent normal. answers: one per sample. Unused vertices: occlusion 0,
     /// their normal. O(n): some ten steps of conjugate gradients. Same bytes for any number of
@@ -114,7 +116,7 @@ public:
 
 private:
     struct Impl;
-    std::unique_ptr<const Impl> impl_;
+    std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace surfelao

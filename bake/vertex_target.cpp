@@ -106,6 +106,18 @@ void VertexTarget::follow_mesh()
     }
 }
 
+void VertexTarget::fold()
+{
+    if (fit_)
+        fit_->fold();
+}
+
+void VertexTarget::unfold()
+{
+    if (fit_)
+        fit_->unfold();
+}
+
 std::vector<Occlusion> VertexTarget::with_lone(std::vector<Occlusion> values,
                                                std::span<const Occlusion> answers) const
 {

@@ -76,6 +76,14 @@ public:
 
     [[nodiscard]] std::span<const Receiver> receivers() const { return receivers_; }
 
+    /// There are none from now on: answers and what is made of them take memory of their own.
+    void forget_receivers() { receivers_ = std::vector<Receiver>(); }  // {} would keep the room
+
+    /// Samples are gone until they are unfolded (VertexFit::fold): meanwhile only the receivers are
+    /// asked for.
+    void fold();
+    void unfold();
+
     /// One per scene vertex. answers: one per receiver. Vertices that no triangle uses and that
     /// have no normal get occlusion 0 and no bent normal. O(n).
     [[nodiscard]] std::vector<Occlusion> values(std::span<const Occlusion> answers) const;

@@ -203,7 +203,8 @@ Solution solve_on_gpu(const Prepared::Impl& impl, std::span<const Receiver> rece
 }  // namespace
 
 Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
-               const SolveSettings& settings, const Progress& progress)
+               const SolveSettings& settings, const Progress& progress,
+               const std::function<void()>& forget)
 {
     const Prepared::Impl& impl = prepared.impl();
     check_settings(impl.choice, settings);
@@ -216,8 +217,8 @@ Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
     if (current) {
         solution = solve_on_gpu(impl, receivers, settings, progress);
     } else if (impl.masks) {
-        solution.occlusion =
-            solve_masks(*impl.masks, receivers, mask_options(impl.choice, settings), progress);
+        solution.occlusion = solve_masks(*impl.masks, receivers,
+                                         mask_options(impl.choice, settings), progress, forget);
     } else if (impl.disks) {
         DiskResult solved = solve_disks(*impl.disks, receivers, disk_options(settings), progress);
         solution.occlusion = std::move(solved.occlusion);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 
 namespace surfelao {
 namespace {
@@ -30,11 +29,11 @@ private:
     std::vector<std::uint64_t> words_;
 };
 
-std::uint64_t hash_of(glm::uvec3 key)
+/// One of 64 for each lowest vertex: what is near in the file is then near in memory too.
+std::size_t bit_of(glm::uvec3 key)
 {
-    std::uint64_t hash = (std::uint64_t{key.x} << 32 | key.y) * 0x9E3779B97F4A7C15u;
-    hash = (hash ^ hash >> 29 ^ key.z) * 0x9E3779B97F4A7C15u;
-    return hash ^ hash >> 32;
+    const std::uint64_t hash = (std::uint64_t{key.y} << 32 | key.z) * 0x9E3779B97F4A7C15u;
+    return std::size_t{key.x} * 64 + (hash >> 58);
 }
 
 }  // namespace
@@ -49,14 +48,11 @@ glm::uvec3 positions_of(glm::uvec3 t, const std::vector<std::uint32_t>& welded)
 std::vector<std::uint32_t> maybe_repeated(const std::vector<glm::uvec3>& triangles,
                                           const std::vector<std::uint32_t>& welded)
 {
-    const std::size_t bits = std::bit_ceil(triangles.size() * 16);
-    const auto bit_of = [&](std::size_t t) {
-        return hash_of(positions_of(triangles[t], welded)) & (bits - 1);
-    };
+    const std::size_t bits = welded.size() * 64;
     BitSet met(bits), met_again(bits);
     std::atomic<bool> is_any{false};
     for_all(triangles.size(), [&](std::size_t t) {
-        const std::size_t bit = bit_of(t);
+        const std::size_t bit = bit_of(positions_of(triangles[t], welded));
         if (!met.set(bit))
             return;
         met_again.set(bit);
@@ -66,7 +62,9 @@ std::vector<std::uint32_t> maybe_repeated(const std::vector<glm::uvec3>& triangl
     if (!is_any)
         return found;
     std::vector<std::uint8_t> is_found(triangles.size());
-    for_all(triangles.size(), [&](std::size_t t) { is_found[t] = met_again.has(bit_of(t)); });
+    for_all(triangles.size(), [&](std::size_t t) {
+        is_found[t] = met_again.has(bit_of(positions_of(triangles[t], welded)));
+    });
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
         if (is_found[t] != 0)
             found.push_back(t);

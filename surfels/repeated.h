@@ -11,8 +11,8 @@
 namespace surfelao {
 
 /// Which triangles may have the same three positions as another one, in any turn, rising: all that
-/// do, and by chance a sixteenth of those that do not. Nearly all meshes have none, so a bit per
-/// hash value sifts the others out. welded: Geometry::welded. O(n), all threads.
+/// do, and by chance some of those that do not. Nearly all meshes have none, so a bit per hash
+/// value sifts the others out. welded: Geometry::welded. O(n), all threads.
 [[nodiscard]] std::vector<std::uint32_t> maybe_repeated(const std::vector<glm::uvec3>& triangles,
                                                         const std::vector<std::uint32_t>& welded);
 

@@ -1,5 +1,6 @@
 #include "tree/receiver_groups.h"
 
+#include "tree/discard.h"
 #include "tree/lanes.h"
 #include "tree/part.h"
 
@@ -155,6 +156,8 @@ private:
                 left();
                 right();
             }
+            discard(keys_, begin, end);
+            discard(spare_, begin, end);
             sums.position += right_sums.position;
             sums.normal += right_sums.normal;
         }

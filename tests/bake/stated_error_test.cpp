@@ -38,7 +38,9 @@ StatedError measured(const World& world, std::span<const Occlusion> answers,
         return displayed(geometry, values, point);
     };
     ErrorCheck check(*world.mesh, density, {}, count);
-    check.add_floor(world.target, density);
+    check.add_floor(world.target, density, [&](std::span<const SurfacePoint> points) {
+        return receivers_at(geometry, world.mesh->surface, points);
+    });
     check.trace({}, shown);
     return check.error_of(shown, answers);
 }

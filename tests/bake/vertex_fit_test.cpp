@@ -210,5 +210,26 @@ TEST(FitSamples, StandForTheWholeAreaAndAreAtLeastOneATriangle)
     EXPECT_NEAR(areas[32] * diagonal * diagonal, 5e-5, 1e-8);
 }
 
+// Quads and triangles of several samples.
+TEST(FitSamples, AreTheSameAfterFolding)
+{
+    const Mesh mesh =
+        make_mesh(scenes::sheet({0, 0, 0}, {3, 0, 0}, {0, 3, 0}, 4) + scenes::bumpy_sphere(8));
+    VertexFit folded(mesh.geometry, mesh.surface, {});
+    const SurfaceSamples before = folded.samples();
+    ASSERT_FALSE(before.quads.empty());
+    folded.fold();
+    EXPECT_EQ(folded.samples().points.size(), before.quad_weights.size());
+    folded.unfold();
+    const SurfaceSamples& after = folded.samples();
+    EXPECT_EQ(after.areas, before.areas);
+    EXPECT_EQ(after.first_sample, before.first_sample);
+    ASSERT_EQ(after.points.size(), before.points.size());
+    for (std::size_t i = 0; i < after.points.size(); ++i) {
+        EXPECT_EQ(after.points[i].triangle, before.points[i].triangle) << i;
+        EXPECT_EQ(after.points[i].at, before.points[i].at) << i;
+    }
+}
+
 }  // namespace
 }  // namespace surfelao

@@ -48,7 +48,8 @@ def make_torus(triangles, path):
 def bake(program, path, name, folder):
     report = folder / "report.json"
     process = subprocess.Popen([program, "bake", path, "-o", folder / f"baked{path.suffix}",
-                                "--check", "0", "--json", report], stderr=subprocess.DEVNULL)
+                                "--check", "0", "--json", report],
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     _, status, usage = os.wait4(process.pid, 0)
     if status:
         raise RuntimeError(f"{name} was not baked")

@@ -47,6 +47,26 @@ Receiver receiver_at(const Geometry& geometry, glm::dvec3 position, glm::dvec3 n
         n};
 }
 
+// Who asks may drop the receivers when told so; a ground looks at them to the end.
+TEST(MaskWorlds, ForgottenReceiversAreAnsweredAllTheSame)
+{
+    const Geometry geometry = make_geometry(scenes::bumpy_sphere(16));
+    const auto tree = build_mask_tree(geometry);
+    const std::vector<Receiver> receivers = vertex_receivers(geometry);
+    MaskOptions options;
+    for (const int times : {1, 0}) {
+        std::vector<Receiver> asked = receivers;
+        int told = 0;
+        const auto found = solve_masks(*tree, asked, options, {}, [&] {
+            ++told;
+            std::ranges::fill(asked, Receiver{glm::vec3(9.0f), glm::vec3(NAN)});
+        });
+        EXPECT_EQ(told, times);
+        EXPECT_EQ(found, solve_masks(*tree, receivers, options));
+        options.definition.ground = Ground{{0, 0, 1}, -0.3f};
+    }
+}
+
 // A body of 1/100,000 of its scene: its triangles are 1e-7 diagonals wide, and their second moments
 // 1e-29 diagonals^4. Nothing may underflow on the way.
 TEST(MaskWorlds, ATinyPartOfAHugeSceneIsAsGoodAsAlone)

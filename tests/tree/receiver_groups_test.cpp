@@ -3,6 +3,7 @@
 #include "scenes.h"
 #include "surfels/geometry.h"
 #include "tests/vertex_receivers.h"
+#include "tree/discard.h"
 #include "tree/masks/tree.h"
 
 #include <glm/geometric.hpp>
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 #include <vector>
 
 namespace surfelao {
@@ -147,6 +149,20 @@ TEST(ReceiverGroups, SameBytesForAnyNumberOfThreads)
                               one.groups.size() * sizeof(ReceiverGroup)),
                   0);
     }
+}
+
+// Whole pages within the range may go, nothing beside it.
+TEST(Discard, LeavesWhatIsOutsideOfTheRange)
+{
+    RawVector<std::uint32_t> numbers;
+    numbers.resize(4 * kDiscardUnit / sizeof(std::uint32_t));
+    std::iota(numbers.begin(), numbers.end(), 1u);
+    const std::size_t begin = 12345, end = numbers.size() - 54321;
+    discard(numbers, begin, end);
+    std::size_t changed = 0;
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        changed += (i < begin || i >= end) && numbers[i] != i + 1 ? 1 : 0;
+    EXPECT_EQ(changed, 0u);
 }
 
 }  // namespace

@@ -6,10 +6,12 @@
 #include "tree/masks/limits.h"
 #include "tree/masks/solver.h"
 #include "tree/masks/tree.h"
+#include "tree/part.h"
 #include "tree/receiver_groups.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -73,7 +75,7 @@ MaskSettings mask_settings(const MaskOptions& options)
 
 std::vector<Occlusion> solve_masks(const MaskNode* nodes, std::span<const std::uint32_t> roots,
                                    std::span<const Receiver> receivers, const MaskOptions& options,
-                                   const Progress& progress)
+                                   const Progress& progress, const std::function<void()>& forget)
 {
     MaskSolver solver(options);
     const ReceiverGroups groups = group_receivers(receivers, kMaskFrame);
@@ -85,17 +87,27 @@ std::vector<Occlusion> solve_masks(const MaskNode* nodes, std::span<const std::u
         for (std::uint32_t i = group.begin; wanted[leaf] == 0 && i < group.end; ++i)
             answers[groups.order[i]] = kUnsolved;
     }
+    if (forget && !options.definition.ground) {
+        for_blocks(receivers, [&](std::span<const Receiver> block, std::size_t i) {
+            for (std::size_t k = 0; k < block.size(); ++k)
+                if (answers[i * kPartBlock + k] != kUnsolved)
+                    answers[i * kPartBlock + k].bent_normal = block[k].normal;
+        });
+        receivers = {};
+        forget();
+    }
     ProgressMeter meter(progress, wanted.size() / options.share.count);
     solver.solve({nodes, roots, receivers, groups, skies, wanted}, meter, answers);
     return answers;
 }
 
 std::vector<Occlusion> solve_masks(const MaskTree& tree, std::span<const Receiver> receivers,
-                                   const MaskOptions& options, const Progress& progress)
+                                   const MaskOptions& options, const Progress& progress,
+                                   const std::function<void()>& forget)
 {
     const std::uint32_t root = 0;
     return solve_masks(tree.nodes.data(), {&root, tree.nodes.empty() ? 0u : 1u}, receivers, options,
-                       progress);
+                       progress, forget);
 }
 
 }  // namespace surfelao

@@ -17,6 +17,7 @@
 #include "surfels/share.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -75,10 +76,12 @@ struct MaskOptions {
 
 /// One Occlusion per receiver. All cores, same bytes for any number of threads. The definition's
 /// kernel must be Kernel::cosine. Throws SettingsError where an option is out of its range or the
-/// processor lacks the kernel, Cancelled.
+/// processor lacks the kernel, Cancelled. Without a ground it calls `forget` as soon as it does not
+/// look at the receivers any more, before it answers.
 [[nodiscard]] std::vector<Occlusion> solve_masks(const MaskTree& tree,
                                                  std::span<const Receiver> receivers,
                                                  const MaskOptions& options,
-                                                 const Progress& progress = {});
+                                                 const Progress& progress = {},
+                                                 const std::function<void()>& forget = {});
 
 }  // namespace surfelao

@@ -44,8 +44,9 @@ void write(const MaskQuestion& question, const ReceiverGroup& group, const MaskA
     for (std::uint32_t i = 0; i < group.end - group.begin; ++i) {
         const std::uint32_t index = question.groups.order[group.begin + i];
         const glm::vec3 bent(found.bent[0][i], found.bent[1][i], found.bent[2][i]);
-        answers[index] = {found.occlusion[i],
-                          bent_normal_of(bent * kMaskFrame, question.receivers[index].normal)};
+        const glm::vec3 normal = question.receivers.empty() ? answers[index].bent_normal
+                                                            : question.receivers[index].normal;
+        answers[index] = {found.occlusion[i], bent_normal_of(bent * kMaskFrame, normal)};
     }
 }
 

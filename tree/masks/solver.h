@@ -17,6 +17,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -52,7 +53,7 @@ struct MaskLeafRoots {
 struct MaskQuestion {
     const MaskNode* nodes;
     std::span<const std::uint32_t> roots;  ///< of the trees that all groups see
-    std::span<const Receiver> receivers;
+    std::span<const Receiver> receivers;   ///< empty: their normals stand in the answers, no ground
     const ReceiverGroups& groups;          ///< of these receivers, in the mask frame
     const MaskSkies& skies;                ///< of these receivers
     std::span<const std::uint8_t> wanted;  ///< one per leaf group: whether it is asked
@@ -97,7 +98,8 @@ private:
                                                  std::span<const std::uint32_t> roots,
                                                  std::span<const Receiver> receivers,
                                                  const MaskOptions& options,
-                                                 const Progress& progress);
+                                                 const Progress& progress,
+                                                 const std::function<void()>& forget = {});
 
 /// One per leaf group: whether it is one of the share.
 [[nodiscard]] std::vector<std::uint8_t> leaves_of(const Share& share, const ReceiverGroups& groups);

@@ -1,6 +1,7 @@
 #include "tree/masks/tree.h"
 
 #include "surfels/errors.h"
+#include "tree/discard.h"
 #include "tree/lanes.h"
 #include "tree/masks/constants.h"
 #include "tree/masks/masks.h"
@@ -297,6 +298,10 @@ private:
         } else {
             build_left();
             build_right();
+        }
+        if (followed_ == nullptr) {
+            for (RawVector<Key>& keys : keys_)
+                discard(keys, begin, end);
         }
 
         MaskPatch patch;
