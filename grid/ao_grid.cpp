@@ -53,8 +53,7 @@ glm::dvec3 place_of(const AoGrid& grid, glm::vec3 cell)
     const glm::dvec3 middle = 0.5 * (grid.low + grid.high), half = 0.5 * (grid.high - grid.low);
     glm::dvec3 place;
     for (int axis = 0; axis < 3; ++axis) {
-        const float u =
-            2.0f * cell[axis] / static_cast<float>(grid.cells[axis] - 1) - 1.0f;
+        const float u = 2.0f * cell[axis] / static_cast<float>(grid.cells[axis] - 1) - 1.0f;
         place[axis] = middle[axis] + half[axis] * static_cast<double>(unwarped(u, grid.inner[axis],
                                                                                grid.inner_share));
     }
