@@ -1,5 +1,6 @@
 #include "bake/grid_target.h"
 
+#include "bake/grid_fit.h"
 #include "grid/cone.h"
 #include "reference/closest_hit.h"
 #include "surfels/errors.h"
@@ -117,15 +118,16 @@ public:
     {
     }
 
-    /// places: of these cells, unit frame.
-    void solve_cells(std::string_view stage, std::span<const std::size_t> cells,
-                     std::span<const glm::vec3> places)
+    /// What cells would hold at these places; unit frame.
+    [[nodiscard]] std::vector<float> values_at(std::string_view stage,
+                                               std::span<const glm::vec3> places)
     {
         const std::size_t channels = channels_of(grid_.store);
         const SphereFit& sphere = sphere_fit();
+        std::vector<float> values(places.size() * channels);
         std::vector<Receiver> receivers;
-        for (std::size_t begin = 0; begin < cells.size(); begin += kBandCells) {
-            const std::size_t count = std::min(kBandCells, cells.size() - begin);
+        for (std::size_t begin = 0; begin < places.size(); begin += kBandCells) {
+            const std::size_t count = std::min(kBandCells, places.size() - begin);
             receivers.clear();
             for (std::size_t i = begin; i < begin + count; ++i)
                 for (const glm::vec3 direction : sphere.directions)
@@ -133,7 +135,7 @@ public:
             const auto in_stage = [&](double done) {
                 return progress_(stage,
                                  (static_cast<double>(begin) + done * static_cast<double>(count)) /
-                                     static_cast<double>(cells.size()));
+                                     static_cast<double>(places.size()));
             };
             const Solution solution =
                 solve(prepared_, receivers, engine_, progress_ ? Progress(in_stage) : Progress());
@@ -141,8 +143,19 @@ public:
             bake_.receivers += receivers.size();
             for (std::size_t i = 0; i < count; ++i)
                 sphere.fit(&solution.occlusion[i * kHemispheres], grid_.store,
-                           &grid_.values[cells[begin + i] * channels]);
+                           &values[(begin + i) * channels]);
         }
+        return values;
+    }
+
+    /// places: of these cells.
+    void solve_cells(std::string_view stage, std::span<const std::size_t> cells,
+                     std::span<const glm::vec3> places)
+    {
+        const std::size_t channels = channels_of(grid_.store);
+        const std::vector<float> values = values_at(stage, places);
+        for (std::size_t i = 0; i < cells.size(); ++i)
+            std::copy_n(&values[i * channels], channels, &grid_.values[cells[i] * channels]);
     }
 
 private:
@@ -163,11 +176,6 @@ std::vector<glm::vec3> places_of_cells(const AoGrid& grid, const Frame& frame)
             for (int x = 0; x < grid.cells.x; ++x)
                 places.push_back(in_frame(place_of(grid, {x, y, z}), frame));
     return places;
-}
-
-float alpha_of(const AoGrid& grid, std::size_t cell)
-{
-    return moments_of(grid.store, &grid.values[cell * channels_of(grid.store)]).w;
 }
 
 /// 1 for places from which most of kInsideRays rays first meet the inner side of a surface, else 0.
@@ -197,26 +205,38 @@ std::vector<std::uint8_t> inside_object(const RayScene& scene, std::span<const g
     return is_inside;
 }
 
-/// Cells inside of the object take what is seen from its surface.
-void move_cells_out(const Geometry& object, const RayScene& scene,
-                    std::span<const glm::vec3> places, GridSolver& solver, GridBake& bake)
+/// The same by what cells at these places hold: where half of all directions are open, nobody
+/// needs to look.
+std::vector<std::uint8_t> inside_object(const RayScene& scene, std::span<const glm::vec3> places,
+                                        GridStore store, std::span<const float> values)
 {
     std::vector<std::size_t> suspects;
     std::vector<glm::vec3> of_suspects;
-    for (std::size_t cell = 0; cell < places.size(); ++cell) {
-        if (alpha_of(bake.grid, cell) <= 0.5f)
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        if (moments_of(store, &values[i * channels_of(store)]).w <= 0.5f)
             continue;
-        suspects.push_back(cell);
-        of_suspects.push_back(places[cell]);
+        suspects.push_back(i);
+        of_suspects.push_back(places[i]);
     }
-    const std::vector<std::uint8_t> is_inside = inside_object(scene, of_suspects);
+    const std::vector<std::uint8_t> found = inside_object(scene, of_suspects);
+    std::vector<std::uint8_t> is_inside(places.size(), 0);
+    for (std::size_t s = 0; s < suspects.size(); ++s)
+        is_inside[suspects[s]] = found[s];
+    return is_inside;
+}
+
+/// Cells inside of the object take what is seen from its surface.
+void move_cells_out(const Geometry& object, const RayScene& scene,
+                    std::span<const glm::vec3> places, std::span<const std::uint8_t> is_inside,
+                    GridSolver& solver, GridBake& bake)
+{
     std::vector<std::size_t> inside;
     std::vector<glm::vec3> from;
-    for (std::size_t s = 0; s < suspects.size(); ++s) {
-        if (is_inside[s] == 0)
+    for (std::size_t cell = 0; cell < places.size(); ++cell) {
+        if (is_inside[cell] == 0)
             continue;
-        inside.push_back(suspects[s]);
-        from.push_back(of_suspects[s]);
+        inside.push_back(cell);
+        from.push_back(places[cell]);
     }
     std::vector<glm::vec3> to;
     for (const NearestPlace& nearest : nearest_places(scene, object, from)) {
@@ -231,6 +251,31 @@ void move_cells_out(const Geometry& object, const RayScene& scene,
     solver.solve_cells("repair", inside, to);
 }
 
+/// Cells inside of the object: which, and what they hold.
+void repair_cells(const Geometry& object, const RayScene& scene, std::span<const glm::vec3> places,
+                  GridSolver& solver, GridBake& bake)
+{
+    AoGrid& grid = bake.grid;
+    const std::vector<std::uint8_t> is_inside =
+        inside_object(scene, places, grid.store, grid.values);
+    move_cells_out(object, scene, places, is_inside, solver, bake);
+    std::vector<glm::dvec3> beside = places_beside(grid, is_inside);
+    std::vector<glm::vec3> in_unit;
+    for (const glm::dvec3 place : beside)
+        in_unit.push_back(in_frame(place, object.frame));
+    std::vector<float> values = solver.values_at("repair", in_unit);
+    const std::vector<std::uint8_t> is_hidden = inside_object(scene, in_unit, grid.store, values);
+    const std::size_t channels = channels_of(grid.store);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < beside.size(); ++i) {
+        if (is_hidden[i] != 0)
+            continue;
+        beside[kept] = beside[i];
+        std::copy_n(&values[i * channels], channels, &values[kept++ * channels]);
+    }
+    fit_inside(grid, is_inside, std::span(beside).first(kept), values);
+}
+
 float largest_on_faces(const AoGrid& grid)
 {
     float largest = 0.0f;
@@ -241,7 +286,11 @@ float largest_on_faces(const AoGrid& grid)
                 const bool is_face = glm::any(glm::equal(cell, glm::ivec3(0))) ||
                                      glm::any(glm::equal(cell, grid.cells - 1));
                 if (is_face)
-                    largest = std::max(largest, alpha_of(grid, grid.index_of(cell)));
+                    largest = std::max(
+                        largest,
+                        moments_of(grid.store,
+                                   &grid.values[channels_of(grid.store) * grid.index_of(cell)])
+                            .w);
             }
         }
     }
@@ -437,7 +486,7 @@ GridBake bake_grid(const Geometry& object, const GridSettings& settings,
     solver.solve_cells("solve", cells, places);
     bake.seconds.solve = watch.lap();
     enter("repair");
-    move_cells_out(object, scene, places, solver, bake);
+    repair_cells(object, scene, places, solver, bake);
     bake.grid.border_value = largest_on_faces(bake.grid);
     bake.seconds.repair = watch.lap();
     if (check > 0) {

@@ -8,8 +8,9 @@
 /// and those tell alpha and m. So any engine bakes grids, and a cell is one group of receivers.
 ///
 /// Cells in the object would darken what lies beside it: they hold what is seen from the nearest
-/// place of the surface, moved a little outwards. A cell is inside where most directions first meet
-/// the inner side of a surface.
+/// place of the surface, moved a little outwards, and as far as something is read beside them, what
+/// makes that right (grid_fit.h). A cell is inside where most directions first meet the inner side
+/// of a surface.
 ///
 /// The box reaches, along each axis, to where a plane of the object's own size would hide eps of
 /// the sphere: e_i = r_i + sqrt(A_i / (4 pi eps)), r half the object's size, A_i its box's face.
@@ -68,7 +69,7 @@ struct GridBake {
     AoGrid grid;
     EngineSettings engine;
     std::uint64_t surfels = 0;
-    std::uint64_t receivers = 0;  ///< hemispheres that were asked
+    std::uint64_t receivers = 0;  ///< hemispheres that were asked, also between cells
     std::uint64_t inside = 0;     ///< cells that were moved out of the object
     std::optional<double> residual;
     std::optional<StatedError> error;  ///< at random places of the box outside the object

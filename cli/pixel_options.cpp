@@ -174,10 +174,10 @@ void check_pixel_options(std::span<const std::string> engines, const PixelOption
         throw UsageError("--kernel bunnell is only for --engine disks or rays.");
 }
 
-int guard_of(const PixelOptions& options, PictureSize size)
+double guard_share_of(const PixelOptions& options)
 {
     if (!options.guard)
-        return 0;
+        return 0.0;
     std::string_view digits = *options.guard;
     double percent = 0.0;
     const bool has_unit = digits.ends_with('%');
@@ -188,7 +188,12 @@ int guard_of(const PixelOptions& options, PictureSize size)
         !(percent >= 0.0 && percent <= kMostGuard))
         throw UsageError("--guard: \"" + *options.guard + "\" is not a number from 0% to " +
                          exact(kMostGuard) + "%.");
-    return static_cast<int>(std::lround(percent / 100.0 * size.height));
+    return percent / 100.0;
+}
+
+int guard_of(const PixelOptions& options, PictureSize size)
+{
+    return static_cast<int>(std::lround(guard_share_of(options) * size.height));
 }
 
 }  // namespace surfelao

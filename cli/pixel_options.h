@@ -49,8 +49,9 @@ void add_pixel_options(CLI::App& command, PixelOptions& options, bool many_taps 
 void check_pixel_options(std::span<const std::string> engines, const PixelOptions& options,
                          const TexelOptions& texels, const MeasureOptions& measure);
 
-/// --guard in pixels beyond each edge, of its per cent of the picture's height; 0 without it.
-/// Throws UsageError.
+/// --guard as a share of the picture's height; 0 without it. Throws UsageError.
+[[nodiscard]] double guard_share_of(const PixelOptions& options);
+/// The same in pixels beyond each edge of a picture.
 [[nodiscard]] int guard_of(const PixelOptions& options, PictureSize size);
 
 }  // namespace surfelao

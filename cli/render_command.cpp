@@ -2,6 +2,7 @@
 #include "bake/moving_solver.h"
 #include "bake/texel_layout.h"
 #include "cli/commands.h"
+#include "cli/grid_bake_options.h"
 #include "cli/output.h"
 #include "cli/preset.h"
 #include "cli/progress_bar.h"
@@ -76,6 +77,8 @@ void check_background(const RenderCommandOptions& options, const ViewOptions& vi
 /// Throws UsageError for an engine that does not answer there, or not that.
 void check_engine(const RenderCommandOptions& options)
 {
+    if (is_at_grid(options.texels))
+        throw UsageError("--at grid is for bake, compare and view.");
     const std::string name = options.engine.engine.value_or("masks");
     check_pixel_options({&name, 1}, options.pixels, options.texels, options.measure);
     check_cube_options(options.cubes, is_at_cube_maps(options.texels));

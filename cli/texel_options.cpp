@@ -30,8 +30,9 @@ void add_layout_options(CLI::App& command, TexelOptions& options, const std::str
         .add_option("--at", options.at,
                     "Where occlusion is asked: vertices, texels of a map on the triangles, the "
                     "points of a file without faces (default: points there, else vertices; of "
-                    "bake, texels for pictures), a grid of cells round an object (bake, compare), "
-                    "and where it is not baked: pixels of the picture, or cube maps inside of the "
+                    "bake, texels for pictures), a grid of cells round an object (bake, "
+                    "compare, view), and where it is not baked: pixels of the picture, or cube "
+                    "maps inside of the "
                     "scene")
         ->check(one_of({"vertices", "texels", "points", "grid", "pixels", "cubemaps"}))
         ->type_name("vertices|texels|points|grid|pixels|cubemaps")
@@ -225,8 +226,6 @@ std::optional<TexelSettings> shown_texels_of(const TexelOptions& options)
         check_together(options, false);
         return layout_settings_of(options);
     }
-    if (options.at == "grid")
-        throw UsageError("--at grid is for bake and compare.");
     if (has_texel_option(options))
         throw UsageError("--size, --uv, --charts, --udim and --padding are for --at texels.");
     return {};

@@ -1,4 +1,5 @@
 #include "cli/commands.h"
+#include "cli/grid_bake_options.h"
 #include "cli/interrupt.h"
 #include "cli/model_options.h"
 #include "cli/output.h"
@@ -25,6 +26,7 @@ namespace {
 
 struct ViewCommandOptions : ModelOptions {
     std::vector<std::string> inputs;
+    GridBakeOptions grid;
 };
 
 /// Of the picture; the engine of the scene where it is that one.
@@ -40,9 +42,11 @@ Cell cell_of(const ViewCommandOptions& options)
 {
     Cell cell;
     cell.from_maps = is_at_cube_maps(options.texels);
-    cell.at_pixels = is_at_pixels(options.texels) || cell.from_maps;
+    cell.grid = grid_settings_of(options.grid, options.texels);
+    cell.at_pixels = is_at_pixels(options.texels) || cell.from_maps || cell.grid;
     if (is_at_pixels(options.texels))
         cell.screen = screen_of(options);
+    cell.guard = static_cast<float>(guard_share_of(options.pixels));
     if (!cell.screen)
         cell.settings.engine = settings_of(options.engine);
     cell.settings.max_distance = distance_limit_of(options.measure);
@@ -60,8 +64,6 @@ void check_view(const ViewCommandOptions& options)
     if (is_at_cube_maps(options.texels) && screen_of(options))
         throw UsageError("--engine " + engine +
                          " is for --at pixels: the window's cube maps have masks, disks or rays.");
-    if (options.pixels.guard)
-        throw UsageError("--guard is for render and compare.");
     const Cell cell = cell_of(options);
     if (fits_scale(options.show))
         throw UsageError("--difference-scale auto is for render.");
@@ -133,6 +135,7 @@ void add_view_command(CLI::App& app, Work& work)
         ->type_name("WHERE");
     add_read_options(*command, options->reading);
     add_model_options(*command, *options);
+    add_grid_bake_options(*command, options->grid, true);
     command->callback([options, command, &work] {
         apply_preset(*command);
         check_view(*options);

@@ -48,26 +48,21 @@ float unwarped(float u, float a, float s)
     return std::copysign(x, u);
 }
 
-glm::dvec3 place_of(const AoGrid& grid, glm::ivec3 cell)
+glm::dvec3 place_of(const AoGrid& grid, glm::vec3 cell)
 {
     const glm::dvec3 middle = 0.5 * (grid.low + grid.high), half = 0.5 * (grid.high - grid.low);
     glm::dvec3 place;
     for (int axis = 0; axis < 3; ++axis) {
-        const float u =
-            2.0f * static_cast<float>(cell[axis]) / static_cast<float>(grid.cells[axis] - 1) - 1.0f;
+        const float u = 2.0f * cell[axis] / static_cast<float>(grid.cells[axis] - 1) - 1.0f;
         place[axis] = middle[axis] + half[axis] * static_cast<double>(unwarped(u, grid.inner[axis],
                                                                                grid.inner_share));
     }
     return place;
 }
 
-void read_values(const AoGrid& grid, glm::dvec3 place, float* values)
+CellBlend blend_at(const AoGrid& grid, glm::dvec3 place)
 {
-    const std::size_t channels = channels_of(grid.store);
-    std::fill_n(values, channels, 0.0f);
     const glm::dvec3 x = in_half_boxes(grid, place);
-    if (!(farthest_out(x) <= 1.0))
-        return;
     glm::ivec3 first;
     glm::vec3 share;
     for (int axis = 0; axis < 3; ++axis) {
@@ -77,13 +72,27 @@ void read_values(const AoGrid& grid, glm::dvec3 place, float* values)
         first[axis] = std::min(static_cast<int>(at), last - 1);
         share[axis] = at - static_cast<float>(first[axis]);
     }
-    for (int corner = 0; corner < 8; ++corner) {
+    CellBlend blend;
+    for (std::size_t corner = 0; corner < 8; ++corner) {
         const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
         const glm::vec3 part = glm::mix(1.0f - share, share, glm::vec3(step));
-        const float weight = part.x * part.y * part.z;
-        const float* cell = grid.values.data() + grid.index_of(first + step) * channels;
+        blend.cells[corner] = grid.index_of(first + step);
+        blend.weights[corner] = part.x * part.y * part.z;
+    }
+    return blend;
+}
+
+void read_values(const AoGrid& grid, glm::dvec3 place, float* values)
+{
+    const std::size_t channels = channels_of(grid.store);
+    std::fill_n(values, channels, 0.0f);
+    if (!(farthest_out(in_half_boxes(grid, place)) <= 1.0))
+        return;
+    const CellBlend blend = blend_at(grid, place);
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+        const float* cell = grid.values.data() + blend.cells[corner] * channels;
         for (std::size_t c = 0; c < channels; ++c)
-            values[c] += weight * cell[c];
+            values[c] += blend.weights[corner] * cell[c];
     }
 }
 

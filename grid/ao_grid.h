@@ -25,6 +25,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -84,8 +85,16 @@ struct AoGrid {
 [[nodiscard]] float warped(float x, float a, float s);
 [[nodiscard]] float unwarped(float u, float a, float s);
 
-/// Where a cell stands, in the object's units.
-[[nodiscard]] glm::dvec3 place_of(const AoGrid& grid, glm::ivec3 cell);
+/// Where a cell stands, or a place between cells, in the object's units.
+[[nodiscard]] glm::dvec3 place_of(const AoGrid& grid, glm::vec3 cell);
+
+/// The eight cells round a place of the object's space that lies in the box, by index, and what
+/// each counts for it: >= 0, 1 together.
+struct CellBlend {
+    std::array<std::size_t, 8> cells;
+    std::array<float, 8> weights;
+};
+[[nodiscard]] CellBlend blend_at(const AoGrid& grid, glm::dvec3 place);
 
 /// What is read at a place of the object's space: channels_of(store) values, blended between eight
 /// cells, border not applied. Beyond the box: zeros.

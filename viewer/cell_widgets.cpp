@@ -170,11 +170,11 @@ bool edit_screen(ScreenSettings& screen)
 bool edit_guard(float& guard)
 {
     float percent = 100.0f * guard;
-    ImGui::SliderFloat("guard", &percent, 0.0f, 50.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp);
+    ImGui::SliderFloat("guard", &percent, 0.0f, 100.0f, "%.0f %%", ImGuiSliderFlags_AlwaysClamp);
     guard = 0.01f * percent;
     const bool apply = was_let_go();
     tip("so much beyond each edge of the picture is drawn for them too, in % of its height: 0 to "
-        "50");
+        "100");
     return apply;
 }
 

@@ -36,7 +36,6 @@ Scene with_files(Scene scene, std::span<const std::filesystem::path> beside,
 }  // namespace
 
 struct Session::Made {
-    std::uint64_t number = 0;
     std::string failure;  ///< if not empty, the rest is
     std::shared_ptr<const Scene> scene;
     std::shared_ptr<const Model> model;
@@ -45,7 +44,6 @@ struct Session::Made {
 };
 
 struct Session::Answer {
-    std::uint64_t number = 0;
     ModelAnswer found;
     std::shared_ptr<const ModelLayout> layout;  // with a map
     std::shared_ptr<const ModelMap> map;
@@ -54,13 +52,6 @@ struct Session::Answer {
     std::shared_ptr<const Prepared> prepared;  // on the CPU
     SessionSettings settings;
     bool is_draft = false;
-};
-
-struct Session::Traced {
-    std::uint64_t number = 0;
-    ModelTruth found;
-    std::shared_ptr<const ModelMap> map;  // in its place
-    double seconds = 0.0;
 };
 
 /// The engine at hand and what it was prepared for.
@@ -166,26 +157,24 @@ void Session::open(const Session& other, const SessionSettings& settings)
                      .parts = settings_.parts,
                      .ground = settings_.ground,
                      .beside = settings_.beside};
-    auto made = std::make_unique<Made>();
-    made->number = ++solve_number_;
-    made->scene = other.scene_;
-    made->model = shown.model;
-    made->pose = shown.pose;
+    Solved solved;
+    solved.made = std::make_unique<Made>();
+    solved.made->scene = other.scene_;
+    solved.made->model = shown.model;
+    solved.made->pose = shown.pose;
     solver_.cancel();
-    const std::lock_guard lock(mailbox_);
-    made_ = std::move(made);
+    solved_.post(solved_.ask(), std::move(solved));
 }
 
 void Session::start_making(Making making)
 {
     making_ = making;
-    const std::uint64_t number = ++solve_number_;
-    solver_.start([this, number, making = std::move(making)](const Progress& progress) {
+    solver_.start([this, number = solved_.ask(),
+                   making = std::move(making)](const Progress& progress) {
         Stopwatch watch;
         ReadOptions reading = making.reading;
         reading.progress = progress;
         auto made = std::make_unique<Made>();
-        made->number = number;
         try {
             Scene scene = making.scene ? *making.scene : read_scene(making.path, reading);
             // make_mesh splits free vertices, for these normals alone
@@ -205,8 +194,9 @@ void Session::start_making(Making making)
             made->failure = error.what();
         }
         made->seconds = watch.lap();
-        const std::lock_guard lock(mailbox_);
-        made_ = std::move(made);
+        Solved solved;
+        solved.made = std::move(made);
+        solved_.post(number, std::move(solved));
     });
 }
 
@@ -281,21 +271,20 @@ bool Session::can_be_asked(const EngineChoice& choice) const
 
 void Session::start_solve()
 {
-    const std::uint64_t number = ++solve_number_;
     EngineSettings whole = settings_.engine;
     whole.definition = definition();
     std::vector<EngineSettings> steps = {draft_of(whole), whole};
     if (steps[0] == steps[1])
         steps.pop_back();
-    solver_.start([this, number, steps, limit = settings_.max_distance, texels = settings_.texels,
-                   parts = state_.parts, model = state_.model](const Progress& progress) {
+    solver_.start([this, number = solved_.ask(), steps, limit = settings_.max_distance,
+                   texels = settings_.texels, parts = state_.parts,
+                   model = state_.model](const Progress& progress) {
         try {
             EngineChoice choice = steps[0];
             choice.context = choice.device == Device::gpu ? engines_->context() : nullptr;
             engines_->prepare_for(model, choice);
             for (std::size_t i = 0; i < steps.size(); ++i) {
                 auto answer = std::make_unique<Answer>();
-                answer->number = number;
                 answer->is_draft = i + 1 < steps.size();
                 answer->build_s = engines_->untold_s;
                 if (choice.device == Device::cpu)
@@ -318,15 +307,17 @@ void Session::start_solve()
                     answer->map_error = map.error;
                     answer->found.seconds += map.seconds;
                 }
-                const std::lock_guard lock(mailbox_);
-                answer_ = std::move(answer);
+                Solved solved;
+                solved.answer = std::move(answer);
+                solved_.post(number, std::move(solved));
             }
             engines_->untold_s.reset();
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& error) {
-            const std::lock_guard lock(mailbox_);
-            failure_ = error.what();
+            Solved solved;
+            solved.failure = error.what();
+            solved_.post(number, std::move(solved));
         }
     });
 }
@@ -342,7 +333,7 @@ void Session::want_reference(std::uint32_t rays)
 
 void Session::start_reference()
 {
-    const std::uint64_t number = ++trace_number_;
+    const std::uint64_t number = traced_.ask();
     state_.reference.clear();
     state_.map_reference.reset();
     state_.error.reset();
@@ -357,31 +348,28 @@ void Session::start_reference()
         [this, number, definition = definition(), rays = reference_rays_, model = state_.model,
          layout = settings_.texels ? state_.layout : nullptr,
          padding = settings_.texels ? settings_.texels->padding : 0](const Progress& progress) {
+            Traced traced;
             try {
                 Stopwatch watch;
-                auto traced = std::make_unique<Traced>();
-                traced->number = number;
                 if (layout)
-                    traced->map = std::make_shared<const ModelMap>(
+                    traced.map = std::make_shared<const ModelMap>(
                         reference_map(*model, layout->layout, definition, rays, padding, progress));
                 else
-                    traced->found = truth_of(*model, definition, rays, progress);
-                traced->seconds = watch.lap();
-                const std::lock_guard lock(mailbox_);
-                traced_ = std::move(traced);
+                    traced.found = truth_of(*model, definition, rays, progress);
+                traced.seconds = watch.lap();
             } catch (const Cancelled&) {
                 throw;
             } catch (const std::exception& error) {
-                const std::lock_guard lock(mailbox_);
-                failure_ = error.what();
+                traced.failure = error.what();
             }
+            traced_.post(number, std::move(traced));
         });
 }
 
 void Session::give_up()
 {
-    ++solve_number_;
-    ++trace_number_;
+    static_cast<void>(solved_.ask());
+    static_cast<void>(traced_.ask());
     solver_.cancel();
     tracer_.cancel();
 }
@@ -390,7 +378,7 @@ void Session::take_pose(std::shared_ptr<const Model> posed, const PoseName& name
                         ModelAnswer answer, bool is_whole)
 {
     SURFELAO_CHECK(state_.model && !making_ && answer.values.size() == posed->answer_count());
-    ++solve_number_;
+    static_cast<void>(solved_.ask());
     solver_.cancel();
     state_.model = std::move(posed);
     state_.pose = name;
@@ -437,20 +425,10 @@ void Session::measure()
 
 Session::Changes Session::update()
 {
-    std::unique_ptr<Made> made;
-    std::unique_ptr<Answer> answer;
-    std::unique_ptr<Traced> traced;
-    std::string failure;
-    {
-        const std::lock_guard lock(mailbox_);
-        made = std::move(made_);
-        answer = std::move(answer_);
-        traced = std::move(traced_);
-        failure = std::exchange(failure_, {});
-    }
+    const Solved solved = solved_.take().value_or(Solved());
     Changes changes;
     changes.pose = changes.occlusion = std::exchange(has_other_pose_, false);
-    if (made && made->number == solve_number_ && making_) {
+    if (const Made* made = solved.made.get(); made && making_) {
         const Making making = *std::exchange(making_, std::nullopt);
         state_.message = made->failure;
         changes.model = made->failure.empty();
@@ -473,7 +451,7 @@ Session::Changes Session::update()
             start_solve();
         }
     }
-    if (answer && answer->number == solve_number_) {
+    if (Answer* answer = solved.answer.get()) {
         occlusion_ = std::move(answer->found.values);
         at_points_ = std::move(answer->found.at_points);
         state_.is_solved = true;
@@ -491,7 +469,10 @@ Session::Changes Session::update()
         state_.message.clear();
         changes.occlusion = true;
     }
-    if (traced && traced->number == trace_number_) {
+    std::string failure = solved.failure;
+    if (std::optional<Traced> traced = traced_.take(); traced && !traced->failure.empty()) {
+        failure = traced->failure;
+    } else if (traced) {
         truth_ = std::move(traced->found);
         state_.reference_s.reset();
         if (!truth_.reference.from_cache)
@@ -502,7 +483,7 @@ Session::Changes Session::update()
     }
     if (changes.occlusion || changes.reference)
         measure();
-    if (!failure.empty())  // it came after the answers that were taken with it
+    if (!failure.empty())
         state_.message = std::move(failure);
     return changes;
 }

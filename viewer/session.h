@@ -9,6 +9,7 @@
 #include "surfels/occlusion.h"
 #include "surfels/scene.h"
 #include "viewer/background_worker.h"
+#include "viewer/mailbox.h"
 #include "viewer/model.h"
 #include "viewer/solve_map.h"
 #include "viewer/solve_model.h"
@@ -16,7 +17,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -183,7 +183,20 @@ private:
     };
     struct Made;
     struct Answer;
-    struct Traced;
+    /// By the solver's thread: one of them. A failure comes in place of a draft that nobody has
+    /// taken yet.
+    struct Solved {
+        std::unique_ptr<Made> made;
+        std::unique_ptr<Answer> answer;
+        std::string failure;
+    };
+    /// By the tracer's.
+    struct Traced {
+        ModelTruth found;
+        std::shared_ptr<const ModelMap> map;  ///< in its place
+        double seconds = 0.0;
+        std::string failure;  ///< if not empty, there is nothing else
+    };
     struct Engines;
     void start_making(Making making);
     void solve_or_make();
@@ -206,14 +219,9 @@ private:
 
     std::unique_ptr<Engines> engines_;  ///< used by the solver's thread alone
 
-    // written by the background threads, taken by update(); what was started before the last model
-    // or settings carries an old number and is dropped
-    std::mutex mailbox_;
-    std::unique_ptr<Made> made_;
-    std::unique_ptr<Answer> answer_;
-    std::unique_ptr<Traced> traced_;
-    std::string failure_;
-    std::uint64_t solve_number_ = 0, trace_number_ = 0;
+    // written by the background threads, taken by update()
+    Mailbox<Solved> solved_;
+    Mailbox<Traced> traced_;
 
     BackgroundWorker solver_, tracer_;  // last: their threads write to the above
 };

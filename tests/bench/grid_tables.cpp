@@ -5,12 +5,16 @@
 //                                         settings of Malmer et al., against rays at places about
 //                                         the object, border included
 //     grid_tables growth                  JSON: seconds of a bake against triangles, by masks and
-//     by
 //                                         256 rays a cell, for bumpy spheres with as many triangles
 //                                         as the objects of that report
+//     grid_tables family FIRST COUNT      a line for each of these scenes of the generated family
+//                                         (of sixteen each, every other lot is of the judging
+//                                         half): errors of cones and of harmonics by masks at
+//                                         good; then the means
 
 #include "bake/grid_compare.h"
 #include "bake/peak_memory.h"
+#include "family.h"
 #include "files/scene_io.h"
 #include "grid/grid_file.h"
 #include "scenes.h"
@@ -18,7 +22,9 @@
 #include "surfels/number_text.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <string>
@@ -59,6 +65,27 @@ std::string errors(int count, char** models)
                                 make_geometry(read_scene(model.substr(equal + 1))));
     }
     return text + "]}\n";
+}
+
+void print_family(std::uint32_t first, std::uint32_t count)
+{
+    double sums[2] = {0.0, 0.0};
+    for (std::uint32_t i = first; i < first + count; ++i) {
+        GridCompareSettings settings;
+        settings.places = 4'000;
+        settings.candidates.emplace_back();
+        const GridComparison found =
+            compare_grids(make_geometry(scenes::family_scene(i)), settings);
+        std::printf("%3u %-16s", i, scenes::family_kind(i));
+        for (int k = 0; k < 2; ++k) {
+            sums[k] += found.rows[k].error.rmse;
+            std::printf("  %s %.4f", name_of(found.rows[k].grid.store).c_str(),
+                        found.rows[k].error.rmse);
+        }
+        std::printf("  repair %.3f s\n", found.rows[0].repair_s);
+        std::fflush(stdout);
+    }
+    std::printf("mean of %u: cone %.4f, sh %.4f\n", count, sums[0] / count, sums[1] / count);
 }
 
 /// The best of three: others take time of the machine, nobody gives any.
@@ -122,8 +149,12 @@ int main(int count, char** words)
             std::fputs(errors(count - 2, words + 2).c_str(), stdout);
         else if (count == 2 && std::strcmp(words[1], "growth") == 0)
             std::fputs(growth().c_str(), stdout);
+        else if (count == 4 && std::strcmp(words[1], "family") == 0)
+            print_family(static_cast<std::uint32_t>(std::atoi(words[2])),
+                         static_cast<std::uint32_t>(std::atoi(words[3])));
         else {
-            std::fputs("usage: grid_tables errors [NAME=FILE...] | growth\n", stderr);
+            std::fputs("usage: grid_tables errors [NAME=FILE...] | growth | family FIRST COUNT\n",
+                       stderr);
             return 2;
         }
         return 0;

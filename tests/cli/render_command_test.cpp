@@ -234,7 +234,10 @@ TEST(ViewCommand, RefusesWhatTheWindowCannotShow)
              {"--engine", "gtao"},
              {"--engine", "vo", "--at", "cubemaps"},
              {"--taps", "8"},
-             {"--guard", "5%", "--at", "pixels", "--engine", "vo"},
+             {"--guard", "5", "--at", "pixels", "--engine", "vo"},
+             {"--guard", "5%", "--at", "grid"},
+             {"--resolution", "8", "--at", "pixels"},
+             {"--size", "64", "--at", "grid"},
              {"--ground", "y", "--at", "pixels", "--engine", "vo"},
              {"--mode", "coverage"},
              {"--mode", "levels", "--at", "pixels"}}) {
@@ -251,9 +254,14 @@ TEST(ViewCommand, WithoutADisplayItSaysSoAndFails)
     if (std::getenv("DISPLAY"))
         GTEST_SKIP() << "there is a display";
     const TemporaryFolder folder;
-    const Outcome outcome = run(folder.path(), {"view"});
-    EXPECT_EQ(outcome.code, 1);
-    EXPECT_NE(outcome.err.find("no window can be opened"), std::string::npos) << outcome.err;
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"view"},
+             {"view", "--at", "pixels", "--engine", "vo", "--guard", "5%"},
+             {"view", "--at", "grid", "--resolution", "8", "--store", "sh"}}) {
+        const Outcome outcome = run(folder.path(), words);
+        EXPECT_EQ(outcome.code, 1);
+        EXPECT_NE(outcome.err.find("no window can be opened"), std::string::npos) << outcome.err;
+    }
 }
 
 }  // namespace

@@ -312,10 +312,11 @@ Receivers16 receivers_of(const MaskReceivers& receivers, const Masks16& masks)
             load(masks.target)};
 }
 
-/// What the masks are worth.
+/// What the masks are worth. others: per receiver by how much far nodes cover more that are not of
+/// `shared`, as it is seen; null for none.
 void answer(const MaskWorld& world, const ReceiverGroup& group, const MaskShared& shared,
             const Masks16& masks, const Receivers16& all_receivers, const MaskReceivers& receivers,
-            MaskAnswers& answers)
+            const float* others, MaskAnswers& answers)
 {
     const MaskLimits& limits = world.settings.limits;
     const Visible visible = visible_of(world, shared, group.axis);
@@ -343,7 +344,8 @@ void answer(const MaskWorld& world, const ReceiverGroup& group, const MaskShared
         const float sky = openness > 0.0f ? seen / openness : above;
         // near polygons cover what is far as they cover the open sky
         const float bare = openness < visible.openness ? openness / visible.openness : 1.0f;
-        const float change = bare * visible.share * changes[i];
+        const float change =
+            bare * visible.share * changes[i] + (others == nullptr ? 0.0f : others[i]);
         const float size = change < 0.0f ? -change : change;
         if (size < __builtin_inff())
             openness -= change / (1.0f + size / kMaskLargestMove);
@@ -366,7 +368,7 @@ void solve(const MaskWorld& world, const ReceiverGroup& group, const std::uint32
     const Receivers16 all_receivers = receivers_of(receivers, masks);
     draw_lists(world, scratch, all_receivers, receivers.count, false, masks);
     masks.add_up(receivers.count);
-    answer(world, group, shared, masks, all_receivers, receivers, answers);
+    answer(world, group, shared, masks, all_receivers, receivers, nullptr, answers);
 }
 
 void keep(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
@@ -392,6 +394,40 @@ void keep(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_
     }
 }
 
+/// changes_at() of far nodes beside those that are kept, each by the share of the sky that they
+/// cover anew over the sum of what covers it: they hide behind each other, and behind what is kept.
+/// What is hidden wholly changes nothing.
+SURFELAO_MASK_INLINE void seen_changes(const MaskWorld& world, const MaskShared& shared,
+                                       const MaskKept* kept, std::size_t stride,
+                                       const Masks16& masks, const Receivers16& receivers,
+                                       unsigned count, float* changes)
+{
+    const MaskLimits& limits = world.settings.limits;
+    const float* irradiance = shared.flow.irradiance;
+    store(changes, changes_at(shared.flow, receivers));
+    for (unsigned i = 0; i < count; ++i) {
+        const float* n = masks.normals[i];
+        const float sum = irradiance[0] * n[0] + irradiance[1] * n[1] + irradiance[2] * n[2];
+        float covered = 0.0f;
+        alignas(64) std::uint32_t far[kFaceWords] = {}, before[kFaceWords] = {};
+        alignas(64) std::uint32_t seen[kMaskWords];
+        for (unsigned k = 0; k < limits.count && sum > 0.0f; ++k) {
+            const std::uint32_t* sky = masks.sky(i, k);
+            for (int w = 0; w < kFaceWords; w += kLanes) {
+                store(far + w, load(far + w) | load(shared.mask[k] + w));
+                store(before + w, load(before + w) | load(kept[k * stride].drawn[i] + w));
+                store(seen + w, load(far + w) & ~load(before + w) & load(sky + w));
+            }
+            First of_seen, of_above;
+            first_moments(*world.raster, seen, sky, of_seen, of_above);
+            const float weight = of_above.along(n);
+            covered += weight > 0.0f ? limits.weight[k] * (of_seen.along(n) / weight) : 0.0f;
+        }
+        const float share = sum > 0.0f ? covered / sum : 0.0f;
+        changes[i] *= share < 1.0f ? share : 1.0f;
+    }
+}
+
 void solve_kept(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_t* in,
                 std::size_t in_count, const MaskKept* kept, std::size_t stride,
                 const MaskReceivers& receivers, MaskAnswers& answers, MaskScratch& scratch)
@@ -402,17 +438,12 @@ void solve_kept(const MaskWorld& world, const ReceiverGroup& group, const std::u
     const Receivers16 all_receivers = receivers_of(receivers, masks);
     draw_lists(world, scratch, all_receivers, receivers.count, true, masks);
     masks.add_up(receivers.count);
-    for (unsigned k = 0; k < masks.limits; ++k) {
-        for (int w = 0; w < kMaskPairWords; w += kLanes)
-            store(shared.mask[k] + w, load(shared.mask[k] + w) | load(kept[k * stride].shared + w));
-    }
-    for (int i = 0; i < 3; ++i) {
-        shared.flow.change[i] += kept->flow.change[i];
-        shared.flow.irradiance[i] += kept->flow.irradiance[i];
-        for (int k = 0; k < 3; ++k)
-            shared.flow.slope[i][k] += kept->flow.slope[i][k];
-    }
-    answer(world, group, shared, masks, all_receivers, receivers, answers);
+    alignas(64) float others[kLanes];
+    seen_changes(world, shared, kept, stride, masks, all_receivers, receivers.count, others);
+    for (unsigned k = 0; k < masks.limits; ++k)
+        std::memcpy(shared.mask[k], kept[k * stride].shared, sizeof shared.mask[k]);
+    shared.flow = kept->flow;
+    answer(world, group, shared, masks, all_receivers, receivers, others, answers);
 }
 
 }  // namespace
