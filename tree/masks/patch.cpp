@@ -400,9 +400,9 @@ void join(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right,
 
 MaskRoom room_of(const MaskPatch& patch, const MaskCuts& cuts)
 {
-    MaskRoom room{kMaskFrame, {}, {}};
+    MaskRoom room{cuts.axes, {}, {}};
     for (int k = 0; k < 3; ++k) {
-        const glm::vec3 axis = kMaskFrame[k];
+        const glm::vec3 axis = cuts.axes[k];
         const float at =
             axis.x * patch.center.x + axis.y * patch.center.y + axis.z * patch.center.z;
         room.below[k] = at - cuts.low[k];
