@@ -238,9 +238,10 @@ void walk(const MaskWorld& world, const ReceiverGroup& of, MaskBuffer<std::uint3
         const Bool16 drawn = without(shared, one_sided & (sight.away < zero));
         if (bits(drawn) != 0) {
             const Float16 grow = select(sheet & hollow, all(kMaskHollowGrowth), all(1.0f));
-            // what is exact is so from the centre alone: a receiver sees it part from its
+            // what is exact is so from the centre alone: a receiver elsewhere sees it part from its
             // neighbours
-            const Bool16 moved = without(exact & has_cracks, node.is_triangle());
+            const Bool16 moved =
+                without(exact & has_cracks & (zero < group.radius), node.is_triangle());
             draw_shared(streams, node, group.center, grow, drawn, sheet | moved);
         }
 
