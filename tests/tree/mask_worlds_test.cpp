@@ -190,7 +190,7 @@ TEST(MaskWorlds, WiresAreAsOpenAsTheyAre)
     double darker = 0.0;
     for (std::size_t i = 0; i < some.size(); ++i)
         darker += good[i * kStep].occlusion - exact[i].occlusion;
-    EXPECT_NEAR(darker / static_cast<double>(some.size()), 0.0, 0.0045);
+    EXPECT_NEAR(darker / static_cast<double>(some.size()), 0.0, 0.0024);
 }
 
 TEST(MaskWorlds, RefusesWhatItDoesNotMeasure)
