@@ -193,7 +193,7 @@ def split_nodes(tiles, levels, low=(-math.inf, -math.inf), high=(math.inf, math.
                           high))
 
 
-def grow_to_cuts(axis, center, low, high):
+def grow_to_cuts(axis, shorter, center, low, high):
     """tree/masks/patch.cpp: half axis and move of the middle."""
     ahead = behind = False
     for k in range(2):
@@ -203,7 +203,8 @@ def grow_to_cuts(axis, center, low, high):
             below, above = above, below
         ahead |= above < reach
         behind |= below < reach
-    forward, backward = (0.5 * DILATION * side for side in (ahead, behind))
+    rim = DILATION * math.hypot(*shorter) / math.hypot(*axis)
+    forward, backward = (0.5 * rim * side for side in (ahead, behind))
     grown = 1 + forward + backward
     return (axis[0] * grown, axis[1] * grown), (axis[0] * (forward - backward),
                                                 axis[1] * (forward - backward))
@@ -222,7 +223,7 @@ def rims(numbers):
     probes = [(-1.7 + 3.4 * (i + 0.5) / 119, -1.2 + 2.4 * (j + 0.5) / 84)
               for i in range(119) for j in range(84)]
     on_sheet = [(x / 1.5) ** 2 + y * y < 1 for x, y in probes]
-    for i, title in enumerate(("Rectangles of eight nodes", "12 % larger where the tree was cut")):
+    for i, title in enumerate(("Rectangles of eight nodes", "Larger by 12 % of their width at cuts")):
         p = Panel(d, 30 + 420 * i, 50, 380, 268, (-1.7, 1.7), (-1.2, 1.2))
         p.title(title)
         p.area(outline, BLUE, width=1)
@@ -231,8 +232,9 @@ def rims(numbers):
             patch = Patch(tiles)
             center, (along, across) = patch.center, patch.axes()
             if i == 1:
-                along, move_a = grow_to_cuts(along, center, low, high)
-                across, move_b = grow_to_cuts(across, center, low, high)
+                grown, move_a = grow_to_cuts(along, across, center, low, high)
+                across, move_b = grow_to_cuts(across, across, center, low, high)
+                along = grown
                 center = (center[0] + move_a[0] + move_b[0], center[1] + move_a[1] + move_b[1])
             shown.append(rectangle(center, along, across))
             forms.append([*center, along[0] + across[0], along[1] + across[1],

@@ -8,6 +8,7 @@
 #include "tree/masks/masks.h"
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -136,6 +137,29 @@ TEST(MaskTree, TessellatedRectangleIsOneRectangle)
 }
 
 // A link has 28 bits; such a tree itself would take 16 GiB.
+std::ptrdiff_t exact_nodes(const Scene& scene)
+{
+    const auto tree = build_mask_tree(make_geometry(scene));
+    return std::ranges::count_if(tree->nodes,
+                                 [](const MaskNode& node) { return node.open_radius <= 0.0f; });
+}
+
+// A floor in the form of an L: cut along its cells it is made of a few rectangles.
+TEST(MaskTree, WhatFacesOneWayIsCutAlongItsEdges)
+{
+    Scene floor = scenes::sheet({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, 16);
+    std::erase_if(floor.triangles, [&](glm::uvec3 t) {
+        const glm::dvec3 p = floor.positions[t.x] + floor.positions[t.y] + floor.positions[t.z];
+        return p.x > 3.0 && p.y > 3.0;
+    });
+    floor.parts[0].triangle_count = static_cast<std::uint32_t>(floor.triangles.size());
+    const glm::dmat3 turn(
+        glm::rotate(glm::dmat4(1.0), 0.6, glm::normalize(glm::dvec3(1.0, 2.0, 3.0))));
+    const std::ptrdiff_t along_axes = exact_nodes(floor);
+    EXPECT_EQ(exact_nodes(scenes::moved(floor, [&](glm::dvec3 p) { return turn * p; })),
+              along_axes);
+}
+
 TEST(MaskTree, MoreLeavesThanLinksCanCountAreRefused)
 {
     EXPECT_NO_THROW(check_mask_tiles(kMostMaskTiles, 2 * kMostMaskTiles));

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 // What masks alone promise; the worlds with known answers are tests/engines/.
 namespace surfelao {
@@ -170,6 +171,29 @@ TEST(MaskWorlds, ErrorAgainstTheOracleFallsWithQuality)
     }
 }
 
+// A drum between two plates: some of its walls are drawn for a group, others for each receiver.
+// What is exact from the group's centre is not so beside them.
+TEST(MaskWorlds, NoLightFallsBetweenWallsThatAreSharedAndOthers)
+{
+    const Scene walls = scenes::grid(12, 1, [](double s, double t) {
+        const double angle = 2.0 * std::numbers::pi * s;
+        return glm::dvec3(std::cos(angle), std::sin(angle), t);
+    });
+    const Geometry geometry =
+        make_geometry(walls + scenes::sheet({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1) +
+                      scenes::sheet({-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, 1));
+    std::vector<Receiver> receivers;
+    for (int x = -20; x <= 20; ++x) {
+        for (int y = -20; y <= 20; ++y)
+            receivers.push_back(receiver_at(geometry, {0.03 * x, 0.03 * y, 0}, {0, 0, 1}));
+    }
+    double open = 0.0;
+    for (const Occlusion& one : solve(geometry, receivers, {}))
+        open += 1.0 - one.occlusion;
+    // 0.00005; where only clusters have cracks beside them 0.0005
+    EXPECT_LT(open / static_cast<double>(receivers.size()), 2e-4);
+}
+
 // Springs, blocks and balls: what stands open between the turns of a wire is no crack, and its
 // strips are no wider than they are.
 TEST(MaskWorlds, WiresAreAsOpenAsTheyAre)
@@ -186,7 +210,7 @@ TEST(MaskWorlds, WiresAreAsOpenAsTheyAre)
     double darker = 0.0;
     for (std::size_t i = 0; i < some.size(); ++i)
         darker += good[i * kStep].occlusion - exact[i].occlusion;
-    EXPECT_NEAR(darker / static_cast<double>(some.size()), 0.0, 0.0045);
+    EXPECT_NEAR(darker / static_cast<double>(some.size()), 0.0, 0.0024);
 }
 
 // From inside of a smooth body nothing is open, however narrow its clusters are drawn.

@@ -228,7 +228,8 @@ void walk(const MaskWorld& world, const ReceiverGroup& of, MaskBuffer<std::uint3
             select(all(limit) < farthest, all(settings.crossing), all(1.0f));
         const Bool16 one_sided = nonzero(node.links() & solid);
         const Bool16 exact = node.open_radius() < exact_radius;
-        const Bool16 sheet = without(node.is_sheet(), exact) & wide(settings, node, sight.distance);
+        const Bool16 has_cracks = wide(settings, node, sight.distance);
+        const Bool16 sheet = without(node.is_sheet(), exact) & has_cracks;
         // a front that is hollow goes on beyond its rim
         const Bool16 hollow = node.is_hollow() & (sight.away < zero);
         const Bool16 small = exact | (node.open_radius() < cluster * sight.distance);
@@ -237,7 +238,11 @@ void walk(const MaskWorld& world, const ReceiverGroup& of, MaskBuffer<std::uint3
         const Bool16 drawn = without(shared, one_sided & (sight.away < zero));
         if (bits(drawn) != 0) {
             const Float16 grow = select(sheet & hollow, all(kMaskHollowGrowth), all(1.0f));
-            draw_shared(streams, node, group.center, grow, drawn, sheet);
+            // what is exact is so from the centre alone: a receiver elsewhere sees it part from its
+            // neighbours
+            const Bool16 moved =
+                without(exact & has_cracks & (zero < group.radius), node.is_triangle());
+            draw_shared(streams, node, group.center, grow, drawn, sheet | moved);
         }
 
         const Bool16 rest =

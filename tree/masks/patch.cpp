@@ -400,9 +400,9 @@ void join(MaskPatch& patch, const MaskPatch& left, const MaskPatch& right,
 
 MaskRoom room_of(const MaskPatch& patch, const MaskCuts& cuts)
 {
-    MaskRoom room{kMaskFrame, {}, {}};
+    MaskRoom room{cuts.axes, {}, {}};
     for (int k = 0; k < 3; ++k) {
-        const glm::vec3 axis = kMaskFrame[k];
+        const glm::vec3 axis = cuts.axes[k];
         const float at =
             axis.x * patch.center.x + axis.y * patch.center.y + axis.z * patch.center.z;
         room.below[k] = at - cuts.low[k];
@@ -449,7 +449,9 @@ void show_patches(std::span<MaskPatchNode> nodes)
         const RoomColumns room = room_columns(nodes.subspan(begin, count));
         const Float4 depth =
             of.area > 0.0f ? kMaskBulgeDepth * most(zero, patch[4][3]) / of.area : zero;
-        const Vector move = move_ends(along, room, of.rim, zero) +
+        // what is torn at a cut is as wide as the strip, however long that is
+        const Float4 slender = of.length_u > 0.0f ? of.length_v / of.length_u : zero;
+        const Vector move = move_ends(along, room, of.rim * slender, zero) +
                             move_ends(across, room, of.rim, folds_of(of, patch[4][3])) -
                             normal * depth;
         const Vector middle = center + move;

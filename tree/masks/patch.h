@@ -53,8 +53,10 @@ struct MaskCorners {
     }
 };
 
-/// Where the tree was cut about a node: planes across the scene's own axes.
+/// Where the tree was cut about a node: planes across axes that a range of keys has in common.
 struct MaskCuts {
+    glm::mat3 axes = kMaskFrame;  ///< the scene's own, or of what faces one way; mask frame
+    bool own = false;             ///< not the scene's
     glm::vec3 low{-std::numeric_limits<float>::infinity()};
     glm::vec3 high{std::numeric_limits<float>::infinity()};
 };

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "surfels/geometry.h"
+#include "tree/masks/patch.h"
 #include "tree/masks/tiles.h"
 #include "tree/masks/tree.h"
 #include "tree/raw_vector.h"
@@ -21,9 +22,9 @@ namespace surfelao {
 
 /// A node as it was built.
 struct MaskPlanNode {
-    glm::vec3 center, normal;          ///< of its patch
-    glm::vec3 room_below, room_above;  ///< of inner nodes: MaskRoom
-    std::uint32_t below;               ///< of inner nodes: tiles of the first child
+    glm::vec3 center, normal;  ///< of its patch
+    MaskRoom room;             ///< of inner nodes
+    std::uint32_t below;       ///< of inner nodes: tiles of the first child
 };
 
 /// How a tree was built.

@@ -2,12 +2,12 @@
 
 #include "surfels/errors.h"
 #include "tree/discard.h"
-#include "tree/lanes.h"
 #include "tree/masks/constants.h"
 #include "tree/masks/masks.h"
 #include "tree/masks/patch.h"
 #include "tree/masks/refit.h"
 #include "tree/masks/solids.h"
+#include "tree/masks/splits.h"
 #include "tree/masks/tiles.h"
 #include "tree/masks/winding.h"
 #include "tree/part.h"
@@ -19,8 +19,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -29,101 +27,6 @@
 
 namespace surfelao {
 namespace {
-
-/// Where the splits look: centroid and unit normal of one triangle, in the scene's own axes: what
-/// is built along them is cut along them.
-struct alignas(16) Key {
-    std::array<float, 6> at;
-    std::uint32_t tile;
-    std::uint32_t padding;
-};
-
-struct Extent {
-    /// Of `at`; what follows it in a key is carried along and of no meaning.
-    std::array<Float4, 2> low, high;
-
-    Extent()
-    {
-        low.fill(all_lanes(std::numeric_limits<float>::max()));
-        high.fill(all_lanes(-std::numeric_limits<float>::max()));
-    }
-    explicit Extent(std::span<const Key> keys) : Extent()
-    {
-        for (const Key& key : keys) {
-            const auto at = std::bit_cast<std::array<Float4, 2>>(key);
-            add({at, at});
-        }
-    }
-    Extent(const std::array<Float4, 2>& lowest, const std::array<Float4, 2>& highest)
-        : low(lowest), high(highest)
-    {
-    }
-    void add(const Extent& other)
-    {
-        for (std::size_t i = 0; i < 2; ++i) {
-            low[i] = least(low[i], other.low[i]);
-            high[i] = most(high[i], other.high[i]);
-        }
-    }
-};
-
-Extent extent_of(std::span<const Key> keys)
-{
-    if (keys.size() < kPartMany)
-        return Extent(keys);
-    std::vector<Extent> extents(keys.size() / kPartBlock + 1);
-    for_blocks(keys,
-               [&](std::span<const Key> block, std::size_t i) { extents[i] = Extent(block); });
-    Extent extent;
-    for (const Extent& one : extents)
-        extent.add(one);
-    return extent;
-}
-
-/// Parts the keys below `at` on one of the six axes from the others.
-struct Plane {
-    std::size_t axis;
-    float at;
-
-    bool operator()(const Key& key) const { return key.at[axis] < at; }
-};
-
-/// Whether all keys lie at the one or the other end of an extent. Smooth surfaces are told after a
-/// few keys.
-bool at_ends(std::span<const Key> keys, std::size_t axis, float low, float high)
-{
-    const float margin = kMaskEdgeEnds * (high - low);
-    return std::all_of(keys.begin(), keys.end(), [=](const Key& key) {
-        return key.at[axis] < low + margin || key.at[axis] > high - margin;
-    });
-}
-
-/// The middle of the longest of the six extents; walls that meet in an edge are parted first.
-Plane plane_of(const Extent& extent, std::span<const Key> keys)
-{
-    const auto low = std::bit_cast<std::array<float, 8>>(extent.low);
-    const auto high = std::bit_cast<std::array<float, 8>>(extent.high);
-    std::array<float, 6> square;
-    for (std::size_t i = 0; i < 6; ++i)
-        square[i] = (high[i] - low[i]) * (high[i] - low[i]);
-    const float unit = kMaskNormalExtent * kMaskNormalExtent * (square[0] + square[1] + square[2]);
-    std::size_t axis = 0;
-    float longest = square[0];
-    for (std::size_t i = 1; i < 6; ++i) {
-        const float here = i < 3 ? square[i] : unit * square[i];
-        axis = here > longest ? i : axis;
-        longest = here > longest ? here : longest;
-    }
-    if (axis < 3) {
-        std::size_t turned = 3;
-        for (std::size_t i = 4; i < 6; ++i)
-            turned = square[i] > square[turned] ? i : turned;
-        if (square[turned] > kMaskEdgeExtent * kMaskEdgeExtent &&
-            at_ends(keys, turned, low[turned], high[turned]))
-            axis = turned;
-    }
-    return {axis, 0.5f * (low[axis] + high[axis])};
-}
 
 /// Nodes over up to kMaskBundle triangles while they are built. Node 0 is the root; children stand
 /// side by side, after their parent.
@@ -136,7 +39,7 @@ struct Bundle {
     static constexpr std::size_t kNodes = 2 * kMaskBundle - 1;
     static constexpr std::size_t kStride = kMaskBundle + MaskCorners::kSlack;
 
-    std::array<std::array<Key, kMaskBundle>, 2> keys;
+    std::array<std::array<MaskKey, kMaskBundle>, 2> keys;
     std::array<Node, kNodes> nodes;
     std::array<std::uint8_t, kMaskBundle> leaf;   ///< the node of each triangle
     std::array<std::uint8_t, kMaskBundle> inner;  ///< parents first
@@ -146,15 +49,6 @@ struct Bundle {
     std::array<MaskRoom, kMaskBundle> rooms;
     std::array<MaskPatchNode, kMaskBundle> shown;
 };
-
-/// What looks elsewhere need not be beside what it was parted from.
-void cut(const Plane& plane, MaskCuts& left, MaskCuts& right)
-{
-    if (plane.axis < 3) {
-        left.high[static_cast<int>(plane.axis)] = plane.at;
-        right.low[static_cast<int>(plane.axis)] = plane.at;
-    }
-}
 
 /// How the cuts about a patch have turned with it since it was built. left, right: the patches of
 /// its children. No cuts where a patch does not tell how it has turned.
@@ -176,8 +70,8 @@ MaskRoom turned_room(const MaskPlan& plan, std::size_t index, std::size_t first_
     const glm::mat3 from(u, glm::cross(rest.normal, u), rest.normal);
     const glm::mat3 to(v, glm::cross(patch.normal, v), patch.normal);
     const float growth = now_length / then_length;
-    return {to * glm::transpose(from) * kMaskFrame, growth * rest.room_below,
-            growth * rest.room_above};
+    return {to * glm::transpose(from) * rest.room.axes, growth * rest.room.below,
+            growth * rest.room.above};
 }
 
 class Builder {
@@ -230,9 +124,9 @@ private:
         tiles_ = tiles_of(geometry_, normals, pairs_);
         const std::size_t count = tiles_.size();
         check_mask_tiles(count, triangles);
-        for (RawVector<Key>& side : keys_)
+        for (RawVector<MaskKey>& side : keys_)
             side.resize(count);
-        for_blocks(std::span(keys_[0]), [&](std::span<Key> block, std::size_t i) {
+        for_blocks(std::span(keys_[0]), [&](std::span<MaskKey> block, std::size_t i) {
             for (std::size_t t = 0; t < block.size(); ++t)
                 block[t] = key_of(i * kPartBlock + t, normals);
         });
@@ -259,7 +153,7 @@ private:
         return length > 0.0f ? cross / length : glm::vec3(0.0f);
     }
 
-    Key key_of(std::size_t tile, std::span<const glm::vec3> normals) const
+    MaskKey key_of(std::size_t tile, std::span<const glm::vec3> normals) const
     {
         const auto& [t, triangles] = tiles_[tile];
         const glm::vec3 a = geometry_.positions[t.x], b = geometry_.positions[t.y],
@@ -336,9 +230,7 @@ private:
     {
         if (made_ == nullptr)
             return;
-        const glm::vec3 none(0.0f);
-        made_->nodes[index] = {patch.center, patch.normal, room != nullptr ? room->below : none,
-                               room != nullptr ? room->above : none,
+        made_->nodes[index] = {patch.center, patch.normal, room != nullptr ? *room : MaskRoom{},
                                static_cast<std::uint32_t>(below)};
     }
 
@@ -347,9 +239,11 @@ private:
     std::size_t split(std::size_t begin, std::size_t end, int side, MaskCuts& left_cuts,
                       MaskCuts& right_cuts)
     {
-        const std::span<const Key> keys(keys_[side].data() + begin, end - begin);
-        const Plane plane = plane_of(extent_of(keys), keys);
-        const std::size_t below = part(keys, plane, keys_[1 - side].data() + begin);
+        const std::span<MaskKey> keys(keys_[side].data() + begin, end - begin);
+        const MaskPlane plane = split_plane(keys, tiles_, geometry_.positions, left_cuts);
+        right_cuts = left_cuts;
+        const std::size_t below =
+            part(std::span<const MaskKey>(keys), plane, keys_[1 - side].data() + begin);
         if (below == 0 || below == keys.size())
             return begin + keys.size() / 2;
         cut(plane, left_cuts, right_cuts);
@@ -458,7 +352,7 @@ private:
 
     /// The nodes over the bundle's keys, and the triangles in the order of the leaves. Returns how
     /// many nodes are not triangles.
-    static std::size_t split_bundle(Bundle& bundle, std::size_t count, std::uint32_t* order)
+    std::size_t split_bundle(Bundle& bundle, std::size_t count, std::uint32_t* order) const
     {
         std::size_t node_count = 1;
         std::size_t inner_count = 0;
@@ -466,7 +360,7 @@ private:
         for (std::size_t k = 0; k < node_count; ++k) {
             Bundle::Node& node = bundle.nodes[k];
             const std::size_t size = node.end - node.begin;
-            const Key* const keys = bundle.keys[node.side].data() + node.begin;
+            MaskKey* const keys = bundle.keys[node.side].data() + node.begin;
             if (size == 1) {
                 bundle.leaf[node.begin] = static_cast<std::uint8_t>(k);
                 order[node.begin] = keys->tile;
@@ -478,9 +372,11 @@ private:
             cuts[0] = cuts[1] = bundle.cuts[k];
             if (size > 2) {
                 side = 1 - side;
-                const Plane plane = plane_of(Extent({keys, size}), {keys, size});
-                Key* const out = bundle.keys[side].data() + node.begin;
-                below = part<Key>({keys, size}, plane, out, 0, size);
+                const MaskPlane plane =
+                    split_plane({keys, size}, tiles_, geometry_.positions, cuts[0]);
+                cuts[1] = cuts[0];
+                MaskKey* const out = bundle.keys[side].data() + node.begin;
+                below = part<MaskKey>({keys, size}, plane, out, 0, size);
                 if (below != 0 && below != size)
                     cut(plane, cuts[0], cuts[1]);
                 else
@@ -521,12 +417,12 @@ private:
     const Geometry& geometry_;
     MaskPairs pairs_ = MaskPairs::found;
     RawVector<MaskTile> tiles_;
-    MaskPlan* made_ = nullptr;            ///< of this tree
-    const MaskPlan* followed_ = nullptr;  ///< of an earlier one
-    std::vector<std::uint8_t> solid_;     ///< one per triangle
-    RawVector<glm::vec3> positions_;      ///< in the mask frame
-    std::array<RawVector<Key>, 2> keys_;  ///< to and fro from level to level
-    RawVector<std::uint32_t> order_;      ///< the triangles below each finished node in one range
+    MaskPlan* made_ = nullptr;                ///< of this tree
+    const MaskPlan* followed_ = nullptr;      ///< of an earlier one
+    std::vector<std::uint8_t> solid_;         ///< one per triangle
+    RawVector<glm::vec3> positions_;          ///< in the mask frame
+    std::array<RawVector<MaskKey>, 2> keys_;  ///< to and fro from level to level
+    RawVector<std::uint32_t> order_;  ///< the triangles below each finished node in one range
     RawVector<MaskNode> nodes_;
 };
 
