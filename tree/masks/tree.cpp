@@ -194,7 +194,7 @@ private:
             build_right();
         }
         if (followed_ == nullptr) {
-            for (RawVector<Key>& keys : keys_)
+            for (RawVector<MaskKey>& keys : keys_)
                 discard(keys, begin, end);
         }
 
