@@ -2,7 +2,6 @@
 
 #include "bake/hidden_texels.h"
 #include "bake/high_to_low.h"
-#include "bake/map_fit.h"
 #include "bake/vertex_fit.h"
 #include "surfels/errors.h"
 #include "surfels/stopwatch.h"
@@ -148,10 +147,7 @@ public:
         enter("fill");
         Stopwatch watch;
         leave_out_hidden(engine.definition, bake, known);
-        seconds_.fill += watch.lap();
-        const std::vector<BendingPage> bending = samples_of_bends(prepared, engine, bake, known);
-        watch.lap();
-        fill_pages(bake, known, bending);
+        fill_pages(bake, known);
         for (Map& map : bake.bent)
             encode_directions(map);
         for (std::vector<Map>* maps : {&bake.visibility, &bake.bent})
@@ -224,91 +220,10 @@ private:
         bake.flat_triangles = static_cast<std::uint64_t>(std::ranges::count(shown, 0));
     }
 
-    /// What a page is fitted to (map_fit.h).
-    struct BendingPage {
-        std::vector<std::uint8_t> is_held;
-        std::vector<MapSample> samples;
-    };
-
-    /// Asks at the quarters of texels that bend; per page.
-    std::vector<BendingPage> samples_of_bends(const Prepared& prepared,
-                                              const EngineSettings& engine, MapBake& bake,
-                                              const Known& known)
-    {
-        std::vector<BendingPage> bending(known.size());
-        const MapSize size = layout_.size, fine{2 * size.width, 2 * size.height};
-        if (std::max(fine.width, fine.height) > kMostTexels)
-            return bending;  // so large a map has nothing to gain
-        for (std::size_t page = 0; page < known.size(); ++page) {
-            const std::vector<std::uint8_t> bends =
-                texels_that_bend(bake.visibility[page], known[page]);
-            if (bends.empty())
-                continue;
-            bending[page].is_held = known[page];
-            for (std::size_t i = 0; i < bends.size(); ++i)
-                bending[page].is_held[i] &= bends[i] == 0;
-            Stopwatch watch;
-            const MapRaster raster(mesh_.geometry, layout_.pages[page], fine);
-            const std::uint32_t rows = std::max(1u, band_rows() / 2);
-            for (std::uint32_t first = 0; first < fine.height; first += rows) {
-                const std::vector<Texel> quarters =
-                    raster.texels(first, rows, [&](std::uint32_t x, std::uint32_t y) {
-                        return bends[std::size_t{y / 2} * size.width + x / 2] != 0;
-                    });
-                std::vector<SurfacePoint> points;
-                points.reserve(quarters.size());
-                for (const Texel& quarter : quarters)
-                    points.push_back(quarter.point);
-                const std::vector<Receiver> receivers = receivers_of(points);
-                seconds_.raster += watch.lap();
-                const std::vector<Occlusion> answers =
-                    solve(prepared, receivers, engine, progress_in("bends")).occlusion;
-                seconds_.solve += watch.lap();
-                add_samples(page, quarters, receivers, answers, engine.definition,
-                            bending[page].samples);
-                seconds_.fill += watch.lap();
-            }
-        }
-        return bending;
-    }
-
-    /// Of what is seen.
-    void add_samples(std::size_t page, std::span<const Texel> quarters,
-                     std::span<const Receiver> receivers, std::span<const Occlusion> answers,
-                     const Definition& definition, std::vector<MapSample>& samples)
-    {
-        std::vector<std::uint32_t> closed;
-        std::vector<Receiver> asked;
-        for (std::uint32_t i = 0; i < quarters.size(); ++i) {
-            if (1.0f - answers[i].occlusion > kHiddenVisibility)
-                continue;
-            closed.push_back(i);
-            asked.push_back(receivers[i]);
-        }
-        const std::vector<std::uint8_t> inside = inside_of_bodies(asked, definition);
-        std::vector<std::uint8_t> is_hidden(quarters.size(), 0);
-        for (std::size_t i = 0; i < closed.size(); ++i)
-            is_hidden[closed[i]] = inside[i];
-        for (std::size_t i = 0; i < quarters.size(); ++i) {
-            if (is_hidden[i] == 0)
-                samples.push_back({*uv_at(mesh_.geometry, layout_.pages[page], quarters[i].point),
-                                   1.0f - answers[i].occlusion, 0.25f * quarters[i].share});
-        }
-    }
-
-    std::vector<std::uint8_t> inside_of_bodies(std::span<const Receiver> receivers,
-                                               const Definition& definition)
-    {
-        if (receivers.empty())
-            return {};
-        if (!scene_)
-            scene_.emplace(occluding(), RayScene::Build::quick);
-        return inside_bodies(occluding(), *scene_, receivers, definition.max_distance);
-    }
-
     /// Texels that nobody sees are no longer known.
-    void leave_out_hidden(const Definition& definition, MapBake& bake, Known& known)
+    void leave_out_hidden(const Definition& definition, MapBake& bake, Known& known) const
     {
+        std::optional<RayScene> scene;
         for (std::size_t page = 0; page < known.size(); ++page) {
             std::vector<std::uint8_t> hidden =
                 texels_maybe_hidden(bake.visibility[page], known[page]);
@@ -319,8 +234,10 @@ private:
             points.reserve(texels.size());
             for (const Texel& texel : texels)
                 points.push_back(texel.point);
+            if (!scene)
+                scene.emplace(occluding(), RayScene::Build::quick);
             const std::vector<std::uint8_t> inside =
-                inside_of_bodies(receivers_of(points), definition);
+                inside_bodies(occluding(), *scene, receivers_of(points), definition.max_distance);
             for (std::size_t i = 0; i < texels.size(); ++i)
                 if (inside[i] == 0)  // one sheet of a texel that is seen is enough
                     hidden[index_of(texels[i])] = 0;
@@ -340,33 +257,39 @@ private:
                                      const std::vector<std::uint8_t>& marked) const
     {
         const MapRaster raster(mesh_.geometry, layout_.pages[page], layout_.size);
-        return raster.texels(0, layout_.size.height, [&](std::uint32_t x, std::uint32_t y) {
-            return marked[std::size_t{y} * layout_.size.width + x] != 0;
-        });
+        const std::uint32_t width = layout_.size.width;
+        std::vector<Texel> texels;
+        for (std::uint32_t first = 0; first < layout_.size.height; first += band_rows()) {
+            const std::uint32_t rows = std::min(band_rows(), layout_.size.height - first);
+            const auto begin = marked.begin() + std::ptrdiff_t{first} * width;
+            if (std::find(begin, begin + std::ptrdiff_t{rows} * width, 1) ==
+                begin + std::ptrdiff_t{rows} * width)
+                continue;
+            for (const Texel& texel : raster.texels(first, rows))
+                if (marked[index_of(texel)] != 0)
+                    texels.push_back(texel);
+        }
+        return texels;
     }
 
-    /// What has no value gets one, the visibility is fitted to the samples of each page, and smooth
-    /// seams show the same on both sides.
-    void fill_pages(MapBake& bake, const Known& known, std::span<const BendingPage> bending) const
+    /// What has no value gets one, and smooth seams show the same on both sides.
+    void fill_pages(MapBake& bake, const Known& known) const
     {
         const Seams seams = seams_of(mesh_, layout_);
         const std::uint32_t rings =
             bake.hidden == 0 ? settings_.padding : std::max(settings_.padding, kHiddenRings / 2);
-        const auto fill = [&](std::vector<Map>& maps, bool fits, bool joins) {
+        const auto fill = [&](std::vector<Map>& maps, bool joins) {
             Known filled = known;
             if (joins)
                 fill_across(mesh_, layout_, seams, settings_.padding, maps, filled);
             for (std::size_t page = 0; page < maps.size(); ++page)
                 fill_around(maps[page], filled[page], rings);
-            for (std::size_t page = 0; page < maps.size() && fits; ++page)
-                if (!bending[page].samples.empty())
-                    fit_texels(maps[page], bending[page].is_held, bending[page].samples);
             if (joins)
                 stitch(seams, maps, progress_in("fill"));
         };
-        fill(bake.visibility, true, true);
+        fill(bake.visibility, true);
         if (!bake.bent.empty())
-            fill(bake.bent, false, settings_.joins_bent);
+            fill(bake.bent, settings_.joins_bent);
         bake.seams = seams.list.size();
         bake.smooth_seams = seams.smooth_count();
         bake.jump = seam_jump(seams, bake.visibility);
@@ -398,7 +321,6 @@ private:
     const Offset& offset_;
     const HighDetail* high_;
     MapSeconds seconds_;
-    std::optional<RayScene> scene_;  ///< for inside_of_bodies(), once it is asked
 };
 
 }  // namespace

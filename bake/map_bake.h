@@ -2,11 +2,10 @@
 ///
 /// Texels are receivers (surfels/texels.h), solved band by band, page by page: memory follows the
 /// band, not the map, and the bytes do not depend on it. Where sheets lie on each other a texel
-/// holds their mean, and how far they differ is told. Where the answer bends within a texel it is
-/// asked at more places, and texels are fitted to them (map_fit.h). Texels that nothing covers, or
-/// what nobody sees (hidden_texels.h), take what lies beyond the seam (atlas/seams.h) or surrounds
-/// them (image/map.h), so that filters and mip levels fetch no emptiness. At last both sides of
-/// smooth seams are made to show the same.
+/// holds their mean, and how far they differ is told. Texels that nothing covers, or what nobody
+/// sees (hidden_texels.h), take what lies beyond the seam (atlas/seams.h) or surrounds them
+/// (image/map.h), so that filters and mip levels fetch no emptiness. At last both sides of smooth
+/// seams are made to show the same.
 #pragma once
 
 #include "atlas/layout.h"
@@ -58,7 +57,7 @@ struct MapBake {
     std::vector<Map> visibility;
     std::vector<Map> bent;             ///< three channels, (n + 1) / 2; or empty
     std::optional<StatedError> error;  ///< of what is displayed: fetched between texels
-    std::uint64_t receivers = 0;       ///< points that were asked, but for quarters (map_fit.h)
+    std::uint64_t receivers = 0;       ///< points that were asked
     std::uint64_t covered = 0;         ///< texels that show the surface
     std::uint64_t overlapping = 0;     ///< texels with several sheets
     std::uint64_t hidden = 0;  ///< of the covered ones: inside of a body, filled as if not covered

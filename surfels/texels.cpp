@@ -162,21 +162,10 @@ std::optional<glm::dvec2> uv_at(const Geometry& geometry, const UvSet& uvs,
 /// A few rows of the map, filled by one thread.
 class MapRaster::Strip {
 public:
-    Strip(const MapRaster& raster, std::uint32_t first, std::uint32_t rows,
-          const WantedTexels& wanted)
-        : raster_(raster),
-          first_(first),
-          rows_(rows),
-          best_(std::size_t{rows} * raster.size_.width),
-          unwanted_(best_.size(), 0)
+    Strip(const MapRaster& raster, std::uint32_t first, std::uint32_t rows)
+        : raster_(raster), first_(first), rows_(rows), best_(std::size_t{rows} * raster.size_.width)
     {
-        if (!wanted)
-            return;
-        for (std::size_t place = 0; place < unwanted_.size(); ++place)
-            unwanted_[place] = wanted(x_of(place), y_of(place)) ? 0 : 1;
     }
-
-    [[nodiscard]] bool is_unwanted() const { return std::ranges::count(unwanted_, 0) == 0; }
 
     /// Triangles in their order: all centres first, then all parts.
     void add_centres(const Placed& placed) { for_each_row(placed, &Strip::add_centres_in_row); }
@@ -189,7 +178,8 @@ public:
         std::size_t next = 0;
         for (std::size_t place = 0; place < best_.size(); ++place) {
             const Best& best = best_[place];
-            const std::uint32_t x = x_of(place), y = y_of(place);
+            const auto x = static_cast<std::uint32_t>(place % raster_.size_.width);
+            const auto y = first_ + static_cast<std::uint32_t>(place / raster_.size_.width);
             if (best.is_centre) {
                 for (; next < sheets_.size() && sheets_[next].place == place; ++next)
                     if (!sheets_[next].is_outside || !best.has_inside)
@@ -213,16 +203,6 @@ private:
         SurfacePoint point;
         bool is_outside;
     };
-
-    [[nodiscard]] std::uint32_t x_of(std::size_t place) const
-    {
-        return static_cast<std::uint32_t>(place % raster_.size_.width);
-    }
-    [[nodiscard]] std::uint32_t y_of(std::size_t place) const
-    {
-        return first_ + static_cast<std::uint32_t>(place / raster_.size_.width);
-    }
-
     using Row = void (Strip::*)(const Placed&, std::int64_t y, std::size_t first_place);
 
     void for_each_row(const Placed& placed, Row row)
@@ -266,9 +246,9 @@ private:
         const Span columns = columns_in(placed, row, row);
         for (std::int64_t x = columns.begin; x < columns.end; ++x) {
             const glm::dvec2 centre(static_cast<double>(x) + 0.5, row);
-            const std::size_t place = first_place + folded(x, raster_.size_.width);
-            if (unwanted_[place] != 0 || !contains(placed.corners, centre))
+            if (!contains(placed.corners, centre))
                 continue;
+            const std::size_t place = first_place + folded(x, raster_.size_.width);
             best_[place].is_centre = true;
             best_[place].has_inside |= !placed.is_outside;
             sheets_.push_back(
@@ -282,9 +262,8 @@ private:
         const Span columns = columns_in(placed, low, low + 1.0);
         const bool has_large_part = std::abs(twice_area(placed.corners)) > 2.0 * kHasLargePart;
         for (std::int64_t x = columns.begin; x < columns.end; ++x) {
-            const std::size_t place = first_place + folded(x, raster_.size_.width);
-            Best& best = best_[place];
-            if (unwanted_[place] != 0 || best.is_centre || (placed.is_outside && best.has_inside))
+            Best& best = best_[first_place + folded(x, raster_.size_.width)];
+            if (best.is_centre || (placed.is_outside && best.has_inside))
                 continue;
             const PartOfTexel part = part_in_texel(placed.corners, {static_cast<double>(x), low});
             if (!(part.area > 0.0) || (part.area < kLeastPart && has_large_part))
@@ -301,7 +280,6 @@ private:
     const MapRaster& raster_;
     std::uint32_t first_, rows_;
     std::vector<Best> best_;
-    std::vector<std::uint8_t> unwanted_;
     std::vector<Sheet> sheets_;
 };
 
@@ -348,8 +326,7 @@ void MapRaster::mark_shown(std::span<std::uint8_t> triangles) const
         triangles[placed.triangle] = 1;
 }
 
-std::vector<Texel> MapRaster::texels(std::uint32_t first, std::uint32_t rows,
-                                     const WantedTexels& wanted) const
+std::vector<Texel> MapRaster::texels(std::uint32_t first, std::uint32_t rows) const
 {
     const std::uint32_t end = std::min(size_.height, first + rows);
     if (first >= end)
@@ -376,9 +353,7 @@ std::vector<Texel> MapRaster::texels(std::uint32_t first, std::uint32_t rows,
     std::vector<std::vector<Texel>> found(strips);
     tbb::parallel_for(std::size_t{0}, strips, [&](std::size_t s) {
         const std::uint32_t begin = first + static_cast<std::uint32_t>(s) * kStripRows;
-        Strip strip(*this, begin, std::min(kStripRows, end - begin), wanted);
-        if (strip.is_unwanted())
-            return;
+        Strip strip(*this, begin, std::min(kStripRows, end - begin));
         std::vector<std::uint32_t>& list = of_strip[s];
         list.erase(std::unique(list.begin(), list.end()), list.end());
         for (const std::uint32_t i : list)

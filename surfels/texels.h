@@ -17,7 +17,6 @@
 #include <glm/vec2.hpp>
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -55,9 +54,6 @@ inline constexpr double kMostTiles = 64.0;
 /// A map that is covered more often than this is one that the surface repeats, as bricks do.
 inline constexpr double kMostSheets = 8.0;
 
-/// Whether somebody wants to know of a texel; empty: of each.
-using WantedTexels = std::function<bool(std::uint32_t x, std::uint32_t y)>;
-
 /// The triangles of a scene in the plane of a map. Immutable; any number of threads.
 class MapRaster {
 public:
@@ -81,10 +77,8 @@ public:
 
     /// Of the rows first <= y < first + rows: by row, then column; several for one texel where
     /// sheets lie on each other, by triangle. However a map is cut into ranges of rows, the texels
-    /// are the same. wanted: those of other texels are left out; it is asked by several threads.
-    /// O(texels and triangles of the rows), all cores.
-    [[nodiscard]] std::vector<Texel> texels(std::uint32_t first, std::uint32_t rows,
-                                            const WantedTexels& wanted = {}) const;
+    /// are the same. O(texels and triangles of the rows), all cores.
+    [[nodiscard]] std::vector<Texel> texels(std::uint32_t first, std::uint32_t rows) const;
 
 private:
     struct Placed {
