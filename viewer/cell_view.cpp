@@ -358,7 +358,7 @@ void CellView::measure()
 
 bool CellView::is_busy() const
 {
-    return session_.solving() || session_.tracing() || pixels_.solving() || rays_.solving() ||
+    return session_.solving() || session_.tracing() || pixels_.is_busy() || rays_.is_busy() ||
            cubes_.is_busy() || grid_.is_busy();
 }
 

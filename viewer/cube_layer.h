@@ -53,7 +53,7 @@ public:
     std::size_t count() const { return places_.size(); }  ///< with those that are not solved yet
     /// Of the pixels that see something, the share that maps answer; while the camera rests.
     const std::optional<double>& coverage() const { return coverage_; }
-    bool is_busy() const { return session_.busy() || holes_.solving(); }
+    bool is_busy() const { return session_.busy() || holes_.is_busy(); }
     bool is_placing() const { return session_.placing(); }
     std::optional<double> progress() const;
     const std::string& message() const;  ///< what went wrong; else empty

@@ -38,7 +38,7 @@ public:
     const std::shared_ptr<const GridBake>& found() const { return found_; }
     const std::string& message() const { return message_; }  ///< what went wrong; else empty
     bool was_cancelled() const { return was_cancelled_; }    ///< the last question, before its end
-    bool solving() const { return worker_.busy(); }
+    bool solving() const { return worker_.busy() || news_.is_full(); }
     double progress() const { return worker_.progress(); }
 
 private:

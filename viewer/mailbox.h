@@ -38,9 +38,16 @@ public:
         return found;
     }
 
+    /// In the asking thread: whether take() has something to give.
+    [[nodiscard]] bool is_full() const
+    {
+        const std::lock_guard lock(mutex_);
+        return found_.has_value() && number_ == asked_;
+    }
+
 private:
     std::uint64_t asked_ = 0;
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     std::optional<Found> found_;
     std::uint64_t number_ = 0;  ///< it was posted under
 };

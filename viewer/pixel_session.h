@@ -75,6 +75,8 @@ public:
     const PixelAnswers& answers() const { return answers_; }
 
     bool solving() const { return worker_.busy(); }
+    /// Whether answers are still to come: from the thread, or by the next update().
+    bool is_busy() const { return solving() || found_.is_full(); }
     double progress() const { return worker_.progress(); }
 
 private:
