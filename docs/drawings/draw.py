@@ -6,6 +6,7 @@ from the formulas and the constants of tree/masks. Pure Python, no packages; equ
 run.
 tests/check_drawings.sh compares the committed files with a new run.
 """
+import argparse
 import json
 import os
 import sys
@@ -28,7 +29,10 @@ def rounded(value):
 
 
 def main():
-    folder = sys.argv[1] if len(sys.argv) == 2 else sys.exit("usage: draw.py FOLDER")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", help="where the drawings and their numbers go")
+    folder = parser.parse_args().folder
     os.makedirs(folder, exist_ok=True)
     numbers = {}
     for module in MODULES:

@@ -38,7 +38,6 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
