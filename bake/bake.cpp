@@ -9,6 +9,7 @@
 #include "engines/moving.h"
 #include "engines/threads.h"
 #include "files/file_type.h"
+#include "files/gltf_new.h"
 #include "files/maker_mark.h"
 #include "files/scene_io.h"
 #include "files/sidecars.h"
@@ -335,6 +336,8 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
     enter(progress, "read");
     Stopwatch watch;
     Scene scene = read_scene(settings.input, settings.reading);
+    if (is_gltf(type_of(settings.output)))
+        scene = as_gltf(settings.input, std::move(scene), settings.target.normals);
     const std::vector<Scene> others = read_others(settings.parts, settings.reading);
     return bake_read(std::move(scene), others, settings, watch, progress).report;
 }

@@ -443,7 +443,7 @@ void add_options(CLI::App* command, const std::shared_ptr<BakeOptions>& options)
     command
         ->add_option(
             "-o,--output", options->output,
-            "Mesh or cloud file (.ply .obj .off, .gltf/.glb from glTF, .pcd .xyz .pts .txt .asc "
+            "Mesh or cloud file (.ply .obj .off, .gltf/.glb of meshes, .pcd .xyz .pts .txt .asc "
             "from clouds), a map over the file's texture "
             "coordinates (.png .tif .exr), with --at grid NAME.aogrid.exr or .png, or a folder "
             "(made where it is "

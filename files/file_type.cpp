@@ -29,9 +29,4 @@ bool is_gltf(FileType type)
     return type == FileType::gltf || type == FileType::glb;
 }
 
-bool becomes_gltf(FileType type)
-{
-    return is_gltf(type) || type == FileType::foreign;
-}
-
 }  // namespace surfelao

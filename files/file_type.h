@@ -14,7 +14,4 @@ enum class FileType { obj, ply, off, stl, gltf, glb, pcd, xyz, foreign, unknown 
 /// Whether it is .gltf or .glb.
 [[nodiscard]] bool is_gltf(FileType type);
 
-/// Whether a scene of it can be written as glTF: it is that, or foreign.
-[[nodiscard]] bool becomes_gltf(FileType type);
-
 }  // namespace surfelao

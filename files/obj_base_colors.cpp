@@ -92,6 +92,7 @@ private:
             return;
         const double opacity = is_transparency ? 1.0 - *number : *number;
         material.opacity = opacity < 1.0 ? Opacity::clear : Opacity::solid;
+        material.alpha = static_cast<float>(std::clamp(opacity, 0.0, 1.0));
     }
 
     BaseColors& colors_;

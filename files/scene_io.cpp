@@ -77,6 +77,12 @@ bool holds_points_only(FileType type)
     return type == FileType::xyz || type == FileType::pcd;
 }
 
+/// All that such a file can hold is a mesh.
+bool has_faces(FileType type)
+{
+    return is_gltf(type) || type == FileType::stl || type == FileType::foreign;
+}
+
 constexpr const char* kLosesFaces = "a mesh cannot be written as points alone, use .ply";
 
 WrittenFile contents_for(const fs::path& path, const Scene& scene,
@@ -154,10 +160,9 @@ void check_output(const fs::path& input, const fs::path& output)
         refuse("such files are read, not written, use .ply, .obj or .glb");
     if (type == FileType::unknown)
         refuse(unknown_type(output, ".ply .obj .off .gltf .glb .pcd .xyz .pts .txt .asc"));
-    if (is_gltf(type) && !becomes_gltf(type_of(input)))
-        refuse("only a scene that was read from glTF can be written as glTF, use .ply or .obj");
-    if (holds_points_only(type) &&
-        (becomes_gltf(type_of(input)) || type_of(input) == FileType::stl))
+    if (is_gltf(type) && holds_points_only(type_of(input)))
+        refuse("points alone are not written as glTF, use .ply");
+    if (holds_points_only(type) && has_faces(type_of(input)))
         refuse(kLosesFaces);
     check_writable(output);
 }
@@ -206,12 +211,10 @@ std::optional<fs::path> map_materials_of(const fs::path& output)
 void check_output_with_map(const fs::path& input, const fs::path& output)
 {
     const FileType type = type_of(output);
-    const bool is_known = is_gltf(type) || type == FileType::obj || type == FileType::ply;
-    if (!is_known || (is_gltf(type) && !becomes_gltf(type_of(input))))
-        throw InputError(output.string() + ": " +
-                         (is_known ? "only a scene that was read from glTF can be written as glTF"
-                                   : "a map goes into .glb, .gltf, .obj and .ply only") +
-                         ", use .png, .tif or .exr for the map alone");
+    if (!is_gltf(type) && type != FileType::obj && type != FileType::ply)
+        throw InputError(output.string() +
+                         ": a map goes into .glb, .gltf, .obj and .ply only, "
+                         "use .png, .tif or .exr for the map alone");
     check_output(input, output);
     std::error_code error;
     for (const std::optional<fs::path>& file : {map_file_of(output), map_materials_of(output)}) {
@@ -268,9 +271,8 @@ std::vector<std::string> write_scene_with_map(const fs::path& path, const Scene&
 
 void check_output_with_blended_map(const fs::path& input, const fs::path& output)
 {
-    if (!is_gltf(type_of(output)) || !becomes_gltf(type_of(input)))
-        throw InputError(output.string() +
-                         ": blended charts go from glTF into .glb and .gltf only");
+    if (!is_gltf(type_of(output)))
+        throw InputError(output.string() + ": blended charts go into .glb and .gltf only");
     check_output(input, output);
 }
 

@@ -3,7 +3,8 @@
 /// Read: .obj .ply .off .stl .gltf .glb, those of foreign_io.h (.fbx .dae .zae .3ds .3mf .x3d) and
 /// the clouds .pcd .xyz .pts .txt .asc (by extension, any
 /// case); .ply, .obj and .off without faces are clouds too. Written: .ply .obj .off, .gltf/.glb for
-/// a scene that came from glTF or through assimp, and for clouds .pcd .xyz .pts .txt .asc. The
+/// a scene that came from glTF or through assimp (gltf_new.h makes such of meshes), and for clouds
+/// .pcd .xyz .pts .txt .asc. The
 /// file's own order and number of vertices are kept, also on non-manifold meshes and at seams (STL
 /// has no vertices of its own: equal corners are one). No faces are invented.
 #pragma once
@@ -70,7 +71,7 @@ struct WrittenFile {
 };
 
 /// Throws InputError when a scene from `input` could not be written to `output` at all: unknown
-/// extension, STL, a glTF asked of a scene that is none, points alone asked of STL or glTF, folder
+/// extension, STL, a glTF asked of points alone, points alone asked of STL or glTF, folder
 /// missing or not writable, output is a folder. For use before any work is done.
 void check_output(const std::filesystem::path& input, const std::filesystem::path& output);
 
@@ -109,7 +110,7 @@ struct OcclusionMap {
 [[nodiscard]] std::optional<std::filesystem::path> map_materials_of(
     const std::filesystem::path& output);
 
-/// check_output() for a result with a map: glTF from glTF, .obj and .ply from all. Refused as well
+/// check_output() for a result with a map: glTF, .obj and .ply. Refused as well
 /// is an output whose map_file_of() or map_materials_of() is there already, unless it is the one of
 /// an earlier result that is there: the file is its user's.
 void check_output_with_map(const std::filesystem::path& input, const std::filesystem::path& output);
@@ -129,7 +130,7 @@ struct BlendedMap {
     std::array<UvSet, 3> uvs;
 };
 
-/// check_output() for a result with a blended map: glTF from glTF only.
+/// check_output() for a result with a blended map: glTF only.
 void check_output_with_blended_map(const std::filesystem::path& input,
                                    const std::filesystem::path& output);
 

@@ -1,6 +1,6 @@
 #include "files/import/glb.h"
 
-#include "files/import/buffer.h"
+#include "files/gltf_buffer.h"
 #include "files/import/materials.h"
 #include "files/import/meshes.h"
 #include "files/import/names.h"

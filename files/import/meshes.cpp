@@ -1,6 +1,6 @@
 #include "files/import/meshes.h"
 
-#include "files/import/buffer.h"
+#include "files/gltf_buffer.h"
 
 #include <assimp/mesh.h>
 #include <tiny_gltf.h>

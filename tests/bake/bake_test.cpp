@@ -65,6 +65,18 @@ TEST(Bake, WritesTheFileAndReportsEveryStage)
     }
 }
 
+// Each side of a hard edge has values of its own, which the PLY's shared vertices have not.
+TEST(Bake, AMeshBecomesGltf)
+{
+    const TemporaryFolder folder;
+    std::ofstream(folder / "in.off") << "OFF\n6 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n1 0 1\n1 1 1\n"
+                                        "4 0 1 2 3\n4 1 4 5 2\n";
+    EXPECT_EQ(bake(settings_for(folder / "in.off", folder / "out.ply")).vertices, 6u);
+    EXPECT_EQ(bake(settings_for(folder / "in.off", folder / "out.glb")).vertices, 8u);
+    EXPECT_EQ(bake(settings_for(folder / "out.glb", folder / "again.glb")).vertices, 8u);
+    EXPECT_EQ(contents_of(folder / "out.glb"), contents_of(folder / "again.glb"));
+}
+
 TEST(Bake, CancelledAtAnyStageLeavesTheOldFile)
 {
     const TemporaryFolder folder;

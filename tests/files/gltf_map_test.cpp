@@ -220,10 +220,10 @@ TEST(GltfMap, OtherFormatsAreRefused)
         }
         return "";
     };
-    EXPECT_EQ(refusal_of("a.ply", "b.glb"),
-              "b.glb: only a scene that was read from glTF can be written as glTF, use .png, .tif "
-              "or .exr for the map alone");
-    EXPECT_EQ(refusal_of("a.gltf", "b.glb"), "");
+    EXPECT_EQ(refusal_of("a.gltf", "b.off"),
+              "b.off: a map goes into .glb, .gltf, .obj and .ply only, use .png, .tif or .exr for "
+              "the map alone");
+    EXPECT_EQ(refusal_of("a.ply", "b.glb"), "");
     EXPECT_EQ(map_file_of("a/b.c.gltf"), "a/b.c.ao.png");
     EXPECT_EQ(map_file_of("a/b.glb"), std::nullopt);
 }

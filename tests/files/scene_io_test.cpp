@@ -317,12 +317,12 @@ TEST(SceneIo, OutputsThatCannotBeAreRefusedBeforehand)
     EXPECT_EQ(sentence("a.obj", "b"),
               ": a file without extension is not known, only .ply .obj .off .gltf .glb .pcd .xyz "
               ".pts .txt .asc");
-    EXPECT_EQ(sentence("a.obj", "b.glb"),
-              ": only a scene that was read from glTF can be written as glTF, use .ply or .obj");
+    EXPECT_EQ(sentence("a.xyz", "b.glb"), ": points alone are not written as glTF, use .ply");
     EXPECT_NE(sentence("a.obj", "missing/b.ply").find("does not exist"), std::string::npos);
     EXPECT_EQ(sentence("a.obj", "b.ply"), "allowed");
     EXPECT_EQ(sentence("a.gltf", "b.GLB"), "allowed");
     EXPECT_EQ(sentence("a.glb", "b.off"), "allowed");
+    EXPECT_EQ(sentence("a.stl", "b.glb"), "allowed");
 }
 
 TEST(SceneIo, AFailedWriteLeavesNothing)

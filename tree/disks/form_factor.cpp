@@ -1,5 +1,6 @@
 #include "tree/disks/form_factor.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace surfelao {

@@ -1,4 +1,4 @@
-#include "files/import/buffer.h"
+#include "files/gltf_buffer.h"
 
 #include <tiny_gltf.h>
 

@@ -1,4 +1,4 @@
-/// buffer.h: bytes of a glTF's only buffer.
+/// gltf_buffer.h: bytes of a new glTF's only buffer.
 #pragma once
 
 #include <cstddef>
