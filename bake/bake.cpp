@@ -159,7 +159,9 @@ std::vector<Occlusion> bake_at_vertices(const Job& job, BakeReport& report,
     if (job.occluders == nullptr && !settings.merged) {
         // building needs much memory on the way: it is done before there is what will be asked
         enter(progress, "build");
+        FoldedCorners corners(*mesh);
         built = own.emplace(mesh->occluding()).prepared_for(settings.engine).seconds();
+        corners.unfold();
     }
     const auto add_built = [&] {
         report.seconds.surfels += built.surfels;

@@ -101,6 +101,8 @@ public:
         if (keys_.empty())
             return {};
         spare_.resize(keys_.size());
+        sort_keys(0, keys_.size());
+        spare_ = RawVector<Key>();  // before there are columns
         out_.order.resize(keys_.size());
         for (auto* columns : {&out_.position, &out_.normal}) {
             for (RawVector<float>& column : *columns) {
@@ -141,6 +143,36 @@ private:
         return (receivers + kGroupSize - 1) / kGroupSize;
     }
 
+    /// Where keys [begin, end) are cut in two, so that all leaves but the last are full.
+    static std::size_t middle_of(std::size_t begin, std::size_t end)
+    {
+        return begin + leaf_count(end - begin) / 2 * kGroupSize;
+    }
+
+    /// On two threads where so many keys are worth it.
+    template <class Left, class Right>
+    static void do_both(std::size_t keys, const Left& left, const Right& right)
+    {
+        if (keys > kParallelGroup) {
+            tbb::parallel_invoke(left, right);
+        } else {
+            left();
+            right();
+        }
+    }
+
+    /// In two at the median of the longest extent, again and again.
+    void sort_keys(std::size_t begin, std::size_t end)
+    {
+        const std::size_t middle = middle_of(begin, end);
+        if (middle == begin)
+            return;
+        select(std::span(keys_).subspan(begin, end - begin), middle - begin,
+               longest_axis(begin, end), std::span(spare_).subspan(begin, end - begin));
+        do_both(
+            end - begin, [&] { sort_keys(begin, middle); }, [&] { sort_keys(middle, end); });
+    }
+
     /// Group `index` over keys [begin, end); its descendants stand at [first, first + 2
     /// (leaves-1)).
     Sums build_group(std::size_t index, std::size_t first, std::size_t begin, std::size_t end)
@@ -156,26 +188,14 @@ private:
             sums = finish_leaf(begin, end);
         } else {
             group.first_child = static_cast<std::uint32_t>(first);
-            // in two at the median of the longest extent, so that all leaves but the last are full
-            const std::size_t left_leaves = leaves / 2;
-            const std::size_t middle = begin + left_leaves * kGroupSize;
-            select(std::span(keys_).subspan(begin, end - begin), middle - begin,
-                   longest_axis(begin, end), std::span(spare_).subspan(begin, end - begin));
+            const std::size_t middle = middle_of(begin, end);
             const std::size_t left_first = first + 2;
-            const std::size_t right_first = left_first + 2 * (left_leaves - 1);
+            const std::size_t right_first = left_first + 2 * (leaf_count(middle - begin) - 1);
             Sums right_sums;
-            const auto left = [&] { sums = build_group(first, left_first, begin, middle); };
-            const auto right = [&] {
-                right_sums = build_group(first + 1, right_first, middle, end);
-            };
-            if (end - begin > kParallelGroup) {
-                tbb::parallel_invoke(left, right);
-            } else {
-                left();
-                right();
-            }
+            do_both(
+                end - begin, [&] { sums = build_group(first, left_first, begin, middle); },
+                [&] { right_sums = build_group(first + 1, right_first, middle, end); });
             discard(std::span(keys_).subspan(begin, end - begin));
-            discard(std::span(spare_).subspan(begin, end - begin));
             sums.position += right_sums.position;
             sums.normal += right_sums.normal;
         }
