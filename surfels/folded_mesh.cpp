@@ -1,9 +1,11 @@
 #include "surfels/folded_mesh.h"
 
+#include "surfels/buckets.h"
 #include "surfels/for_all.h"
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 
 namespace surfelao {
 namespace {
@@ -47,29 +49,45 @@ void FoldedScene::unfold()
 
 FoldedCorners::FoldedCorners(Mesh& mesh) : mesh_(mesh)
 {
-    std::vector<glm::uvec3>& corners = mesh.surface.split_corners;
-    const std::vector<glm::uvec3>& triangles = mesh.geometry.triangles;
-    std::size_t count = 0;
-    for (std::size_t t = 0; t < corners.size(); ++t)
-        count += corners[t] != triangles[t] ? 1 : 0;
-    if (count * sizeof(Split) >= corners.size() * sizeof(corners[0]))
-        return;
-    splits_.reserve(count);
-    for (std::uint32_t t = 0; t < corners.size(); ++t) {
-        if (corners[t] != triangles[t])
-            splits_.push_back({t, corners[t]});
+    const Surface& surface = mesh.surface;
+    const std::size_t vertices = surface.vertex_count();
+    std::vector<std::uint8_t> count(vertices, 0), rank(surface.extra_vertices.size());
+    for (std::size_t extra = 0; extra < rank.size(); ++extra) {
+        std::uint8_t& before = count[surface.extra_vertices[extra]];
+        if (before == std::numeric_limits<std::uint8_t>::max())
+            return;
+        rank[extra] = ++before;
     }
-    corners = std::vector<glm::uvec3>();
+    ranks_.resize(surface.split_corners.size());
+    for_all(ranks_.size(), [&](std::size_t t) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t wedge = surface.split_corners[t][static_cast<int>(k)];
+            ranks_[t][k] = wedge < vertices ? std::uint8_t{0} : rank[wedge - vertices];
+        }
+    });
+    mesh.surface.split_corners = std::vector<glm::uvec3>();
 }
 
 void FoldedCorners::unfold()
 {
-    if (splits_.empty())
+    if (ranks_.empty())
         return;
-    mesh_.surface.split_corners = mesh_.geometry.triangles;
-    for (const auto& [triangle, wedges] : splits_)
-        mesh_.surface.split_corners[triangle] = wedges;
-    splits_ = std::vector<Split>();
+    Surface& surface = mesh_.surface;
+    const auto vertices = static_cast<std::uint32_t>(surface.vertex_count());
+    const std::vector<std::uint32_t>& owners = surface.extra_vertices;
+    const Buckets<std::uint32_t> extras(vertices, [&](const auto& put) {
+        for (std::uint32_t extra = 0; extra < owners.size(); ++extra)
+            put(owners[extra], vertices + extra);
+    });
+    surface.split_corners = mesh_.geometry.triangles;
+    for_all(ranks_.size(), [&](std::size_t t) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::uint32_t& corner = surface.split_corners[t][static_cast<int>(k)];
+            if (ranks_[t][k] > 0)
+                corner = extras[corner][ranks_[t][k] - std::size_t{1}];
+        }
+    });
+    ranks_ = std::vector<std::array<std::uint8_t, 3>>();
 }
 
 }  // namespace surfelao

@@ -5,6 +5,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -28,21 +29,18 @@ private:
     std::vector<glm::vec3> positions_;  ///< empty: the scene has them still
 };
 
-/// The same of Surface::corners(): of what is rough here and there most are the triangles' own.
+/// The same of Surface::corners(), where vertices have several wedges: a byte tells which of its
+/// vertex' wedges a corner has.
 class FoldedCorners {
 public:
-    /// Until unfold() nobody asks for the corners. O(n).
+    /// Until unfold() nobody asks for the corners. O(n), all threads.
     explicit FoldedCorners(Mesh& mesh);
 
     void unfold();
 
 private:
-    struct Split {
-        std::uint32_t triangle;
-        glm::uvec3 wedges;
-    };
     Mesh& mesh_;
-    std::vector<Split> splits_;  ///< empty: the surface has its corners still
+    std::vector<std::array<std::uint8_t, 3>> ranks_;  ///< 0: the vertex' own wedge, 1: its next
 };
 
 }  // namespace surfelao

@@ -226,6 +226,7 @@ public:
 
     void finish()
     {
+        surface_.extra_vertices.shrink_to_fit();
         surface_.normals.reserve(surface_.normals.size() + extra_normals_.size());
         surface_.normals.insert(surface_.normals.end(), extra_normals_.begin(),
                                 extra_normals_.end());
