@@ -395,9 +395,9 @@ bool is_smooth_side(const Mesh& mesh, const Facets& facets, std::uint32_t t, std
         const glm::uvec3 places = facets.corners[other];
         const std::uint32_t place = facets.corners[t][corner];
         const int across = places.x == place ? 0 : places.y == place ? 1 : 2;
-        const Surface& surface = mesh.surface;
-        if (glm::dot(surface.normals[surface.corners[t][corner]],
-                     surface.normals[surface.corners[other][across]]) >=
+        const std::vector<glm::vec3>& normals = mesh.surface.normals;
+        const std::vector<glm::uvec3>& corners = mesh.surface.corners(mesh.geometry);
+        if (glm::dot(normals[corners[t][corner]], normals[corners[other][across]]) >=
             static_cast<float>(cos_deg(kHardEdge)))
             return true;
     }
@@ -416,8 +416,9 @@ bool has_weight_on_page(const Mesh& mesh, const Facets& facets, std::uint32_t t,
         return false;
     const glm::vec3 mean = facets.shading[t];
     float least = 1.0f;  // of mean . corner: all normals between them are in this cone
+    const glm::uvec3 corners = mesh.surface.corners(mesh.geometry)[t];
     for (int k = 0; k < 3; ++k)
-        least = std::min(least, glm::dot(mean, mesh.surface.normals[mesh.surface.corners[t][k]]));
+        least = std::min(least, glm::dot(mean, mesh.surface.normals[corners[k]]));
     const float spread = std::acos(std::clamp(least, -1.0f, 1.0f));
     const float away =
         std::acos(std::clamp(std::copysign(mean[axis], mean[axis] * own[axis]), -1.0f, 1.0f));
@@ -457,7 +458,7 @@ Facets make_facets(const Mesh& mesh)
                 facets.normals[t] = glm::vec3(doubled / glm::length(doubled));
                 glm::vec3 sum(0.0f);
                 for (int k = 0; k < 3; ++k)
-                    sum += mesh.surface.normals[mesh.surface.corners[t][k]];
+                    sum += mesh.surface.normals[mesh.surface.corners(geometry)[t][k]];
                 const float length = glm::length(sum);
                 facets.shading[t] = length > 0.1f ? sum / length : facets.normals[t];
             }

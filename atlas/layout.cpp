@@ -6,11 +6,12 @@
 namespace surfelao {
 namespace {
 
-glm::vec3 normal_at(const Surface& surface, const SurfacePoint& point)
+glm::vec3 normal_at(const Mesh& mesh, const SurfacePoint& point)
 {
-    const glm::uvec3 wedges = surface.corners[point.triangle];
-    return (1.0f - point.at.x - point.at.y) * surface.normals[wedges.x] +
-           point.at.x * surface.normals[wedges.y] + point.at.y * surface.normals[wedges.z];
+    const glm::uvec3 wedges = mesh.surface.corners(mesh.geometry)[point.triangle];
+    const std::vector<glm::vec3>& normals = mesh.surface.normals;
+    return (1.0f - point.at.x - point.at.y) * normals[wedges.x] + point.at.x * normals[wedges.y] +
+           point.at.y * normals[wedges.z];
 }
 
 }  // namespace
@@ -26,7 +27,7 @@ PagePlaces places_of(const Mesh& mesh, const MapLayout& layout, const SurfacePoi
 {
     PagePlaces places;
     const glm::vec3 weights =
-        layout.is_blended ? page_weights(normal_at(mesh.surface, point)) : glm::vec3(1.0f);
+        layout.is_blended ? page_weights(normal_at(mesh, point)) : glm::vec3(1.0f);
     float sum = 0.0f;
     for (std::uint32_t page = 0; page < layout.pages.size(); ++page) {
         const auto uv = uv_at(mesh.geometry, layout.pages[page], point);

@@ -61,10 +61,12 @@ SeamSide seam_side(const PlacedTriangle& place, const EdgeSide& side)
     return {place.page, side.triangle(), {low, high}, {place.corners[low], place.corners[high]}};
 }
 
-bool is_smooth(const Surface& surface, const SeamSide& a, const SeamSide& b)
+bool is_smooth(const Mesh& mesh, const SeamSide& a, const SeamSide& b)
 {
+    const std::vector<glm::uvec3>& corners = mesh.surface.corners(mesh.geometry);
     const auto normal = [&](const SeamSide& side, int end) {
-        return surface.normals[surface.corners[side.triangle][static_cast<int>(side.corners[end])]];
+        const std::uint32_t wedge = corners[side.triangle][static_cast<int>(side.corners[end])];
+        return mesh.surface.normals[wedge];
     };
     return glm::dot(normal(a, 0), normal(b, 0)) >= kSmoothSeam &&
            glm::dot(normal(a, 1), normal(b, 1)) >= kSmoothSeam;
@@ -408,7 +410,7 @@ Seams seams_of(const Mesh& mesh, const MapLayout& layout)
             seams.beside[sides[0].side()] = sides[1].side();
             seams.beside[sides[1].side()] = sides[0].side();
         } else {
-            seams.list.push_back({{a, b}, is_smooth(mesh.surface, a, b)});
+            seams.list.push_back({{a, b}, is_smooth(mesh, a, b)});
         }
     });
     return seams;

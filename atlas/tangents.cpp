@@ -36,9 +36,10 @@ glm::dvec3 corner_position(const Geometry& geometry, std::uint32_t corner)
     return geometry.positions[geometry.triangles[corner / 3][static_cast<int>(corner % 3)]];
 }
 
-glm::dvec3 corner_normal(const Surface& surface, std::uint32_t corner)
+glm::dvec3 corner_normal(const Mesh& mesh, std::uint32_t corner)
 {
-    return surface.normals[surface.corners[corner / 3][static_cast<int>(corner % 3)]];
+    const glm::uvec3 wedges = mesh.surface.corners(mesh.geometry)[corner / 3];
+    return mesh.surface.normals[wedges[static_cast<int>(corner % 3)]];
 }
 
 TangentTriangle tangent_triangle(const Geometry& geometry, const UvSet& uvs, std::uint32_t triangle)
@@ -64,11 +65,11 @@ TangentTriangle tangent_triangle(const Geometry& geometry, const UvSet& uvs, std
 }
 
 /// Corners at one end of a common edge that share a tangent.
-bool are_alike(const Surface& surface, const std::vector<TangentTriangle>& triangles,
-               std::uint32_t a, std::uint32_t b)
+bool are_alike(const Mesh& mesh, const std::vector<TangentTriangle>& triangles, std::uint32_t a,
+               std::uint32_t b)
 {
     return triangles[a / 3].uvs[a % 3] == triangles[b / 3].uvs[b % 3] &&
-           glm::dot(corner_normal(surface, a), corner_normal(surface, b)) >= kSameNormal;
+           glm::dot(corner_normal(mesh, a), corner_normal(mesh, b)) >= kSameNormal;
 }
 
 /// Joins the corners that share a tangent, edge by edge.
@@ -80,8 +81,8 @@ UnionFind tangent_groups(const Mesh& mesh, const std::vector<TangentTriangle>& t
         const std::uint32_t low[2] = {rising.side(), 3 * b + (falling.side() % 3 + 1) % 3};
         const std::uint32_t high[2] = {3 * a + (rising.side() % 3 + 1) % 3, falling.side()};
         if (triangles[a].sign != 0.0f && triangles[a].sign == triangles[b].sign &&
-            are_alike(mesh.surface, triangles, low[0], low[1]) &&
-            are_alike(mesh.surface, triangles, high[0], high[1])) {
+            are_alike(mesh, triangles, low[0], low[1]) &&
+            are_alike(mesh, triangles, high[0], high[1])) {
             groups.join(low[0], low[1]);
             groups.join(high[0], high[1]);
         }
@@ -139,7 +140,7 @@ Tangents make_tangents(const Mesh& mesh, const UvSet& uvs, std::span<const glm::
     std::vector<glm::dvec3> sums(3 * count, glm::dvec3(0.0));
     for (std::uint32_t corner = 0; corner < 3 * count; ++corner) {
         const glm::dvec3 along = triangles[corner / 3].along_u;
-        const glm::dvec3 normal = corner_normal(mesh.surface, corner);
+        const glm::dvec3 normal = corner_normal(mesh, corner);
         sums[groups.root(corner)] += angle_at(mesh.geometry, corner, normal) *
                                      unit_or_zero(along - glm::dot(along, normal) * normal);
     }
@@ -164,7 +165,7 @@ glm::vec3 to_tangent_space(const Mesh& mesh, const Tangents& tangents, const Sur
     glm::dvec3 normal(0.0), tangent(0.0);
     for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t corner = 3 * point.triangle + k;
-        normal += weights[k] * corner_normal(mesh.surface, corner);
+        normal += weights[k] * corner_normal(mesh, corner);
         tangent += weights[k] * glm::dvec3(glm::vec3(tangents[corner]));
     }
     const double sign = tangents[3 * point.triangle].w;

@@ -16,6 +16,7 @@
 #include "grid/grid_file.h"
 #include "image/image_file.h"
 #include "surfels/errors.h"
+#include "surfels/folded_mesh.h"
 #include "surfels/number_text.h"
 #include "surfels/stopwatch.h"
 #include "surfels/topology.h"
@@ -56,7 +57,7 @@ namespace {
 
 /// One file of a world, and the engines of the whole; null where it is the only one.
 struct Job {
-    std::shared_ptr<const Mesh> mesh;
+    std::shared_ptr<Mesh> mesh;
     Occluders* occluders = nullptr;
 };
 
@@ -100,12 +101,14 @@ VertexBake answer(const Job& job, std::optional<Occluders>& engines, VertexTarge
                              progress, engines ? &*engines : job.occluders);
     } else {
         target.fold();
-        VertexBake solved =
-            solve_vertices(mesh, target, settings.engine, progress,
-                           engines ? &*engines : job.occluders, [&] { target.forget_receivers(); });
+        FoldedCorners corners(*job.mesh);
+        VertexBake solved = solve_vertices(
+            mesh, target, settings.engine, progress, engines ? &*engines : job.occluders,
+            [&](std::size_t first, std::size_t end) { target.forget_receivers(first, end); });
         engines.reset();
-        target.forget_receivers();
+        target.forget_receivers(0, target.receivers().size());
         target.unfold();
+        corners.unfold();
         bake = bake_answers(mesh, target, std::move(solved), offset, settings.check, progress);
     }
     take(bake, report);
@@ -150,13 +153,16 @@ std::vector<Occlusion> bake_at_vertices(const Job& job, BakeReport& report,
                                         const StageProgress& progress)
 {
     const BakeSettings& settings = report.settings;
-    const std::shared_ptr<const Mesh>& mesh = job.mesh;
+    const std::shared_ptr<Mesh>& mesh = job.mesh;
+    FoldedScene folded(*mesh);
     std::optional<Occluders> own;
     PrepareSeconds built;
     if (job.occluders == nullptr && !settings.merged) {
         // building needs much memory on the way: it is done before there is what will be asked
         enter(progress, "build");
+        FoldedCorners corners(*mesh);
         built = own.emplace(mesh->occluding()).prepared_for(settings.engine).seconds();
+        corners.unfold();
     }
     const auto add_built = [&] {
         report.seconds.surfels += built.surfels;
@@ -169,6 +175,7 @@ std::vector<Occlusion> bake_at_vertices(const Job& job, BakeReport& report,
     if (settings.share) {
         bake_part(*mesh, own ? *own : *job.occluders, *target, report, progress);
         add_built();
+        folded.unfold();
         return {};
     }
     VertexBake baked = answer(job, own, *target, progress, report);
@@ -179,6 +186,7 @@ std::vector<Occlusion> bake_at_vertices(const Job& job, BakeReport& report,
     report.misfit = target->misfit(baked.answers, baked.values);
     target.reset();
     baked.answers = std::vector<Occlusion>();
+    folded.unfold();
     std::vector<std::string> written_notes;
     tbb::parallel_invoke(
         [&] {
@@ -251,9 +259,9 @@ Job subdivided(const Job& job, std::optional<Occluders>& own, BakeReport& report
     if (refined.occluders == nullptr)
         refined.occluders = &own.emplace(job.mesh->occluding());
     SubdivisionReport& told = report.subdivision.emplace();
-    refined.mesh = std::make_shared<const Mesh>(subdivided(*job.mesh, *settings.subdivide,
-                                                           settings.target, settings.engine,
-                                                           *refined.occluders, progress, told));
+    refined.mesh =
+        std::make_shared<Mesh>(subdivided(*job.mesh, *settings.subdivide, settings.target,
+                                          settings.engine, *refined.occluders, progress, told));
     report.seconds.subdivide = told.seconds;
     return refined;
 }
@@ -311,7 +319,7 @@ SceneBake bake_read(Scene scene, std::span<const Scene> others, const BakeSettin
         input.push_back(std::move(scene));
         BakeWorld world =
             make_world(std::move(input), others, settings.target.normals, parts, settings.frame);
-        const Job job{std::make_shared<const Mesh>(std::move(world.meshes.front()))};
+        const Job job{std::make_shared<Mesh>(std::move(world.meshes.front()))};
         return bake_one(job, settings, watch.lap(), progress);
     }
     if (settings.share)
@@ -371,7 +379,7 @@ std::vector<BakeReport> bake_together(const std::vector<BakeSettings>& settings,
     const std::shared_ptr<const Geometry> occluding = world.meshes.front().occluders;
     Occluders occluders(*occluding);
     for (std::size_t i = 0; i < settings.size(); ++i) {
-        const Job job{std::make_shared<const Mesh>(std::move(world.meshes[i])), &occluders};
+        const Job job{std::make_shared<Mesh>(std::move(world.meshes[i])), &occluders};
         reports.push_back(bake_one(job, settings[i], read_seconds, progress).report);
         read_seconds = 0.0;
     }

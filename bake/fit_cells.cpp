@@ -276,13 +276,14 @@ public:
         : geometry_(geometry), piece_at_(geometry.positions.size())
     {
         UnionFind joined(piece_at_.size());
-        for (const glm::uvec3 t : geometry.triangles) {
-            const glm::uvec3 w{geometry.welded[t.x], geometry.welded[t.y], geometry.welded[t.z]};
-            joined.join(w.x, w.y);
-            joined.join(w.y, w.z);
-        }
-        for (std::uint32_t place = 0; place < piece_at_.size(); ++place)
-            piece_at_[place] = joined.root(place);
+        for_all(geometry.triangles.size(), [&](std::size_t i) {
+            const glm::uvec3 t = geometry.triangles[i];
+            joined.join(geometry.welded[t.x], geometry.welded[t.y]);
+            joined.join(geometry.welded[t.y], geometry.welded[t.z]);
+        });
+        for_all(piece_at_.size(), [&](std::size_t place) {
+            piece_at_[place] = joined.root(static_cast<std::uint32_t>(place));
+        });
         struct Piece {
             double area = 0.0;
             std::size_t triangles = 0;

@@ -120,7 +120,7 @@ void follow_triangles(const std::vector<glm::vec3>& made_positions,
             continue;
         const glm::dmat3 turn = glm::inverse(glm::transpose(to)) * glm::transpose(from);
         for (int corner = 0; corner < 3; ++corner) {
-            const std::uint32_t wedge = mesh.surface.corners[t][corner];
+            const std::uint32_t wedge = mesh.surface.corners(mesh.geometry)[t][corner];
             const glm::dvec3 normal = turn * glm::dvec3(made_normals[wedge]);
             const double length = glm::length(normal);
             if (length > 0.0)

@@ -30,7 +30,7 @@ Mesh refined_mesh(const Mesh& mesh, const Refinement& refinement, Scene scene)
         std::array<glm::vec3, 3> normals;
         for (int k = 0; k < 3; ++k)
             normals[static_cast<std::size_t>(k)] =
-                mesh.surface.normals[mesh.surface.corners[in_geometry[t]][k]];
+                mesh.surface.normals[mesh.surface.corners(mesh.geometry)[in_geometry[t]][k]];
         const PieceValues<glm::vec3> values(
             refinement, t, mesh.scene.triangles[t], normals,
             [](glm::vec3 a, glm::vec3 b) { return 0.5f * (a + b); });

@@ -32,7 +32,7 @@ public:
     }
 
     /// Answers without values.
-    VertexBake solved(const EngineSettings& engine, const std::function<void()>& forget = {})
+    VertexBake solved(const EngineSettings& engine, const ForgetReceivers& forget = {})
     {
         const Prepared& prepared = prepared_for(engine, seconds_.surfels, seconds_.tree);
         VertexBake bake;
@@ -107,7 +107,7 @@ VertexBake bake_vertices(const Mesh& mesh, const VertexTarget& target, const Eng
 
 VertexBake solve_vertices(const Mesh& mesh, const VertexTarget& target,
                           const EngineSettings& engine, const StageProgress& progress,
-                          Occluders* occluders, const std::function<void()>& forget)
+                          Occluders* occluders, const ForgetReceivers& forget)
 {
     return Baker(mesh, target, {}, 0, progress, occluders).solved(engine, forget);
 }
@@ -125,8 +125,9 @@ VertexBake bake_to_error(const Mesh& mesh, const VertexTarget& target, const Eng
 {
     Baker baker(mesh, target, offset, check, progress, occluders, error / 2.0);
     // what the fit leaves of independent noise
-    const double kept = std::min(1.0, std::sqrt(static_cast<double>(mesh.scene.positions.size()) /
-                                                static_cast<double>(target.receivers().size())));
+    const double kept =
+        std::min(1.0, std::sqrt(static_cast<double>(mesh.geometry.positions.size()) /
+                                static_cast<double>(target.receivers().size())));
     return search_error(baker, engine, error, kept);
 }
 

@@ -44,7 +44,7 @@ struct VertexBake {
                                         const EngineSettings& engine,
                                         const StageProgress& progress = {},
                                         Occluders* occluders = nullptr,
-                                        const std::function<void()>& forget = {});
+                                        const ForgetReceivers& forget = {});
 
 /// With values of all answers, and their error; the target's receivers are not needed any more.
 /// check: points of the statement of error; 0: none. The values are the same whatever it is.

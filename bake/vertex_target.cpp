@@ -2,6 +2,7 @@
 
 #include "surfels/errors.h"
 #include "surfels/number_text.h"
+#include "tree/discard.h"
 
 #include <glm/geometric.hpp>
 
@@ -104,6 +105,14 @@ void VertexTarget::follow_mesh()
         const float height = offset.value_or(kMostOffset);
         receivers_.push_back({geometry.positions[vertex] + height * normal, normal, height});
     }
+}
+
+void VertexTarget::forget_receivers(std::size_t first, std::size_t end)
+{
+    if (end == receivers_.size())
+        receivers_ = std::vector<Receiver>();  // {} would keep the room
+    else
+        discard(std::span(receivers_).subspan(first, end - first));
 }
 
 void VertexTarget::fold()

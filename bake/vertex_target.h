@@ -76,8 +76,9 @@ public:
 
     [[nodiscard]] std::span<const Receiver> receivers() const { return receivers_; }
 
-    /// There are none from now on: answers and what is made of them take memory of their own.
-    void forget_receivers() { receivers_ = std::vector<Receiver>(); }  // {} would keep the room
+    /// Receivers [first, end) are not asked for any more; with the last all are gone: answers and
+    /// what is made of them take memory of their own.
+    void forget_receivers(std::size_t first, std::size_t end);
 
     /// Samples are gone until they are unfolded (VertexFit::fold): meanwhile only the receivers are
     /// asked for.

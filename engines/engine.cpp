@@ -204,7 +204,7 @@ Solution solve_on_gpu(const Prepared::Impl& impl, std::span<const Receiver> rece
 
 Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
                const SolveSettings& settings, const Progress& progress,
-               const std::function<void()>& forget)
+               const ForgetReceivers& forget)
 {
     const Prepared::Impl& impl = prepared.impl();
     check_settings(impl.choice, settings);

@@ -126,11 +126,11 @@ struct Solution {
 /// One answer per receiver, in their order: kUnsolved for those of other shares. Throws
 /// SettingsError for settings out of their ranges, InputError for a receiver that is not finite,
 /// farther than kFarthestReceiver, or whose normal is neither of unit length (to kUnitLength) nor
-/// zero, Cancelled, and std::runtime_error where the device refuses. forget: called when nobody
-/// looks at the receivers any more, with masks on the CPU before they are answered; maybe never.
+/// zero, Cancelled, and std::runtime_error where the device refuses. forget: with masks on
+/// the CPU called for all receivers before they are answered; else maybe never.
 [[nodiscard]] Solution solve(const Prepared& prepared, std::span<const Receiver> receivers,
                              const SolveSettings& settings = {}, const Progress& progress = {},
-                             const std::function<void()>& forget = {});
+                             const ForgetReceivers& forget = {});
 
 /// In diagonals from the centre, along each axis: farther out a float no longer tells the corners
 /// of the scene apart, and squares of distances leave their range.

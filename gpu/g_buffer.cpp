@@ -87,7 +87,7 @@ glm::vec3 to_world(const View& view, glm::vec3 point)
 DrawnMesh::DrawnMesh(const GlContext& context, const Geometry& geometry, const Surface& surface)
     : positions_(context, TexelFormat::rgba32f, view_of(as_texels(geometry.positions))),
       triangles_(context, TexelFormat::r32ui, view_of(geometry.triangles)),
-      corners_(context, TexelFormat::r32ui, view_of(surface.corners)),
+      corners_(context, TexelFormat::r32ui, view_of(surface.corners(geometry))),
       normals_(context, TexelFormat::rgba32f, view_of(as_texels(surface.normals))),
       vertices_(context),
       index_count_(3 * geometry.triangles.size())

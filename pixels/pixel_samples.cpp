@@ -48,7 +48,7 @@ PixelSamples::Place PixelSamples::place_of(const View& view, const SurfacePoint&
 {
     const Geometry& geometry = mesh_.geometry;
     const glm::uvec3 t = geometry.triangles[point.triangle];
-    const glm::uvec3 wedges = mesh_.surface.corners[point.triangle];
+    const glm::uvec3 wedges = mesh_.surface.corners(mesh_.geometry)[point.triangle];
     const glm::vec3 a = geometry.positions[t.x], across = geometry.positions[t.y] - a,
                     along = geometry.positions[t.z] - a;
     const auto& normals = mesh_.surface.normals;

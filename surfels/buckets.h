@@ -3,6 +3,8 @@
 /// Internal: for the folders' own sources.
 #pragma once
 
+#include "surfels/owner_ranges.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -18,18 +20,27 @@ class Buckets {
     static_assert(std::is_trivially_copyable_v<Item>);
 
 public:
-    /// for_each(put) calls put(owner, item) for every item, the same ones each time; it is called
-    /// twice, to count and to fill. Owners are below owner_count. O(owners + items).
+    /// for_each(put) calls put(owner, item) for every item, the same ones each time; each thread
+    /// calls it twice, to count and to fill. Owners are below owner_count. O(owners + items).
     template <class ForEach>
     Buckets(std::size_t owner_count, const ForEach& for_each) : first_(owner_count + 2, 0)
     {
         // first_[owner + 1] is where the owner's next item goes, and in the end where they end
-        for_each([this](std::uint32_t owner, const Item&) { ++first_[owner + 2]; });
+        for_owner_ranges(owner_count, [&](OwnerRange range) {
+            for_each([&](std::uint32_t owner, const Item&) {
+                if (range.has(owner))
+                    ++first_[owner + 2];
+            });
+        });
         for (std::size_t i = 2; i < first_.size(); ++i)
             first_[i] += first_[i - 1];
         items_ = std::make_unique_for_overwrite<Item[]>(first_.back());
-        for_each(
-            [this](std::uint32_t owner, const Item& item) { items_[first_[owner + 1]++] = item; });
+        for_owner_ranges(owner_count, [&](OwnerRange range) {
+            for_each([&](std::uint32_t owner, const Item& item) {
+                if (range.has(owner))
+                    items_[first_[owner + 1]++] = item;
+            });
+        });
     }
 
     [[nodiscard]] std::size_t owner_count() const { return first_.size() - 2; }

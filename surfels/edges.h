@@ -32,7 +32,7 @@ class Edges {
 public:
     /// left_out: one per triangle, nonzero for those that take no part; empty = none. No triangle
     /// may have two corners in one position (Geometry guarantees it). Fewer than 2^31 / 3
-    /// triangles. O(n): two passes, 8 bytes a side, 4 a vertex. One thread, no randomness.
+    /// triangles. O(n): two passes, 8 bytes a side, 4 a vertex. All threads.
     explicit Edges(const Geometry& geometry, std::span<const std::uint8_t> left_out = {});
 
     /// The sides of all edges whose vertex with the lower index is `lower`, by rising side.

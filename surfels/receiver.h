@@ -3,6 +3,9 @@
 
 #include <glm/vec3.hpp>
 
+#include <cstddef>
+#include <functional>
+
 namespace surfelao {
 
 /// Any (point, normal): a place on a surface, a texel, a pixel, a grid cell. Results are indexed by
@@ -14,5 +17,9 @@ struct Receiver {
                                ///< asked too near to another surface is told by it
                                ///< (reference/well_defined.h)
 };
+
+/// Called with ranges, one behind the other, of receivers at which nobody looks any more: who asks
+/// may drop them.
+using ForgetReceivers = std::function<void(std::size_t first, std::size_t end)>;
 
 }  // namespace surfelao

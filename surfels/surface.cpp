@@ -211,11 +211,29 @@ private:
 /// Gives wedges to corners in rising order.
 class Wedges {
 public:
-    Wedges(const Geometry& geometry, Surface& surface) : surface_(surface)
+    Wedges(const Geometry& geometry, Surface& surface) : geometry_(geometry), surface_(surface)
     {
         surface_.normals.assign(geometry.positions.size(), glm::vec3(0.0f));
-        surface_.corners = geometry.triangles;
     }
+
+    void add(std::size_t triangle, int corner, glm::vec3 normal)
+    {
+        const std::uint32_t vertex = geometry_.triangles[triangle][corner];
+        const std::uint32_t wedge = wedge_of(vertex, normal);
+        if (wedge != vertex)
+            surface_.split_corners[triangle][corner] = wedge;
+    }
+
+    void finish()
+    {
+        surface_.extra_vertices.shrink_to_fit();
+        surface_.normals.reserve(surface_.normals.size() + extra_normals_.size());
+        surface_.normals.insert(surface_.normals.end(), extra_normals_.begin(),
+                                extra_normals_.end());
+    }
+
+private:
+    static constexpr int kMostWedges = 64;  ///< of one vertex that are told apart, but for a few
 
     std::uint32_t wedge_of(std::uint32_t vertex, glm::vec3 normal)
     {
@@ -224,8 +242,10 @@ public:
             own = normal;
         if (glm::dot(own, normal) >= kSameNormal)
             return vertex;
-        if (first_extra_.empty())
+        if (first_extra_.empty()) {
             first_extra_.assign(surface_.normals.size(), kNone);
+            surface_.split_corners = geometry_.triangles;
+        }
         int looked_at = 0;
         for (std::uint32_t e = first_extra_[vertex]; e != kNone; e = next_extra_[e]) {
             if (glm::dot(extra_normals_[e], normal) >= kSameNormal || ++looked_at == kMostWedges)
@@ -239,15 +259,7 @@ public:
         return static_cast<std::uint32_t>(first_extra_.size()) + extra;
     }
 
-    void finish()
-    {
-        surface_.normals.insert(surface_.normals.end(), extra_normals_.begin(),
-                                extra_normals_.end());
-    }
-
-private:
-    static constexpr int kMostWedges = 64;  ///< of one vertex that are told apart, but for a few
-
+    const Geometry& geometry_;
     Surface& surface_;
     std::vector<glm::vec3> extra_normals_;
     std::vector<std::uint32_t> first_extra_, next_extra_;
@@ -338,7 +350,6 @@ Surface make_surface(const Scene& scene, const Geometry& geometry, const NormalS
     for (std::size_t t = 0; t < faces.size(); ++t) {
         if (is_left[t] == 0)
             continue;
-        glm::uvec3& corners = surface.corners[t];
         for (int corner = 0; corner < 3; ++corner) {
             const FileNormals::Given given = from_file ? file.at(t, corner) : FileNormals::Given{};
             const bool usable =
@@ -349,7 +360,7 @@ Surface make_surface(const Scene& scene, const Geometry& geometry, const NormalS
             const glm::vec3 normal = usable ? given.normal
                                      : flat ? faces[t].normal
                                             : smooth.at(t, corner);
-            corners[corner] = wedges.wedge_of(geometry.triangles[t][corner], normal);
+            wedges.add(t, corner, normal);
         }
     }
     wedges.finish();
@@ -376,9 +387,10 @@ std::vector<Receiver> receivers_at(const Geometry& geometry, const Surface& surf
                                    std::span<const SurfacePoint> points, const Offset& offset)
 {
     std::vector<Receiver> receivers(points.size());
+    const std::vector<glm::uvec3>& corners = surface.corners(geometry);
     const auto place = [&](const SurfacePoint& point) {
         const glm::uvec3 t = geometry.triangles[point.triangle];
-        const glm::uvec3 wedges = surface.corners[point.triangle];
+        const glm::uvec3 wedges = corners[point.triangle];
         const glm::vec3 a = geometry.positions[t.x];
         const glm::vec3 b = geometry.positions[t.y] - a, c = geometry.positions[t.z] - a;
         const glm::vec3 up = glm::normalize(glm::cross(b, c));
@@ -416,19 +428,20 @@ glm::vec3 bisector_of(const Geometry& geometry, glm::uvec3 t, int corner)
 
 std::vector<WedgeShape> shapes_of(const Geometry& geometry, const Surface& surface)
 {
+    const std::vector<glm::uvec3>& corners = surface.corners(geometry);
     std::vector<WedgeShape> shapes(surface.normals.size());
     const auto hash = [&](std::uint32_t v) { return (geometry.welded[v] + 1) * 0x9E3779B1u; };
     for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
         const glm::uvec3 triangle = geometry.triangles[t];
         for (int corner = 0; corner < 3; ++corner) {
-            WedgeShape& shape = shapes[surface.corners[t][corner]];
+            WedgeShape& shape = shapes[corners[t][corner]];
             shape.inward += bisector_of(geometry, triangle, corner);
             shape.tear += hash(triangle[(corner + 1) % 3]) - hash(triangle[(corner + 2) % 3]);
         }
     }
     for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
         for (int corner = 0; corner < 3; ++corner) {
-            WedgeShape& shape = shapes[surface.corners[t][corner]];
+            WedgeShape& shape = shapes[corners[t][corner]];
             if (shape.tear == 0)
                 continue;
             const float near =
@@ -465,11 +478,12 @@ std::vector<Receiver> receivers_at_wedges(const Geometry& geometry, const Surfac
                                           const Offset& offset)
 {
     const std::vector<WedgeShape> shapes = shapes_of(geometry, surface);
+    const std::vector<glm::uvec3>& corners = surface.corners(geometry);
     std::vector<float> heights(surface.normals.size(),
                                kMostOffset);  // of what is asked at vertices
     for (std::uint32_t t = 0; t < geometry.triangles.size(); ++t) {
         for (int corner = 0; corner < 3; ++corner) {
-            float& height = heights[surface.corners[t][corner]];
+            float& height = heights[corners[t][corner]];
             height = std::min(height, offset_at(geometry, t, offset));
         }
     }
@@ -489,9 +503,10 @@ std::vector<Receiver> receivers_at_wedges(const Geometry& geometry, const Surfac
 std::vector<float> angles_of_wedges(const Geometry& geometry, const Surface& surface)
 {
     std::vector<float> angles(surface.normals.size(), 0.0f);
+    const std::vector<glm::uvec3>& corners = surface.corners(geometry);
     for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
         for (int corner = 0; corner < 3; ++corner)
-            angles[surface.corners[t][corner]] +=
+            angles[corners[t][corner]] +=
                 glm::length(bisector_of(geometry, geometry.triangles[t], corner));
     }
     return angles;
@@ -500,97 +515,6 @@ std::vector<float> angles_of_wedges(const Geometry& geometry, const Surface& sur
 bool are_smooth(glm::vec3 a, glm::vec3 b, const NormalSettings& settings)
 {
     return glm::dot(a, b) >= std::min(std::cos(0.5f * glm::radians(settings.crease)), kSameNormal);
-}
-
-Scene split_at_creases(const Scene& scene, const Geometry& geometry, const Surface& surface,
-                       const NormalSettings& settings)
-{
-    // per wedge: the vertex that it gets
-    std::vector<std::uint32_t> vertices(surface.normals.size());
-    std::vector<std::vector<std::uint32_t>> kinds(
-        surface.extra_vertices.empty() ? 0 : surface.vertex_count());
-    Scene split = scene;
-    for (std::uint32_t wedge = 0; wedge < vertices.size(); ++wedge) {
-        const std::uint32_t vertex = surface.vertex_of(wedge);
-        vertices[wedge] = vertex;
-        if (kinds.empty())
-            continue;
-        std::vector<std::uint32_t>& own = kinds[vertex];  // wedges with a vertex of their own
-        const auto alike = std::ranges::find_if(own, [&](std::uint32_t other) {
-            return are_smooth(surface.normals[other], surface.normals[wedge], settings);
-        });
-        if (alike != own.end()) {
-            vertices[wedge] = vertices[*alike];
-            continue;
-        }
-        if (!own.empty()) {
-            vertices[wedge] = static_cast<std::uint32_t>(split.positions.size());
-            split.positions.push_back(scene.positions[vertex]);
-        }
-        own.push_back(wedge);
-    }
-    for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
-        for (int corner = 0; corner < 3; ++corner)
-            split.triangles[geometry.scene_triangle(t)][corner] =
-                vertices[surface.corners[t][corner]];
-    }
-    split.parts.back().vertex_count +=
-        static_cast<std::uint32_t>(split.positions.size() - scene.positions.size());
-    return split;
-}
-
-Mesh make_mesh(Scene scene, const NormalSettings& settings, const GeometryScope& scope)
-{
-    if (scene.triangles.empty())
-        throw InputError(scene.name + ": has points only, no faces");
-    Mesh mesh{std::move(scene), {}, {}};
-    const auto look = [&] {
-        mesh.geometry = make_geometry(mesh.scene, scope);
-        mesh.surface = make_surface(mesh.scene, mesh.geometry, settings);
-    };
-    look();
-    if (mesh.scene.free_vertices && !mesh.surface.extra_vertices.empty()) {
-        mesh.scene = split_at_creases(mesh.scene, mesh.geometry, mesh.surface, settings);
-        look();
-    }
-    return mesh;
-}
-
-void keep_triangles(Mesh& mesh, const std::function<bool(std::size_t triangle)>& wanted)
-{
-    Geometry& geometry = mesh.geometry;
-    std::vector<std::uint32_t> kept;
-    std::vector<bool> in_use(mesh.surface.normals.size(), false);
-    std::vector<bool> has_kept(mesh.surface.vertex_count(), false);
-    for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
-        const std::size_t in_scene = geometry.scene_triangle(t);
-        if (!wanted(in_scene))
-            continue;
-        geometry.triangles[kept.size()] = geometry.triangles[t];
-        mesh.surface.corners[kept.size()] = mesh.surface.corners[t];
-        kept.push_back(static_cast<std::uint32_t>(in_scene));
-        for (int corner = 0; corner < 3; ++corner) {
-            in_use[mesh.surface.corners[t][corner]] = true;
-            has_kept[mesh.scene.triangles[in_scene][corner]] = true;
-        }
-    }
-    mesh.unbaked.assign(mesh.scene.triangles.size(), true);
-    for (std::size_t t = 0; t < mesh.scene.triangles.size(); ++t) {
-        if (!wanted(t))
-            continue;
-        mesh.unbaked[t] = false;
-        for (int corner = 0; corner < 3; ++corner) {  // of triangles without area: the vertex' own
-            const std::uint32_t vertex = mesh.scene.triangles[t][corner];
-            in_use[vertex] = in_use[vertex] || !has_kept[vertex];
-        }
-    }
-    for (std::size_t wedge = 0; wedge < in_use.size(); ++wedge) {
-        if (!in_use[wedge])
-            mesh.surface.normals[wedge] = glm::vec3(0.0f);
-    }
-    geometry.triangles.resize(kept.size());
-    mesh.surface.corners.resize(kept.size());
-    geometry.kept = std::move(kept);
 }
 
 }  // namespace surfelao

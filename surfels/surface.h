@@ -45,13 +45,20 @@ void check_normals(const NormalSettings& settings);
 /// corner's wedge belongs to the corner's vertex. The first wedges are the vertices' own, in their
 /// order; what further wedges a vertex has comes after all of those.
 struct Surface {
-    std::vector<glm::uvec3> corners;            ///< per triangle of the Geometry: its wedges
     std::vector<glm::vec3> normals;             ///< per wedge
     std::vector<std::uint32_t> extra_vertices;  ///< of the wedges beyond one per vertex
     std::uint64_t corners_from_file = 0;        ///< corners that took the file's normal
     std::uint64_t replaced_corners = 0;         ///< the file's was not usable: no direction, or on
                                                 ///< the other side of the face
+    /// What corners() returns; empty where every corner has its vertex' own wedge: large smooth
+    /// meshes need the memory.
+    std::vector<glm::uvec3> split_corners;
 
+    /// Per triangle of the Geometry: its wedges.
+    [[nodiscard]] const std::vector<glm::uvec3>& corners(const Geometry& geometry) const
+    {
+        return split_corners.empty() ? geometry.triangles : split_corners;
+    }
     [[nodiscard]] std::size_t vertex_count() const
     {
         return normals.size() - extra_vertices.size();

@@ -3,6 +3,7 @@
 #include "surfels/buckets.h"
 #include "surfels/edges.h"
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 #include "surfels/repeated.h"
 #include "surfels/union_find.h"
 
@@ -202,10 +203,10 @@ void count_components(const std::vector<glm::uvec3>& triangles, std::size_t vert
                       const std::vector<bool>& left_out, Bodies& bodies, Topology& topology)
 {
     UnionFind components(vertex_count);
-    for (const glm::uvec3 t : triangles) {
-        components.join(t.x, t.y);
-        components.join(t.y, t.z);
-    }
+    for_all(triangles.size(), [&](std::size_t face) {
+        components.join(triangles[face].x, triangles[face].y);
+        components.join(triangles[face].y, triangles[face].z);
+    });
     enum : std::uint8_t { unused, sheets, closed, ajar };
     std::vector<std::uint8_t> state(vertex_count, unused);
     for (std::uint32_t face = 0; face < triangles.size(); ++face) {

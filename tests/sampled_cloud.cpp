@@ -45,7 +45,7 @@ SampledCloud sampled(const Mesh& mesh, const CloudSampling& sampling)
             place[axis] += sampling.noise * spacing * normal_number();
         cloud.positions.push_back(geometry.frame.centre + geometry.frame.diagonal * place);
         if (sampling.has_normals) {
-            const glm::uvec3 corners = mesh.surface.corners[triangle];
+            const glm::uvec3 corners = mesh.surface.corners(mesh.geometry)[triangle];
             const std::vector<glm::vec3>& n = mesh.surface.normals;
             const glm::vec3 shading =
                 (1.0f - w.x - w.y) * n[corners.x] + w.x * n[corners.y] + w.y * n[corners.z];

@@ -1,10 +1,9 @@
 /// discard.h: large arrays that are used up from one end to the other give back what is behind.
 #pragma once
 
-#include "tree/raw_vector.h"
-
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #if defined(__linux__)
 #include <sys/mman.h>
@@ -15,28 +14,26 @@ namespace surfelao {
 /// In bytes: the large pages of RawVector. Less is not given back.
 inline constexpr std::size_t kDiscardUnit = std::size_t{2} << 20;
 
-/// The system may take the memory of elements [begin, end): nobody reads them again. What is built
-/// of them then takes their place instead of standing beside them. Any number of threads at once,
-/// each for elements of its own.
+/// The system may take the memory of the elements: nobody reads them again. What is built of them
+/// then takes their place instead of standing beside them. Any number of threads at once, each for
+/// elements of its own.
 template <class T>
-void discard(RawVector<T>& elements, std::size_t begin, std::size_t end)
+void discard(std::span<T> elements)
 {
 #if defined(MADV_DONTNEED)
-    if ((end - begin) * sizeof(T) < kDiscardUnit)
+    if (elements.size_bytes() < kDiscardUnit)
         return;
     const auto up = [](T* at) {
         return (reinterpret_cast<std::uintptr_t>(at) + kDiscardUnit - 1) / kDiscardUnit;
     };
-    const std::uintptr_t first = up(elements.data() + begin);
+    const std::uintptr_t first = up(elements.data());
     const std::uintptr_t last =
-        reinterpret_cast<std::uintptr_t>(elements.data() + end) / kDiscardUnit;
+        reinterpret_cast<std::uintptr_t>(elements.data() + elements.size()) / kDiscardUnit;
     if (first < last)  // where the system does not want it, it stays
         static_cast<void>(madvise(reinterpret_cast<void*>(first * kDiscardUnit),
                                   (last - first) * kDiscardUnit, MADV_DONTNEED));
 #else
     static_cast<void>(elements);
-    static_cast<void>(begin);
-    static_cast<void>(end);
 #endif
 }
 

@@ -19,6 +19,9 @@ namespace {
 /// Receivers; smaller groups are made in less time than it takes to hand them to another thread.
 constexpr std::size_t kParallelGroup = 2048;
 
+/// Receivers: 28 MiB.
+constexpr std::size_t kForgottenAtOnce = std::size_t{1} << 20;
+
 /// Keys among which a pivot is chosen at most: mostly it is then within a sixteenth of the place
 /// that is looked for.
 constexpr std::size_t kSample = 63;
@@ -81,29 +84,25 @@ struct Sums {
 
 class Grouper {
 public:
-    Grouper(std::span<const Receiver> receivers, const glm::mat3& frame)
-        : receivers_(receivers), frame_(frame)
+    /// answers: with the receivers' normals in place of these; empty: the receivers stay.
+    Grouper(std::span<const Receiver> receivers, const glm::mat3& frame,
+            std::span<Occlusion> answers)
+        : receivers_(receivers), answers_(answers), frame_(frame)
     {
     }
 
-    ReceiverGroups build()
+    ReceiverGroups build(const ForgetReceivers& forget)
     {
-        keys_.resize(receivers_.size());
-        for_blocks(std::span(keys_), [&](std::span<Key> block, std::size_t) {
-            for (Key& key : block) {
-                const auto receiver = static_cast<std::uint32_t>(&key - keys_.data());
-                const glm::vec3 p = frame_ * receivers_[receiver].position;
-                key = {{p.x, p.y, p.z}, receiver};
-            }
-        });
-        keys_.erase(std::remove_if(keys_.begin(), keys_.end(),
-                                   [&](const Key& key) {
-                                       return receivers_[key.receiver].normal == glm::vec3(0.0f);
-                                   }),
+        make_keys(forget);
+        keys_.erase(std::remove_if(
+                        keys_.begin(), keys_.end(),
+                        [&](const Key& key) { return normal_of(key.receiver) == glm::vec3(0.0f); }),
                     keys_.end());
         if (keys_.empty())
             return {};
         spare_.resize(keys_.size());
+        sort_keys(0, keys_.size());
+        spare_ = RawVector<Key>();  // before there are columns
         out_.order.resize(keys_.size());
         for (auto* columns : {&out_.position, &out_.normal}) {
             for (RawVector<float>& column : *columns) {
@@ -118,9 +117,60 @@ public:
     }
 
 private:
+    void make_keys(const ForgetReceivers& forget)
+    {
+        const std::size_t count = receivers_.size();
+        keys_.resize(count);
+        for (std::size_t begin = 0; begin < count; begin += kForgottenAtOnce) {
+            const std::size_t end = std::min(count, begin + kForgottenAtOnce);
+            const std::span<Key> keys = std::span(keys_).subspan(begin, end - begin);
+            for_blocks(keys, [&](std::span<Key> block, std::size_t) {
+                for (Key& key : block) {
+                    const auto receiver = static_cast<std::uint32_t>(&key - keys_.data());
+                    const glm::vec3 p = frame_ * receivers_[receiver].position;
+                    key = {{p.x, p.y, p.z}, receiver};
+                    if (!answers_.empty())
+                        answers_[receiver].bent_normal = receivers_[receiver].normal;
+                }
+            });
+            if (forget)
+                forget(begin, end);
+        }
+    }
+
     static std::size_t leaf_count(std::size_t receivers)
     {
         return (receivers + kGroupSize - 1) / kGroupSize;
+    }
+
+    /// Where keys [begin, end) are cut in two, so that all leaves but the last are full.
+    static std::size_t middle_of(std::size_t begin, std::size_t end)
+    {
+        return begin + leaf_count(end - begin) / 2 * kGroupSize;
+    }
+
+    /// On two threads where so many keys are worth it.
+    template <class Left, class Right>
+    static void do_both(std::size_t keys, const Left& left, const Right& right)
+    {
+        if (keys > kParallelGroup) {
+            tbb::parallel_invoke(left, right);
+        } else {
+            left();
+            right();
+        }
+    }
+
+    /// In two at the median of the longest extent, again and again.
+    void sort_keys(std::size_t begin, std::size_t end)
+    {
+        const std::size_t middle = middle_of(begin, end);
+        if (middle == begin)
+            return;
+        select(std::span(keys_).subspan(begin, end - begin), middle - begin,
+               longest_axis(begin, end), std::span(spare_).subspan(begin, end - begin));
+        do_both(
+            end - begin, [&] { sort_keys(begin, middle); }, [&] { sort_keys(middle, end); });
     }
 
     /// Group `index` over keys [begin, end); its descendants stand at [first, first + 2
@@ -138,31 +188,24 @@ private:
             sums = finish_leaf(begin, end);
         } else {
             group.first_child = static_cast<std::uint32_t>(first);
-            // in two at the median of the longest extent, so that all leaves but the last are full
-            const std::size_t left_leaves = leaves / 2;
-            const std::size_t middle = begin + left_leaves * kGroupSize;
-            select(std::span(keys_).subspan(begin, end - begin), middle - begin,
-                   longest_axis(begin, end), std::span(spare_).subspan(begin, end - begin));
+            const std::size_t middle = middle_of(begin, end);
             const std::size_t left_first = first + 2;
-            const std::size_t right_first = left_first + 2 * (left_leaves - 1);
+            const std::size_t right_first = left_first + 2 * (leaf_count(middle - begin) - 1);
             Sums right_sums;
-            const auto left = [&] { sums = build_group(first, left_first, begin, middle); };
-            const auto right = [&] {
-                right_sums = build_group(first + 1, right_first, middle, end);
-            };
-            if (end - begin > kParallelGroup) {
-                tbb::parallel_invoke(left, right);
-            } else {
-                left();
-                right();
-            }
-            discard(keys_, begin, end);
-            discard(spare_, begin, end);
+            do_both(
+                end - begin, [&] { sums = build_group(first, left_first, begin, middle); },
+                [&] { right_sums = build_group(first + 1, right_first, middle, end); });
+            discard(std::span(keys_).subspan(begin, end - begin));
             sums.position += right_sums.position;
             sums.normal += right_sums.normal;
         }
         bound(group, sums);
         return sums;
+    }
+
+    glm::vec3 normal_of(std::uint32_t receiver) const
+    {
+        return answers_.empty() ? receivers_[receiver].normal : answers_[receiver].bent_normal;
     }
 
     std::size_t longest_axis(std::size_t begin, std::size_t end) const
@@ -190,7 +233,7 @@ private:
         Sums sums;
         for (std::size_t i = begin; i < end; ++i) {
             const Key& key = keys_[i];
-            const glm::vec3 normal = frame_ * receivers_[key.receiver].normal;
+            const glm::vec3 normal = frame_ * normal_of(key.receiver);
             out_.order[i] = key.receiver;
             for (std::size_t k = 0; k < 3; ++k) {
                 out_.position[k][i] = key.at[k];
@@ -239,6 +282,7 @@ private:
     }
 
     std::span<const Receiver> receivers_;
+    std::span<Occlusion> answers_;
     glm::mat3 frame_;
     RawVector<Key> keys_, spare_;
     ReceiverGroups out_;
@@ -248,7 +292,13 @@ private:
 
 ReceiverGroups group_receivers(std::span<const Receiver> receivers, const glm::mat3& frame)
 {
-    return Grouper(receivers, frame).build();
+    return Grouper(receivers, frame, {}).build({});
+}
+
+ReceiverGroups group_receivers(std::span<const Receiver> receivers, const glm::mat3& frame,
+                               std::span<Occlusion> answers, const ForgetReceivers& forget)
+{
+    return Grouper(receivers, frame, answers).build(forget);
 }
 
 }  // namespace surfelao

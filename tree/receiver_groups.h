@@ -6,6 +6,7 @@
 /// Laugh; It Runs. 1990). The masks hand what is not yet far enough down the tree.
 #pragma once
 
+#include "surfels/occlusion.h"
 #include "surfels/receiver.h"
 #include "tree/raw_vector.h"
 #include "tree/receiver_group.h"
@@ -38,6 +39,12 @@ struct ReceiverGroups {
 /// cores, same bytes for any number of threads.
 [[nodiscard]] ReceiverGroups group_receivers(std::span<const Receiver> receivers,
                                              const glm::mat3& frame = glm::mat3(1.0f));
+
+/// The same, forgetting all receivers on the way. Their normals are the bent normals of the
+/// answers, one for each, from then on.
+[[nodiscard]] ReceiverGroups group_receivers(std::span<const Receiver> receivers,
+                                             const glm::mat3& frame, std::span<Occlusion> answers,
+                                             const ForgetReceivers& forget);
 
 /// With v from `center` to a point, along = dot(v, axis) and across = |v - along * axis|, no
 /// receiver has the point higher above its tangent plane than along * cone_cos + across * cone_sin

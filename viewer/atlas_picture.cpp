@@ -160,7 +160,7 @@ private:
 
     [[nodiscard]] glm::vec3 normal_of(const SurfacePoint& point) const
     {
-        const glm::uvec3 wedges = mesh_.surface.corners[point.triangle];
+        const glm::uvec3 wedges = mesh_.surface.corners(mesh_.geometry)[point.triangle];
         const glm::vec3 weights(1.0f - point.at.x - point.at.y, point.at);
         glm::vec3 normal(0.0f);
         for (int k = 0; k < 3; ++k)

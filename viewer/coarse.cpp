@@ -62,7 +62,7 @@ std::vector<glm::uvec3> merged(const Geometry& geometry, const Surface& surface,
 {
     const std::vector<std::uint32_t> kept = kept_wedges(geometry, surface, side);
     std::vector<glm::uvec3> triangles;
-    for (const glm::uvec3& corners : surface.corners) {
+    for (const glm::uvec3& corners : surface.corners(geometry)) {
         glm::uvec3 t(kept[corners.x], kept[corners.y], kept[corners.z]);
         if (t.x == t.y || t.y == t.z || t.z == t.x)
             continue;
@@ -80,8 +80,8 @@ std::vector<glm::uvec3> merged(const Geometry& geometry, const Surface& surface,
 std::vector<glm::uvec3> coarse_triangles(const Geometry& geometry, const Surface& surface,
                                          std::size_t most)
 {
-    if (surface.corners.size() <= most)
-        return surface.corners;
+    if (geometry.triangles.size() <= most)
+        return surface.corners(geometry);
     double area = 0.0;
     for (const glm::uvec3 t : geometry.triangles) {
         const glm::vec3 a = geometry.positions[t.x];

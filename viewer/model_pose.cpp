@@ -110,7 +110,8 @@ private:
             for (int k = 0; k < 3; ++k) {
                 const glm::dvec3 a = p[(k + 1) % 3] - p[k], b = p[(k + 2) % 3] - p[k];
                 const double angle = std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
-                sums[bodies_.smooth_places[surface.corners[t][k]]] += angle / length * face;
+                sums[bodies_.smooth_places[surface.corners(geometry)[t][k]]] +=
+                    angle / length * face;
             }
         }
         for (std::uint32_t body = 1; body < bodies_.list.size(); ++body) {

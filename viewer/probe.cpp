@@ -96,7 +96,7 @@ Reading read_at(const CellView& view, const Cell& cell, const SurfacePoint& poin
     const std::span<const glm::vec3> positions = view.positions();
     const std::span<const glm::vec3> normals = view.wedge_normals();
     const glm::uvec3& corners = geometry.triangles[point.triangle];
-    const glm::uvec3& wedges = model.mesh->surface.corners[point.triangle];
+    const glm::uvec3& wedges = model.mesh->surface.corners(model.geometry())[point.triangle];
     const glm::vec3 shares(1.0f - point.at.x - point.at.y, point.at);
     const int nearest = shares.x >= shares.y && shares.x >= shares.z ? 0
                         : shares.y >= shares.z                       ? 1

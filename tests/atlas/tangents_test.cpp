@@ -29,8 +29,9 @@ glm::dvec3 decoded(const Mesh& mesh, const Tangents& tangents, const SurfacePoin
     const double weights[3] = {1.0 - point.at.x - point.at.y, point.at.x, point.at.y};
     glm::dvec3 normal(0.0), tangent(0.0);
     for (int k = 0; k < 3; ++k) {
-        normal +=
-            weights[k] * glm::dvec3(mesh.surface.normals[mesh.surface.corners[point.triangle][k]]);
+        normal += weights[k] *
+                  glm::dvec3(
+                      mesh.surface.normals[mesh.surface.corners(mesh.geometry)[point.triangle][k]]);
         tangent +=
             weights[k] *
             glm::dvec3(glm::vec3(tangents[3 * point.triangle + static_cast<std::size_t>(k)]));
@@ -75,8 +76,9 @@ TEST(Tangents, GiveBackTheDirectionsThatWereEncoded)
     const Tangents tangents = make_tangents(mesh, mesh.scene.uvs[0]);
     for (std::uint32_t t = 0; t < mesh.geometry.triangles.size(); ++t) {
         const SurfacePoint point{t, {0.3f, 0.1f * static_cast<float>(t % 7)}};
-        const glm::vec3 direction = glm::normalize(mesh.surface.normals[mesh.surface.corners[t].x] +
-                                                   glm::vec3(0.2, 0.7, 0));
+        const glm::vec3 direction =
+            glm::normalize(mesh.surface.normals[mesh.surface.corners(mesh.geometry)[t].x] +
+                           glm::vec3(0.2, 0.7, 0));
         const glm::vec3 held = to_tangent_space(mesh, tangents, point, direction);
         EXPECT_NEAR(glm::length(held), 1.0f, 1e-6f);
         EXPECT_LT(glm::distance(decoded(mesh, tangents, point, held), glm::dvec3(direction)), 1e-5);

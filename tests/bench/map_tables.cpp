@@ -64,7 +64,8 @@ std::string obj_of(const World& world)
     for (const glm::vec3 n : mesh.surface.normals)
         append_line(text, "vn", {n.x, n.y, n.z});
     for (std::uint32_t t = 0; t < mesh.geometry.triangles.size(); ++t) {
-        const glm::uvec3 vertices = mesh.geometry.triangles[t], normals = mesh.surface.corners[t];
+        const glm::uvec3 vertices = mesh.geometry.triangles[t],
+                         normals = mesh.surface.corners(mesh.geometry)[t];
         const glm::uvec3 places =
             uvs.corners.empty() ? vertices : uvs.corners[mesh.geometry.scene_triangle(t)];
         text += 'f';

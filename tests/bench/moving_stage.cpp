@@ -75,7 +75,7 @@ MovingStage::MovingStage(std::string title, const std::vector<Scene>& parts,
         body_of_triangle.push_back(body_of_scene_triangle[geometry.scene_triangle(t)]);
     const Surface surface = make_surface(scene, geometry, {.crease = crease});
     receivers = receivers_at_wedges(geometry, surface);
-    corners = surface.corners;
+    corners = surface.corners(geometry);
     for (std::uint32_t wedge = 0; wedge < receivers.size(); ++wedge)
         body_of_receiver.push_back(body_of_vertex[surface.vertex_of(wedge)]);
     for (const std::vector<Placement>& pose : world_poses) {

@@ -38,11 +38,11 @@ void write_frames(const char* input, const char* output)
             out << mesh.geometry.welded[triangle[k]] << ' ';
             print(out, mesh.scene.positions[triangle[k]]);
             out << uvs.values[corners[k]].x << ' ' << 1.0 - uvs.values[corners[k]].y << ' ';
-            print(out, mesh.surface.normals[mesh.surface.corners[t][k]]);
+            print(out, mesh.surface.normals[mesh.surface.corners(mesh.geometry)[t][k]]);
             print(out, tangents[3 * t + static_cast<std::uint32_t>(k)]);
         }
         const SurfacePoint point{t, {0.1f * static_cast<float>(t % 8), 0.2f}};
-        const glm::vec3 normal = mesh.surface.normals[mesh.surface.corners[t].x];
+        const glm::vec3 normal = mesh.surface.normals[mesh.surface.corners(mesh.geometry)[t].x];
         const glm::vec3 direction = glm::normalize(normal + glm::vec3(0.3f, -0.5f, 0.6f));
         print(out, point.at);
         print(out, direction);

@@ -52,19 +52,19 @@ glm::vec3 face_normal(const Geometry& geometry, std::size_t triangle)
                                      geometry.positions[t.z] - geometry.positions[t.x]));
 }
 
-glm::vec3 corner_normal(const Surface& surface, std::size_t triangle, int corner)
+glm::vec3 corner_normal(const Mesh& mesh, std::size_t triangle, int corner)
 {
-    return surface.normals[surface.corners[triangle][corner]];
+    return mesh.surface.normals[mesh.surface.corners(mesh.geometry)[triangle][corner]];
 }
 
 /// The largest distance of a corner's normal from that of its face.
-float farthest_from_faces(const Geometry& geometry, const Surface& surface)
+float farthest_from_faces(const Mesh& mesh)
 {
     float farthest = 0.0f;
-    for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
+    for (std::size_t t = 0; t < mesh.geometry.triangles.size(); ++t) {
         for (int corner = 0; corner < 3; ++corner)
-            farthest = std::max(farthest, glm::distance(corner_normal(surface, t, corner),
-                                                        face_normal(geometry, t)));
+            farthest = std::max(farthest, glm::distance(corner_normal(mesh, t, corner),
+                                                        face_normal(mesh.geometry, t)));
     }
     return farthest;
 }
@@ -76,10 +76,10 @@ TEST(CornerNormals, ACubeHasAWedgeForEachSideOrOneForEachVertexAsTheCreaseSays)
     const Mesh sharp = make_mesh(cube());
     EXPECT_EQ(sharp.surface.normals.size(), 24u);
     EXPECT_EQ(sharp.surface.vertex_count(), 8u);
-    EXPECT_LT(farthest_from_faces(sharp.geometry, sharp.surface), 1e-6f);
+    EXPECT_LT(farthest_from_faces(sharp), 1e-6f);
     for (std::size_t t = 0; t < 12; ++t) {
         for (int corner = 0; corner < 3; ++corner)
-            EXPECT_EQ(sharp.surface.vertex_of(sharp.surface.corners[t][corner]),
+            EXPECT_EQ(sharp.surface.vertex_of(sharp.surface.corners(sharp.geometry)[t][corner]),
                       sharp.geometry.triangles[t][corner]);
     }
     const Mesh round = make_mesh(cube(), {.crease = 180.0f});
@@ -110,7 +110,7 @@ TEST(CornerNormals, FlatAreThoseOfTheFacesWhateverTheFileSays)
     for (const glm::dvec3 p : scene.positions)
         scene.normals.values.emplace_back(p);
     const Mesh mesh = make_mesh(scene, {.source = NormalSource::flat});
-    EXPECT_LT(farthest_from_faces(mesh.geometry, mesh.surface), 1e-6f);
+    EXPECT_LT(farthest_from_faces(mesh), 1e-6f);
     EXPECT_EQ(mesh.surface.corners_from_file, 0u);
 }
 
@@ -140,10 +140,8 @@ TEST(CornerNormals, DoubledFacesBackToBackKeepTheirOwnSides)
     for (const glm::uvec3 t : hill.triangles)
         shared.triangles.emplace_back(t.x, t.z, t.y);
     shared.parts[0].triangle_count *= 2;
-    for (const Scene& scene : {shared, hill + scenes::flipped(hill)}) {
-        const Geometry geometry = make_geometry(scene);
-        EXPECT_LT(farthest_from_faces(geometry, make_surface(scene, geometry)), 0.1f);
-    }
+    for (const Scene& scene : {shared, hill + scenes::flipped(hill)})
+        EXPECT_LT(farthest_from_faces(make_mesh(scene)), 0.1f);
 }
 
 // What is told apart at one place is bounded: sums over all pairs of faces would not end.
@@ -196,10 +194,10 @@ TEST(FileNormals, AreTakenAtAnyLengthPerVertexAndPerCorner)
     EXPECT_EQ(by_corner.surface.corners_from_file, 5u);
     EXPECT_EQ(by_corner.surface.replaced_corners, 0u);
     for (int corner = 0; corner < 3; ++corner)
-        EXPECT_LT(glm::distance(corner_normal(by_corner.surface, 0, corner),
-                                glm::normalize(tilted[3 - corner])),
-                  1e-6f);
-    EXPECT_LT(glm::distance(corner_normal(by_corner.surface, 1, 1), kUp), 1e-6f);
+        EXPECT_LT(
+            glm::distance(corner_normal(by_corner, 0, corner), glm::normalize(tilted[3 - corner])),
+            1e-6f);
+    EXPECT_LT(glm::distance(corner_normal(by_corner, 1, 1), kUp), 1e-6f);
 }
 
 TEST(FileNormals, ThatCannotBeAreReplacedAndCounted)
@@ -212,12 +210,12 @@ TEST(FileNormals, ThatCannotBeAreReplacedAndCounted)
         const Mesh mesh = make_mesh(scene);
         EXPECT_EQ(mesh.surface.corners_from_file, 5u);
         EXPECT_EQ(mesh.surface.replaced_corners, 1u);
-        EXPECT_LT(farthest_from_faces(mesh.geometry, mesh.surface), 1e-6f);
+        EXPECT_LT(farthest_from_faces(mesh), 1e-6f);
     }
     scene.normals.values[scene.triangles[0].y] = glm::vec3(0.0f);  // the file gives none
     const Mesh none = make_mesh(scene);
     EXPECT_EQ(none.surface.replaced_corners, 0u);
-    EXPECT_LT(farthest_from_faces(none.geometry, none.surface), 1e-6f);
+    EXPECT_LT(farthest_from_faces(none), 1e-6f);
 }
 
 TEST(FileNormals, OnTheOtherSideAreKeptWhereTheFileIsBelieved)
@@ -229,7 +227,7 @@ TEST(FileNormals, OnTheOtherSideAreKeptWhereTheFileIsBelieved)
     const Mesh mesh = make_mesh(scene, {.source = NormalSource::file});
     EXPECT_EQ(mesh.surface.corners_from_file, 4u);
     EXPECT_EQ(mesh.surface.replaced_corners, 2u);
-    EXPECT_LT(glm::distance(corner_normal(mesh.surface, 0, 0), kDown), 1e-6f);
+    EXPECT_LT(glm::distance(corner_normal(mesh, 0, 0), kDown), 1e-6f);
 }
 
 TEST(FileNormals, OfCornersAreCountedInTheSceneWhereTrianglesAreDropped)
@@ -245,8 +243,8 @@ TEST(FileNormals, OfCornersAreCountedInTheSceneWhereTrianglesAreDropped)
     EXPECT_EQ(mesh.geometry.scene_triangle(0), 1u);
     EXPECT_EQ(mesh.geometry.scene_triangle(1), 2u);
     for (int corner = 0; corner < 3; ++corner) {
-        EXPECT_LT(glm::distance(corner_normal(mesh.surface, 0, corner), kUp), 1e-6f);
-        EXPECT_LT(glm::distance(corner_normal(mesh.surface, 1, corner), tilted), 1e-6f);
+        EXPECT_LT(glm::distance(corner_normal(mesh, 0, corner), kUp), 1e-6f);
+        EXPECT_LT(glm::distance(corner_normal(mesh, 1, corner), tilted), 1e-6f);
     }
     EXPECT_EQ(make_geometry(square()).scene_triangle(1), 1u);
 }
@@ -467,9 +465,10 @@ TEST(KeepTriangles, KeepsNormalsOfTheWholeSurface)
     for (std::size_t t = 0; t < 50; ++t) {
         EXPECT_EQ(half.geometry.scene_triangle(t), 2 * t + 1);
         EXPECT_EQ(half.geometry.triangles[t], whole.geometry.triangles[2 * t + 1]);
-        EXPECT_EQ(half.surface.corners[t], whole.surface.corners[2 * t + 1]);
+        EXPECT_EQ(half.surface.corners(half.geometry)[t],
+                  whole.surface.corners(whole.geometry)[2 * t + 1]);
         for (int corner = 0; corner < 3; ++corner)
-            in_use[half.surface.corners[t][corner]] = true;
+            in_use[half.surface.corners(half.geometry)[t][corner]] = true;
     }
     for (std::size_t wedge = 0; wedge < in_use.size(); ++wedge)
         EXPECT_EQ(half.surface.normals[wedge],

@@ -55,14 +55,18 @@ TEST(MaskWorlds, ForgottenReceiversAreAnsweredAllTheSame)
     const auto tree = build_mask_tree(geometry);
     const std::vector<Receiver> receivers = vertex_receivers(geometry);
     MaskOptions options;
-    for (const int times : {1, 0}) {
+    for (const bool is_forgotten : {true, false}) {
         std::vector<Receiver> asked = receivers;
-        int told = 0;
-        const auto found = solve_masks(*tree, asked, options, {}, [&] {
-            ++told;
-            std::ranges::fill(asked, Receiver{glm::vec3(9.0f), glm::vec3(NAN)});
-        });
-        EXPECT_EQ(told, times);
+        std::size_t forgotten = 0;
+        const auto found =
+            solve_masks(*tree, asked, options, {}, [&](std::size_t first, std::size_t end) {
+                EXPECT_EQ(first, forgotten);
+                forgotten = end;
+                std::fill(asked.begin() + static_cast<std::ptrdiff_t>(first),
+                          asked.begin() + static_cast<std::ptrdiff_t>(end),
+                          Receiver{glm::vec3(9.0f), glm::vec3(NAN)});
+            });
+        EXPECT_EQ(forgotten, is_forgotten ? receivers.size() : 0u);
         EXPECT_EQ(found, solve_masks(*tree, receivers, options));
         options.definition.ground = Ground{{0, 0, 1}, -0.3f};
     }

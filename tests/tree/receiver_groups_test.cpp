@@ -158,7 +158,7 @@ TEST(Discard, LeavesWhatIsOutsideOfTheRange)
     numbers.resize(4 * kDiscardUnit / sizeof(std::uint32_t));
     std::iota(numbers.begin(), numbers.end(), 1u);
     const std::size_t begin = 12345, end = numbers.size() - 54321;
-    discard(numbers, begin, end);
+    discard(std::span(numbers).subspan(begin, end - begin));
     std::size_t changed = 0;
     for (std::size_t i = 0; i < numbers.size(); ++i)
         changed += (i < begin || i >= end) && numbers[i] != i + 1 ? 1 : 0;

@@ -131,7 +131,8 @@ TEST(Coarse, FewerTrianglesOfTheSameShape)
     const Model plate = upright_model(scenes::box({0, 0, 0}, {1, 1, 0.001}, 24));
     const Geometry& geometry = plate.geometry();
     const Surface& surface = plate.mesh->surface;
-    EXPECT_EQ(coarse_triangles(geometry, surface, surface.corners.size()), surface.corners);
+    EXPECT_EQ(coarse_triangles(geometry, surface, geometry.triangles.size()),
+              surface.corners(geometry));
     const std::vector<glm::uvec3> coarse = coarse_triangles(geometry, surface, 800);
     EXPECT_LE(coarse.size(), 800u);
     EXPECT_GT(coarse.size(), 200u);

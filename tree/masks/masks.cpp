@@ -75,26 +75,21 @@ MaskSettings mask_settings(const MaskOptions& options)
 
 std::vector<Occlusion> solve_masks(const MaskNode* nodes, std::span<const std::uint32_t> roots,
                                    std::span<const Receiver> receivers, const MaskOptions& options,
-                                   const Progress& progress, const std::function<void()>& forget)
+                                   const Progress& progress, const ForgetReceivers& forget)
 {
     MaskSolver solver(options);
-    const ReceiverGroups groups = group_receivers(receivers, kMaskFrame);
+    std::vector<Occlusion> answers(receivers.size());
+    const bool forgets = forget && !options.definition.ground;
+    const ReceiverGroups groups = forgets ? group_receivers(receivers, kMaskFrame, answers, forget)
+                                          : group_receivers(receivers, kMaskFrame);
+    if (forgets)
+        receivers = {};
     const MaskSkies skies(options.definition, receivers);
     const std::vector<std::uint8_t> wanted = leaves_of(options.share, groups);
-    std::vector<Occlusion> answers(receivers.size());
     for (std::size_t leaf = 0; leaf < wanted.size(); ++leaf) {
         const ReceiverGroup& group = groups.groups[groups.leaves[leaf]];
         for (std::uint32_t i = group.begin; wanted[leaf] == 0 && i < group.end; ++i)
             answers[groups.order[i]] = kUnsolved;
-    }
-    if (forget && !options.definition.ground) {
-        for_blocks(receivers, [&](std::span<const Receiver> block, std::size_t i) {
-            for (std::size_t k = 0; k < block.size(); ++k)
-                if (answers[i * kPartBlock + k] != kUnsolved)
-                    answers[i * kPartBlock + k].bent_normal = block[k].normal;
-        });
-        receivers = {};
-        forget();
     }
     ProgressMeter meter(progress, wanted.size() / options.share.count);
     solver.solve({nodes, roots, receivers, groups, skies, wanted}, meter, answers);
@@ -103,7 +98,7 @@ std::vector<Occlusion> solve_masks(const MaskNode* nodes, std::span<const std::u
 
 std::vector<Occlusion> solve_masks(const MaskTree& tree, std::span<const Receiver> receivers,
                                    const MaskOptions& options, const Progress& progress,
-                                   const std::function<void()>& forget)
+                                   const ForgetReceivers& forget)
 {
     const std::uint32_t root = 0;
     return solve_masks(tree.nodes.data(), {&root, tree.nodes.empty() ? 0u : 1u}, receivers, options,

@@ -76,12 +76,12 @@ struct MaskOptions {
 
 /// One Occlusion per receiver. All cores, same bytes for any number of threads. The definition's
 /// kernel must be Kernel::cosine. Throws SettingsError where an option is out of its range or the
-/// processor lacks the kernel, Cancelled. Without a ground it calls `forget` as soon as it does not
-/// look at the receivers any more, before it answers.
+/// processor lacks the kernel, Cancelled. Without a ground all receivers are forgotten before it
+/// answers.
 [[nodiscard]] std::vector<Occlusion> solve_masks(const MaskTree& tree,
                                                  std::span<const Receiver> receivers,
                                                  const MaskOptions& options,
                                                  const Progress& progress = {},
-                                                 const std::function<void()>& forget = {});
+                                                 const ForgetReceivers& forget = {});
 
 }  // namespace surfelao

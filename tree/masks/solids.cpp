@@ -1,6 +1,7 @@
 #include "tree/masks/solids.h"
 
 #include "surfels/edges.h"
+#include "surfels/for_all.h"
 #include "surfels/union_find.h"
 #include "tree/masks/constants.h"
 
@@ -38,10 +39,11 @@ std::vector<std::uint8_t> small_solids(const Geometry& geometry)
 {
     const std::size_t count = geometry.triangles.size();
     UnionFind bodies(geometry.positions.size());
-    for (const glm::uvec3 t : geometry.triangles) {
+    for_all(count, [&](std::size_t i) {
+        const glm::uvec3 t = geometry.triangles[i];
         bodies.join(geometry.welded[t.x], geometry.welded[t.y]);
         bodies.join(geometry.welded[t.x], geometry.welded[t.z]);
-    }
+    });
     std::vector<std::uint32_t> size(geometry.positions.size(), 0);
     std::vector<std::uint32_t> body(count);
     for (std::size_t t = 0; t < count; ++t)

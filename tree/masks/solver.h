@@ -99,7 +99,7 @@ private:
                                                  std::span<const Receiver> receivers,
                                                  const MaskOptions& options,
                                                  const Progress& progress,
-                                                 const std::function<void()>& forget = {});
+                                                 const ForgetReceivers& forget = {});
 
 /// One per leaf group: whether it is one of the share.
 [[nodiscard]] std::vector<std::uint8_t> leaves_of(const Share& share, const ReceiverGroups& groups);

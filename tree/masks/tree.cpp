@@ -195,7 +195,7 @@ private:
         }
         if (followed_ == nullptr) {
             for (RawVector<MaskKey>& keys : keys_)
-                discard(keys, begin, end);
+                discard(std::span(keys).subspan(begin, end - begin));
         }
 
         MaskPatch patch;
