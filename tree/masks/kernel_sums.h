@@ -64,8 +64,8 @@ template <int kAxis>
 SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, const std::uint32_t* mask, int row,
                                     ByteSum* sum)
 {
-    const Bytes front = load_bytes(mask + 2 * kAxis * kMaskFaceWords + row);
-    const Bytes back = load_bytes(mask + (2 * kAxis + 1) * kMaskFaceWords + row);
+    const Bytes front = load_bytes(mask + 2 * kAxis * raster.rows + row);
+    const Bytes back = load_bytes(mask + (2 * kAxis + 1) * raster.rows + row);
     add_first<kAxis, 0>(raster, 4 * row, front, back, sum);
     add_first<kAxis, 1>(raster, 4 * row, front, back, sum);
     add_first<kAxis, 2>(raster, 4 * row, front, back, sum);
@@ -78,7 +78,7 @@ SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, const std::uint32_
 {
     ByteSum part[3] = {};
 #pragma GCC unroll 1
-    for (int row = 0; row < kMaskRows; row += kByteRows) {
+    for (int row = 0; row < raster.rows; row += kByteRows) {
         add_first<0>(raster, mask, row, part);
         add_first<1>(raster, mask, row, part);
         add_first<2>(raster, mask, row, part);
@@ -136,8 +136,8 @@ template <int kAxis>
 SURFELAO_MASK_INLINE void add_second(const MaskRaster& raster, const std::uint32_t* mask, int row,
                                      ByteSum* sum)
 {
-    const Bytes front = load_bytes(mask + 2 * kAxis * kMaskFaceWords + row);
-    const Bytes back = load_bytes(mask + (2 * kAxis + 1) * kMaskFaceWords + row);
+    const Bytes front = load_bytes(mask + 2 * kAxis * raster.rows + row);
+    const Bytes back = load_bytes(mask + (2 * kAxis + 1) * raster.rows + row);
     add_second<kAxis, 0>(raster, 4 * row, front, back, sum);
     add_second<kAxis, 1>(raster, 4 * row, front, back, sum);
 }
@@ -146,7 +146,7 @@ inline Second second_moments(const MaskRaster& raster, const std::uint32_t* mask
 {
     ByteSum sum[6] = {};
 #pragma GCC unroll 1
-    for (int row = 0; row < kMaskRows; row += kByteRows) {
+    for (int row = 0; row < raster.rows; row += kByteRows) {
         add_second<0>(raster, mask, row, sum);
         add_second<1>(raster, mask, row, sum);
         add_second<2>(raster, mask, row, sum);
@@ -159,10 +159,10 @@ inline Second second_moments(const MaskRaster& raster, const std::uint32_t* mask
 }
 
 /// Above the horizon and not covered.
-SURFELAO_MASK_INLINE void open_bits(const std::uint32_t* above, const std::uint32_t* mask,
-                                    std::uint32_t* open)
+SURFELAO_MASK_INLINE void open_bits(const MaskRaster& raster, const std::uint32_t* above,
+                                    const std::uint32_t* mask, std::uint32_t* open)
 {
-    for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
+    for (int w = 0; w < raster.words; w += kLanes)
         store(open + w, load(above + w) & ~load(mask + w));
 }
 
