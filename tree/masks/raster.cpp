@@ -79,9 +79,12 @@ std::unique_ptr<const MaskRaster> make_raster(int rows)
 
 const MaskRaster& mask_raster(int rows)
 {
-    static const std::unique_ptr<const MaskRaster> fine = make_raster(kMaskRows);
+    if (rows == kMaskRows) {
+        static const std::unique_ptr<const MaskRaster> fine = make_raster(kMaskRows);
+        return *fine;
+    }
     static const std::unique_ptr<const MaskRaster> coarse = make_raster(kMaskCoarseRows);
-    return rows == kMaskRows ? *fine : *coarse;
+    return *coarse;
 }
 
 }  // namespace surfelao
