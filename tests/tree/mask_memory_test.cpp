@@ -66,7 +66,7 @@ TEST(MaskMemory, KeptMasksAreAsGoodWithEarlyEnds)
     Definition limited{.max_distance = 0.4f, .falloff = Falloff::smooth};
     limited.ground = Ground{{0, 1, 0}, -0.3f};
     for (const Definition& definition : {Definition{}, limited}) {
-        const MaskOptions options{.definition = definition, .quality = MaskOptions::kDraft};
+        const MaskOptions options{.definition = definition, .quality = MaskOptions::kCoarsest};
         const MaskOptions better{.definition = definition, .quality = MaskOptions::kBest};
         for (const TwoBalls* balls : {&beside, &within}) {
             const std::vector<Occlusion> truth = balls->answers(better, 0);

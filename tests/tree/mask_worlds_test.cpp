@@ -27,7 +27,8 @@ struct Setting {
 
 std::vector<Setting> settings()
 {
-    return {{"draft", {.quality = MaskOptions::kDraft}},
+    return {{"coarsest", {.quality = MaskOptions::kCoarsest}},
+            {"draft", {.quality = MaskOptions::kDraft}},
             {"good", {.quality = MaskOptions::kGood}},
             {"best", {.quality = MaskOptions::kBest}},
             {"exact", {.exact = true}}};
@@ -146,6 +147,8 @@ TEST(MaskWorlds, TheSameAnswerFromEveryKernel)
     const std::vector<Receiver> receivers = vertex_receivers(geometry);
     std::vector<Setting> all = settings();
     const Ground ground{glm::normalize(glm::vec3(0.2f, 0.5f, 0.8f)), -0.2f};
+    all.push_back({"coarsest within",
+                   {.definition = {.max_distance = 0.4f}, .quality = MaskOptions::kCoarsest}});
     all.push_back({"ground", {.definition = {.ground = ground}}});
     all.push_back({"ground within", {.definition = {.max_distance = 0.4f, .ground = ground}}});
     for (Setting setting : all) {

@@ -52,6 +52,7 @@ struct MaskSettings {
     /// g: polygons whose highest corner lies below this sine of elevation over the receiver's
     /// tangent plane are not drawn.
     float graze;
+    int rows;         ///< of a face of the raster: MaskRaster::rows
     bool one_sided;   ///< of small closed bodies only what faces away is drawn
     bool fill;        ///< close single-bit cracks where more than `fill_from` is covered
     float fill_from;  ///< occlusion

@@ -23,22 +23,24 @@ SURFELAO_MASK_INLINE Int16 fill(const MaskRaster& raster, Int16 m, Int16 sheets)
     };
     const auto both = [](Int16 a, Int16 b) { return a & b; };
     const auto either = [](Int16 a, Int16 b) { return a | b; };
+    const Int16 below = load(raster.has_below), above = load(raster.has_above);
     const Int16 sides = shift_left<1>(m) & shift_right<1>(m);
     const Int16 sheet_sides = shift_left<1>(sheets) | shift_right<1>(sheets);
-    const Int16 stacked =
-        pair(from_below(m), low_right, both) & pair(from_above(m), high_right, both);
-    const Int16 sheet_stacked =
-        pair(from_below(sheets), low_right, either) | pair(from_above(sheets), high_right, either);
+    const Int16 stacked = pair(from_below(m) & below, low_right, both) &
+                          pair(from_above(m) & above, high_right, both);
+    const Int16 sheet_stacked = pair(from_below(sheets) & below, low_right, either) |
+                                pair(from_above(sheets) & above, high_right, either);
     return m | (sides & sheet_sides) | (stacked & sheet_stacked);
 }
 
 /// Of the open bits those that are no cracks: what filling has left open and what touches it. A
 /// notch in the rim of an opening is most likely part of it.
-SURFELAO_MASK_INLINE Int16 openings(Int16 open, Int16 filled)
+SURFELAO_MASK_INLINE Int16 openings(const MaskRaster& raster, Int16 open, Int16 filled)
 {
     const Int16 left = ~filled;
-    return open & (left | shift_left<1>(left) | shift_right<1>(left) | from_below(left) |
-                   from_above(left));
+    return open & (left | shift_left<1>(left) | shift_right<1>(left) |
+                   (from_below(left) & load(raster.has_below)) |
+                   (from_above(left) & load(raster.has_above)));
 }
 
 /// Closes cracks of two bits too, for places where nearly all is covered: what is set is grown by
@@ -51,13 +53,13 @@ SURFELAO_MASK_INLINE Int16 close(const MaskRaster& raster, Int16 m, Int16 sheets
         return select(right, shift_left<1>(row), shift_right<1>(row));
     };
     const auto grown_across = [&](Int16 x) {
-        const Int16 low = from_below(x);
-        const Int16 high = from_above(x);
+        const Int16 low = from_below(x) & load(raster.has_below);
+        const Int16 high = from_above(x) & load(raster.has_above);
         return x | low | beside(low, low_right) | high | beside(high, high_right);
     };
     const auto shrunk_across = [&](Int16 x) {
-        const Int16 low = from_below(x);
-        const Int16 high = from_above(x);
+        const Int16 low = from_below(x) & load(raster.has_below);
+        const Int16 high = from_above(x) & load(raster.has_above);
         return x & low & beside(low, low_right) & high & beside(high, high_right);
     };
     const Int16 wide = m | shift_left<1>(m) | shift_right<1>(m);
@@ -77,19 +79,19 @@ inline bool is_closed(const MaskRaster& raster, const std::uint32_t* closed, con
     const float z = n[2] < 0.0f ? -n[2] : n[2];
     const int axis = x > y && x > z ? 0 : y > z ? 1 : 2;
     const int ahead = 2 * axis + (n[axis] < 0.0f ? 1 : 0);
-    const Int16 holes = ~load(closed + kMaskFaceWords * ahead);
-    if (__builtin_popcount(bits(nonzero(holes))) > kMaskOpenBits)
+    const Int16 holes = ~load(closed + raster.rows * ahead / kLanes * kLanes);
+    const int most = kMaskOpenBits * raster.rows / kMaskRows;
+    if (__builtin_popcount(bits(nonzero(holes))) > most)
         return false;
     int open = 0;
-    for (int face = 0; face < kMaskFaces; ++face) {
-        const int w = kMaskFaceWords * face;
+    for (int w = 0; w < raster.words; w += kLanes) {
         const Int16 sheets = load(closed + kMaskWords + w);
         const Int16 filled = fill(raster, load(closed + w), sheets);
         alignas(64) std::uint32_t rows[kLanes];
         store(rows, ~close(raster, filled, sheets));
         for (const std::uint32_t row : rows)
             open += __builtin_popcount(row);
-        if (open > kMaskOpenBits)
+        if (open > most)
             return false;
     }
     return true;

@@ -17,7 +17,7 @@ namespace {
 /// n.d >= k |d| about the plane's normal n, where k = plane's distance / limit, 0 <= k < 1.
 /// With n.d = p + nu u and |d|^2 = q + u^2 in a row, u lies between or beyond the roots of
 /// (nu^2 - k^2) u^2 + 2 p nu u + p^2 - k^2 q = 0.
-SURFELAO_MASK_INLINE Int16 cone_bits(const MaskRaster& raster, float na, float nu, float nv,
+SURFELAO_MASK_INLINE Int16 cone_bits(const MaskRaster& raster, Float16 na, float nu, float nv,
                                      float k)
 {
     const Float16 v = load(raster.row_v);
@@ -26,7 +26,7 @@ SURFELAO_MASK_INLINE Int16 cone_bits(const MaskRaster& raster, float na, float n
     float a = nu * nu - k * k;
     if (a > -kMaskConeFlat && a < kMaskConeFlat)
         a = a < 0.0f ? -kMaskConeFlat : kMaskConeFlat;
-    const Float16 p = fma(all(nv), v, all(na));
+    const Float16 p = fma(all(nv), v, na);
     const Float16 root2 = fma(p, p, fma(v, v, all(1.0f)) * all(a));
     const Float16 root = sqrt(max(root2, zero)) * all(k);
     const Float16 b = p * all(nu);
@@ -178,19 +178,50 @@ SURFELAO_MASK_INLINE void set_axis(const Vector16* n, const Bool16* in, EdgeLine
 }
 
 /// Sets bits of one face in its mask, and among the sheets' bits too.
-template <bool kSheet>
-SURFELAO_MASK_INLINE void set_bits(std::uint32_t* mask, Int16 bits)
+template <bool kSheet, class Ints>
+SURFELAO_MASK_INLINE void set_bits(std::uint32_t* mask, Ints bits)
 {
-    store(mask, load(mask) | bits);
-    if constexpr (kSheet)
-        store(mask + kMaskWords, load(mask + kMaskWords) | bits);
+    Ints before;
+    load_rows(mask, before);
+    store(mask, before | bits);
+    if constexpr (kSheet) {
+        load_rows(mask + kMaskWords, before);
+        store(mask + kMaskWords, before | bits);
+    }
 }
 
-/// Sixteen polygons at once up to the edges, then each by itself, 16 rows at a time.
+/// The rows of a face within all edges of the polygon in a lane.
+template <int kCorners, class Floats, class Ints>
+SURFELAO_MASK_INLINE void rows_within(const EdgeLines<kCorners>& lines, unsigned face,
+                                      unsigned lane, Floats row_v, Floats row_shift, Ints& inside)
+{
+    fill_rows(~0u, inside);
+    for (int i = 0; i < kCorners; ++i) {
+        Floats slope, start;
+        fill_rows(lines.slope[face / 2][i][lane], slope);
+        fill_rows(lines.start[face][i][lane], start);
+        Ints below;
+        fill_rows(lines.below[face / 2][i][lane], below);
+        inside = and_xor(inside, bits_from(fma(slope, row_v, start), row_shift), below);
+    }
+}
+
+/// Of what stands for the rows of both faces of an axis, or of one, those of a face.
+SURFELAO_MASK_INLINE void rows_of_face(Int16 rows, unsigned, Int16& of_face)
+{
+    of_face = rows;
+}
+SURFELAO_MASK_INLINE void rows_of_face(Int16 rows, unsigned face, Int8& of_face)
+{
+    of_face = half_of(rows, face % 2 == 1);
+}
+
+/// Sixteen polygons at once up to the edges, then each by itself, all rows of a face at a time.
 /// corner: 3 kCorners rows of `kStride` floats, relative to the receiver; target: word offset of
 /// the receiver's masks in `masks`, a pair for each limit. A polygon is set within the nearest
-/// limit that it does not cross, and cut within those that it does. kCut: there are limits.
-template <int kCorners, int kStride, bool kSheet, bool kCut>
+/// limit that it does not cross, and cut within those that it does. kCut: there are limits;
+/// kCoarse: eight rows.
+template <int kCorners, int kStride, bool kSheet, bool kCut, bool kCoarse>
 void draw_polygons(const MaskRaster& raster, const MaskLimits& limits, const float* corner,
                    const std::uint32_t* target, unsigned count, std::uint32_t* masks)
 {
@@ -208,21 +239,21 @@ void draw_polygons(const MaskRaster& raster, const MaskLimits& limits, const flo
     set_axis<1, kCorners>(planes.normal, in, lines);
     set_axis<2, kCorners>(planes.normal, in, lines);
 
-    const Float16 row_v = load(raster.row_v);
-    const Float16 row_shift = load(raster.row_shift);
+    using Floats = typename RowTypes<kCoarse>::Floats;
+    using Ints = typename RowTypes<kCoarse>::Ints;
+    constexpr unsigned kRows = kCoarse ? kMaskCoarseRows : kMaskRows;
+    Floats row_v, row_shift;
+    load_rows(raster.row_v, row_v);
+    load_rows(raster.row_shift, row_shift);
     for (unsigned half = 0; half < 2; ++half) {
         for (std::uint64_t left = lines.faces[half]; left != 0; left &= left - 1) {
             const auto place = static_cast<unsigned>(__builtin_ctzll(left));
             const unsigned lane = place % kLanes;
             const unsigned face = 4 * half + place / kLanes;
             const unsigned axis = face / 2;
-            Int16 inside = all(~0u);
-            for (int i = 0; i < kCorners; ++i) {
-                const Float16 at =
-                    fma(all(lines.slope[axis][i][lane]), row_v, all(lines.start[face][i][lane]));
-                inside = and_xor(inside, bits_from(at, row_shift), all(lines.below[axis][i][lane]));
-            }
-            std::uint32_t* mask = masks + target[lane] + kMaskFaceWords * face;
+            Ints inside;
+            rows_within(lines, face, lane, row_v, row_shift, inside);
+            std::uint32_t* mask = masks + target[lane] + kRows * face;
             if (!kCut || (cuts.lanes >> lane & 1u) == 0) {
                 set_bits<kSheet>(mask, inside);
                 continue;
@@ -235,11 +266,13 @@ void draw_polygons(const MaskRaster& raster, const MaskLimits& limits, const flo
                 if ((cuts.within[k] >> lane & 1u) == 0)
                     continue;
                 const float na = cuts.plane[axis][lane];
-                set_bits<kSheet>(mask,
-                                 inside & cone_bits(raster, face % 2 == 0 ? na : -na,
-                                                    cuts.plane[(axis + 1) % 3][lane],
-                                                    cuts.plane[(axis + 2) % 3][lane],
-                                                    cuts.plane[3][lane] / limits.distance[k]));
+                Ints near;
+                rows_of_face(
+                    cone_bits(raster, all(na) * load(raster.side[face % 2]),
+                              cuts.plane[(axis + 1) % 3][lane], cuts.plane[(axis + 2) % 3][lane],
+                              cuts.plane[3][lane] / limits.distance[k]),
+                    face, near);
+                set_bits<kSheet>(mask, inside & near);
             }
         }
     }
@@ -249,26 +282,29 @@ template <int kCorners, int kStride, bool kSheet>
 void draw(const MaskRaster& raster, const MaskLimits& limits, const float* corner,
           const std::uint32_t* target, unsigned count, std::uint32_t* masks)
 {
-    const auto draw_them = limits.distance[0] < __builtin_inff()
-                               ? draw_polygons<kCorners, kStride, kSheet, true>
-                               : draw_polygons<kCorners, kStride, kSheet, false>;
+    const bool cut = limits.distance[0] < __builtin_inff();
+    const auto draw_them = raster.rows == kMaskRows
+                               ? (cut ? draw_polygons<kCorners, kStride, kSheet, true, false>
+                                      : draw_polygons<kCorners, kStride, kSheet, false, false>)
+                               : (cut ? draw_polygons<kCorners, kStride, kSheet, true, true>
+                                      : draw_polygons<kCorners, kStride, kSheet, false, true>);
     draw_them(raster, limits, corner, target, count, masks);
 }
 
 /// The bits above the plane through the receiver with normal n.
 inline void horizon(const MaskRaster& raster, const float* n, std::uint32_t* above)
 {
-    for (int face = 0; face < kMaskFaces; ++face) {
-        const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
-        const float na = face % 2 == 0 ? n[a] : -n[a];
+    for (int block = 0; kLanes * block < raster.words; ++block) {
+        const int a = block * kLanes / (2 * raster.rows), u = (a + 1) % 3, v = (a + 2) % 3;
         const bool turned = n[u] < 0.0f;
         float size = turned ? -n[u] : n[u];
         size = size > kMaskTiny ? size : kMaskTiny;
         const float scale = (turned ? kMaskHalfColumns : -kMaskHalfColumns) / size;
-        const float slope = n[v] * scale, start = kMaskHalfColumns + na * scale;
+        const Float16 start =
+            fma(load(raster.side[block % 2]), all(n[a] * scale), all(kMaskHalfColumns));
         const Int16 from =
-            bits_from(fma(all(slope), load(raster.row_v), all(start)), load(raster.row_shift));
-        store(above + kMaskFaceWords * face, turned ? ~from : from);
+            bits_from(fma(all(n[v] * scale), load(raster.row_v), start), load(raster.row_shift));
+        store(above + kLanes * block, turned ? ~from : from);
     }
 }
 
@@ -288,11 +324,11 @@ inline void take_ground(const MaskRaster& raster, const MaskSettings& settings, 
     alignas(64) std::uint32_t covered[kMaskWords];
     if (flat)
         horizon(raster, towards, covered);
-    for (int face = 0; face < kMaskFaces; ++face) {
-        const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
-        const int w = kMaskFaceWords * face;
+    for (int block = 0; kLanes * block < raster.words; ++block) {
+        const int a = block * kLanes / (2 * raster.rows), u = (a + 1) % 3, v = (a + 2) % 3;
+        const int w = kLanes * block;
         const Int16 bits = flat ? load(covered + w)
-                                : cone_bits(raster, face % 2 == 0 ? towards[a] : -towards[a],
+                                : cone_bits(raster, load(raster.side[block % 2]) * all(towards[a]),
                                             towards[u], towards[v], edge);
         store(above + w, load(above + w) & ~bits);
     }

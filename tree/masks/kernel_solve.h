@@ -57,7 +57,7 @@ Visible visible_of(const MaskWorld& world, const MaskShared& shared, const float
     for (unsigned k = 0; k < limits.count; ++k) {
         take_ground(raster, world.settings, limits.distance[k], height, above);
         take_ground(raster, world.settings, limits.distance[k], height, open);
-        open_bits(open, shared.mask[k], open);
+        open_bits(raster, open, shared.mask[k], open);
         First of_open, of_above;
         first_moments(raster, open, above, of_open, of_above);
         if (!(of_above.along(axis) > 0.0f))
@@ -158,7 +158,7 @@ struct Masks16 {
                 take_ground(*world.raster, world.settings, world.settings.limits.distance[k],
                             receivers.above[i], above + k * kMaskWords);
             for (unsigned k = 0; k < limits; ++k)
-                begin(of(i, k), shared.mask[k],
+                begin(world.raster->words, of(i, k), shared.mask[k],
                       kept == nullptr ? nullptr : kept[k * stride].drawn[i],
                       k < skies ? above + k * kMaskWords : nullptr);
         }
@@ -189,10 +189,11 @@ struct Masks16 {
     }
 
 private:
-    SURFELAO_MASK_INLINE static void begin(std::uint32_t* mask, const std::uint32_t* shared,
-                                           const std::uint32_t* before, const std::uint32_t* above)
+    SURFELAO_MASK_INLINE static void begin(int words, std::uint32_t* mask,
+                                           const std::uint32_t* shared, const std::uint32_t* before,
+                                           const std::uint32_t* above)
     {
-        for (int w = 0; w < kFaceWords; w += kLanes) {
+        for (int w = 0; w < words; w += kLanes) {
             Int16 set = load(shared + w), sheets = load(shared + kMaskWords + w);
             if (before != nullptr) {
                 set = set | load(before + w);
@@ -252,7 +253,7 @@ SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32
                                        std::uint32_t* open)
 {
     const MaskRaster& raster = *world.raster;
-    open_bits(above, mask, open);
+    open_bits(raster, above, mask, open);
     if (!(weight > 0.0f))
         return 1.0f;
     const float drawn = first_moments(raster, open).along(n) / weight;
@@ -263,12 +264,12 @@ SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32
     alignas(64) std::uint32_t filled[kMaskWords];
     // what cracks are worth; beside_all: beside narrow clusters too
     const auto cracks_of = [&](bool beside_all) {
-        for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
+        for (int w = 0; w < raster.words; w += kLanes) {
             // what lies below the horizon is no opening
             const Int16 closed = load(mask + w) | ~load(above + w);
             const Int16 sheets = beside_all ? closed : load(mask + kMaskWords + w);
             store(filled + w, fill(raster, closed, sheets));
-            store(open + w, openings(~closed, load(filled + w)));
+            store(open + w, openings(raster, ~closed, load(filled + w)));
         }
         return drawn - first_moments(raster, open).along(n) / weight;
     };
@@ -284,7 +285,7 @@ SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32
     const float close_weight = (1.0f - openness - kMaskCloseFrom) / kMaskCloseRange;
     if (!(world.settings.close > 0.0f && close_weight > 0.0f && openness > 0.0f))
         return openness;
-    for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
+    for (int w = 0; w < raster.words; w += kLanes)
         store(open + w, ~close(raster, load(filled + w), load(mask + kMaskWords + w)));
     const float sealed = first_moments(raster, open).along(n) / weight;
     if (sealed < openness)
@@ -386,7 +387,7 @@ void keep(const MaskWorld& world, const ReceiverGroup& group, const std::uint32_
         std::memcpy(of_limit.shared, shared.mask[k], sizeof of_limit.shared);
         for (unsigned i = 0; i < receivers.count; ++i) {
             const std::uint32_t* drawn = masks.of(i, k);
-            for (int w = 0; w < kFaceWords; w += kLanes) {
+            for (int w = 0; w < world.raster->words; w += kLanes) {
                 store(of_limit.drawn[i] + w, load(drawn + w));
                 store(of_limit.drawn[i] + kFaceWords + w, load(drawn + kMaskWords + w));
             }
@@ -413,7 +414,7 @@ SURFELAO_MASK_INLINE void seen_changes(const MaskWorld& world, const MaskShared&
         alignas(64) std::uint32_t seen[kMaskWords];
         for (unsigned k = 0; k < limits.count && sum > 0.0f; ++k) {
             const std::uint32_t* sky = masks.sky(i, k);
-            for (int w = 0; w < kFaceWords; w += kLanes) {
+            for (int w = 0; w < world.raster->words; w += kLanes) {
                 store(far + w, load(far + w) | load(shared.mask[k] + w));
                 store(before + w, load(before + w) | load(kept[k * stride].drawn[i] + w));
                 store(seen + w, load(far + w) & ~load(before + w) & load(sky + w));

@@ -60,31 +60,42 @@ SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, int at, Bytes fron
     sum[(kAxis + 2) % 3].add(faces.both, raster.first[2][kPart] + at);
 }
 
-template <int kAxis>
+template <int kAxis, int kRows>
 SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, const std::uint32_t* mask, int row,
                                     ByteSum* sum)
 {
-    const Bytes front = load_bytes(mask + 2 * kAxis * kMaskFaceWords + row);
-    const Bytes back = load_bytes(mask + (2 * kAxis + 1) * kMaskFaceWords + row);
+    const Bytes front = load_bytes(mask + 2 * kAxis * kRows + row);
+    const Bytes back = load_bytes(mask + (2 * kAxis + 1) * kRows + row);
     add_first<kAxis, 0>(raster, 4 * row, front, back, sum);
     add_first<kAxis, 1>(raster, 4 * row, front, back, sum);
     add_first<kAxis, 2>(raster, 4 * row, front, back, sum);
     add_first<kAxis, 3>(raster, 4 * row, front, back, sum);
 }
 
-/// As many rows at a time as a register holds: their sums stay in registers.
+/// As many rows at a time as a register holds: their sums stay in registers. What of the register
+/// lies beyond a face's rows weighs nothing.
+template <int kRows>
 SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, const std::uint32_t* mask,
                                     ByteSum* sum)
 {
     ByteSum part[3] = {};
 #pragma GCC unroll 1
-    for (int row = 0; row < kMaskRows; row += kByteRows) {
-        add_first<0>(raster, mask, row, part);
-        add_first<1>(raster, mask, row, part);
-        add_first<2>(raster, mask, row, part);
+    for (int row = 0; row < kRows; row += kByteRows) {
+        add_first<0, kRows>(raster, mask, row, part);
+        add_first<1, kRows>(raster, mask, row, part);
+        add_first<2, kRows>(raster, mask, row, part);
     }
     for (int k = 0; k < 3; ++k)
         sum[k] = part[k];
+}
+
+SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, const std::uint32_t* mask,
+                                    ByteSum* sum)
+{
+    if (raster.rows == kMaskRows)
+        add_first<kMaskRows>(raster, mask, sum);
+    else
+        add_first<kMaskCoarseRows>(raster, mask, sum);
 }
 
 SURFELAO_MASK_INLINE First first_of(const MaskRaster& raster, const std::int32_t* totals)
@@ -132,25 +143,35 @@ SURFELAO_MASK_INLINE void add_second(const MaskRaster& raster, int at, Bytes fro
     sum[v].add(faces.both, raster.second[5][kPart] + at);
 }
 
-template <int kAxis>
+template <int kAxis, int kRows>
 SURFELAO_MASK_INLINE void add_second(const MaskRaster& raster, const std::uint32_t* mask, int row,
                                      ByteSum* sum)
 {
-    const Bytes front = load_bytes(mask + 2 * kAxis * kMaskFaceWords + row);
-    const Bytes back = load_bytes(mask + (2 * kAxis + 1) * kMaskFaceWords + row);
+    const Bytes front = load_bytes(mask + 2 * kAxis * kRows + row);
+    const Bytes back = load_bytes(mask + (2 * kAxis + 1) * kRows + row);
     add_second<kAxis, 0>(raster, 4 * row, front, back, sum);
     add_second<kAxis, 1>(raster, 4 * row, front, back, sum);
+}
+
+template <int kRows>
+SURFELAO_MASK_INLINE void add_second(const MaskRaster& raster, const std::uint32_t* mask,
+                                     ByteSum* sum)
+{
+#pragma GCC unroll 1
+    for (int row = 0; row < kRows; row += kByteRows) {
+        add_second<0, kRows>(raster, mask, row, sum);
+        add_second<1, kRows>(raster, mask, row, sum);
+        add_second<2, kRows>(raster, mask, row, sum);
+    }
 }
 
 inline Second second_moments(const MaskRaster& raster, const std::uint32_t* mask)
 {
     ByteSum sum[6] = {};
-#pragma GCC unroll 1
-    for (int row = 0; row < kMaskRows; row += kByteRows) {
-        add_second<0>(raster, mask, row, sum);
-        add_second<1>(raster, mask, row, sum);
-        add_second<2>(raster, mask, row, sum);
-    }
+    if (raster.rows == kMaskRows)
+        add_second<kMaskRows>(raster, mask, sum);
+    else
+        add_second<kMaskCoarseRows>(raster, mask, sum);
     Second second;
     total(sum, second.at);
     for (int k = 0; k < 3; ++k)
@@ -159,10 +180,10 @@ inline Second second_moments(const MaskRaster& raster, const std::uint32_t* mask
 }
 
 /// Above the horizon and not covered.
-SURFELAO_MASK_INLINE void open_bits(const std::uint32_t* above, const std::uint32_t* mask,
-                                    std::uint32_t* open)
+SURFELAO_MASK_INLINE void open_bits(const MaskRaster& raster, const std::uint32_t* above,
+                                    const std::uint32_t* mask, std::uint32_t* open)
 {
-    for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes)
+    for (int w = 0; w < raster.words; w += kLanes)
         store(open + w, load(above + w) & ~load(mask + w));
 }
 

@@ -4,6 +4,7 @@
 #include "tree/masks/constants.h"
 #include "tree/masks/kernel.h"
 #include "tree/masks/limits.h"
+#include "tree/masks/raster.h"
 #include "tree/masks/solver.h"
 #include "tree/masks/tree.h"
 #include "tree/part.h"
@@ -42,6 +43,7 @@ MaskSettings mask_settings(const MaskOptions& options)
             "this processor has no kernel " + std::string(name_of(options.kernel)));
     MaskSettings settings{};
     settings.fill = !options.exact;
+    settings.rows = options.quality < kMaskFineFrom && !options.exact ? kMaskCoarseRows : kMaskRows;
     settings.limits = distance_limits(options.definition);
     if (const auto& ground = options.definition.ground) {
         const glm::vec3 up = kMaskFrame * ground->up;

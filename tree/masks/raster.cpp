@@ -11,11 +11,16 @@ namespace {
 
 void set_rows(MaskRaster& raster)
 {
-    for (int y = 0; y < kMaskRows; ++y) {
-        const double angle = ((y + 0.5) / kMaskRows - 0.5) * std::numbers::pi / 2.0;
+    for (int lane = 0; lane < kMaskRows; ++lane) {
+        const int y = lane % raster.rows;
+        const double angle = ((y + 0.5) / raster.rows - 0.5) * std::numbers::pi / 2.0;
         const double turns = y * (std::numbers::phi - 1.0);
-        raster.row_v[y] = static_cast<float>(std::tan(angle));
-        raster.row_shift[y] = static_cast<float>(turns - std::floor(turns));
+        raster.row_v[lane] = static_cast<float>(std::tan(angle));
+        raster.row_shift[lane] = static_cast<float>(turns - std::floor(turns));
+        raster.has_below[lane] = y > 0 ? ~0u : 0u;
+        raster.has_above[lane] = y + 1 < raster.rows ? ~0u : 0u;
+        for (int odd = 0; odd < 2; ++odd)
+            raster.side[odd][lane] = (odd * kMaskRows + lane) / raster.rows % 2 == 0 ? 1.0f : -1.0f;
     }
     for (int y = 0; y < kMaskRows; ++y) {
         const auto further = [&](int other) {
@@ -34,7 +39,7 @@ void set_moments(const MaskRaster& raster, std::int8_t (&table)[kMoments][kParts
                  std::int32_t (&sums)[kMoments])
 {
     constexpr int kBits = 8 / kParts;
-    for (int byte = 0; byte < kMaskFaceBytes; ++byte) {
+    for (int byte = 0; byte < 4 * raster.rows; ++byte) {
         for (int part = 0; part < kParts; ++part) {
             double mean[6] = {};
             for (int i = 0; i < kBits; ++i) {
@@ -59,18 +64,27 @@ void set_moments(const MaskRaster& raster, std::int8_t (&table)[kMoments][kParts
     }
 }
 
+std::unique_ptr<const MaskRaster> make_raster(int rows)
+{
+    auto made = std::make_unique<MaskRaster>();
+    made->rows = rows;
+    made->words = kMaskFaces * rows;
+    set_rows(*made);
+    set_moments<1>(*made, made->first, made->first_sum);
+    set_moments<2>(*made, made->second, made->second_sum);
+    return made;
+}
+
 }  // namespace
 
-const MaskRaster& mask_raster()
+const MaskRaster& mask_raster(int rows)
 {
-    static const std::unique_ptr<const MaskRaster> raster = [] {
-        auto made = std::make_unique<MaskRaster>();
-        set_rows(*made);
-        set_moments<1>(*made, made->first, made->first_sum);
-        set_moments<2>(*made, made->second, made->second_sum);
-        return made;
-    }();
-    return *raster;
+    if (rows == kMaskRows) {
+        static const std::unique_ptr<const MaskRaster> fine = make_raster(kMaskRows);
+        return *fine;
+    }
+    static const std::unique_ptr<const MaskRaster> coarse = make_raster(kMaskCoarseRows);
+    return *coarse;
 }
 
 }  // namespace surfelao

@@ -6,6 +6,8 @@
 ///     a = +-1 on the face's axis;  (axis, U, V) = (x, y, z), (y, z, x), (z, x, y)
 ///     u = (x + shift(y)) / 16 - 1,  v = tan of equal angles from -45 to 45 degrees
 ///
+/// The coarse raster has eight rows a face; its masks' words lie as close: 48 instead of 96.
+///
 /// Each row is shifted by its own part of a column (multiples of the golden ratio), so that upright
 /// edges are sampled at 512 places and not at 32.
 ///
@@ -18,8 +20,9 @@
 namespace surfelao {
 
 constexpr int kMaskFaces = 6;
-constexpr int kMaskRows = 16;
-constexpr int kMaskFaceWords = kMaskRows;  ///< one 32-bit word a row
+constexpr int kMaskRows = 16;              ///< of a face
+constexpr int kMaskCoarseRows = 8;         ///< of a face of the coarse raster
+constexpr int kMaskFaceWords = kMaskRows;  ///< one 32-bit word a row; at most
 constexpr int kMaskWords = 128;            ///< six faces, and two unused: offsets add by `or`
 /// What is drawn is a pair of masks: all that is set, and what of it sheets set, whose rims are
 /// not where the surface ends.
@@ -27,8 +30,15 @@ constexpr int kMaskPairWords = 2 * kMaskWords;
 constexpr int kMaskFaceBytes = 4 * kMaskRows;
 
 struct alignas(64) MaskRaster {
+    int rows;   ///< of a face: kMaskRows or kMaskCoarseRows
+    int words;  ///< of the six faces, one a row
+
+    // sixteen rows: those of a face, or of both of an axis, + before -
+    alignas(64) float side[2][kMaskRows];  ///< of even and odd sixteen rows: the face's a
     float row_v[kMaskRows];
     float row_shift[kMaskRows];               ///< in columns, [0, 1)
+    std::uint32_t has_below[kMaskRows];       ///< ~0 where row y-1 is of the same face
+    std::uint32_t has_above[kMaskRows];       ///< ~0 where row y+1 is
     std::uint32_t below_is_right[kMaskRows];  ///< ~0 where row y-1 is shifted further than row y
     std::uint32_t above_is_right[kMaskRows];  ///< ~0 where row y+1 is shifted further than row y
 
@@ -47,7 +57,7 @@ struct alignas(64) MaskRaster {
     std::int32_t second_sum[6];
 };
 
-/// Made at the first call; any thread.
-const MaskRaster& mask_raster();
+/// rows: kMaskRows or kMaskCoarseRows. Made at the first call; any thread.
+const MaskRaster& mask_raster(int rows = kMaskRows);
 
 }  // namespace surfelao

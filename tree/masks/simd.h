@@ -38,6 +38,35 @@ constexpr int kLanes = 16;
 
 namespace surfelao::SURFELAO_MASK_ISA {
 
+SURFELAO_MASK_INLINE void load_rows(const float* p, Float16& x)
+{
+    x = load(p);
+}
+SURFELAO_MASK_INLINE void load_rows(const std::uint32_t* p, Int16& x)
+{
+    x = load(p);
+}
+SURFELAO_MASK_INLINE void fill_rows(float a, Float16& x)
+{
+    x = all(a);
+}
+SURFELAO_MASK_INLINE void fill_rows(std::uint32_t a, Int16& x)
+{
+    x = all(a);
+}
+
+/// The rows of one face: sixteen, or eight.
+template <bool kCoarse>
+struct RowTypes {
+    using Floats = Float16;
+    using Ints = Int16;
+};
+template <>
+struct RowTypes<true> {
+    using Floats = Float8;
+    using Ints = Int8;
+};
+
 struct Vector16 {
     Float16 x, y, z;
 };

@@ -1,6 +1,8 @@
 /// simd_avx2.h: sixteen lanes as two vectors of AVX2, with FMA. simd.h tells all.
 #pragma once
 
+#include "tree/masks/simd_rows8.h"
+
 #include <immintrin.h>
 
 #include <cstddef>
@@ -202,16 +204,10 @@ SURFELAO_MASK_INLINE Bool16 nonzero(Int16 x)
     return {_mm256_castsi256_ps(_mm256_xor_si256(_mm256_cmpeq_epi32(x.a, zero), ones)),
             _mm256_castsi256_ps(_mm256_xor_si256(_mm256_cmpeq_epi32(x.b, zero), ones))};
 }
-SURFELAO_MASK_INLINE __m256i bits_from8(__m256 at, __m256 shift)
+/// Eight of the rows.
+SURFELAO_MASK_INLINE Int8 half_of(Int16 x, bool upper)
 {
-    // the nearest to half a column more is what rounding up gives, but next to whole columns, and
-    // the half is taken off the shift, which is the same for many; the second operand is what comes
-    // out for NaN; what no integer holds becomes 2^31, and by so much, as by all above 31,
-    // everything is shifted out
-    const __m256 half = _mm256_set1_ps(0.49999f);
-    const __m256 from = _mm256_sub_ps(at, _mm256_sub_ps(shift, half));
-    return _mm256_sllv_epi32(_mm256_set1_epi32(-1),
-                             _mm256_cvtps_epi32(_mm256_max_ps(from, _mm256_setzero_ps())));
+    return {upper ? x.b : x.a};
 }
 SURFELAO_MASK_INLINE Int16 bits_from(Float16 at, Float16 shift)
 {

@@ -1,6 +1,8 @@
 /// simd_avx512.h: sixteen lanes as one vector of AVX-512, with VNNI. simd.h tells all.
 #pragma once
 
+#include "tree/masks/simd_rows8.h"
+
 #include <immintrin.h>
 
 #include <cstddef>
@@ -192,6 +194,11 @@ SURFELAO_MASK_INLINE Int16 bits_from(Float16 at, Float16 shift)
         _mm512_cvt_roundps_epu32(_mm512_max_ps((at - shift).v, _mm512_setzero_ps()),
                                  _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC);
     return {_mm512_sllv_epi32(_mm512_set1_epi32(-1), from)};
+}
+/// The first or the last eight rows.
+SURFELAO_MASK_INLINE Int8 half_of(Int16 a, bool upper)
+{
+    return {upper ? _mm512_extracti64x4_epi64(a.v, 1) : _mm512_castsi512_si256(a.v)};
 }
 /// The chosen lanes, moved together to the front; what follows them is undefined.
 SURFELAO_MASK_INLINE Float16 pack(Float16 a, Bool16 m)

@@ -212,22 +212,76 @@ SURFELAO_MASK_INLINE Float16 as_float(const Int16& x)
 {
     return each<Float16>([&](int i) { return reinterpret_cast<Float4>(x.v[i]); });
 }
+SURFELAO_MASK_INLINE Word4 bits_from4(Float4 at, Float4 shift)
+{
+    // NaN is not above 0
+    const Float4 x = at - shift;
+    const Float4 zero = {}, most = zero + 32.0f;
+    Float4 from = x > 0.0f ? x : zero;
+    from = from < 32.0f ? from : most;
+    Bool4 first = __builtin_convertvector(from, Bool4);
+    first -= __builtin_convertvector(first, Float4) < from;
+    // all bits from bit k up are the number -2^k, which has a float
+    const Word4 power = (word4(first) + (256u + 127u)) << 23;
+    const Bool4 up =
+        __builtin_convertvector(reinterpret_cast<Float4>(first < 32 ? power : Word4{}), Bool4);
+    return reinterpret_cast<Word4>(up);
+}
 SURFELAO_MASK_INLINE Int16 bits_from(const Float16& at, const Float16& shift)
 {
-    return each<Int16>([&](int i) {
-        // NaN is not above 0
-        const Float4 x = at.v[i] - shift.v[i];
-        const Float4 zero = {}, most = zero + 32.0f;
-        Float4 from = x > 0.0f ? x : zero;
-        from = from < 32.0f ? from : most;
-        Bool4 first = __builtin_convertvector(from, Bool4);
-        first -= __builtin_convertvector(first, Float4) < from;
-        // all bits from bit k up are the number -2^k, which has a float
-        const Word4 power = (word4(first) + (256u + 127u)) << 23;
-        const Bool4 up =
-            __builtin_convertvector(reinterpret_cast<Float4>(first < 32 ? power : Word4{}), Bool4);
-        return reinterpret_cast<Word4>(up);
-    });
+    return each<Int16>([&](int i) { return bits_from4(at.v[i], shift.v[i]); });
+}
+
+/// Eight rows.
+struct Float8 {
+    Float4 v[2];
+};
+struct Int8 {
+    Word4 v[2];
+};
+SURFELAO_MASK_INLINE Int8 half_of(const Int16& x, bool upper)
+{
+    return {{x.v[upper ? 2 : 0], x.v[upper ? 3 : 1]}};
+}
+SURFELAO_MASK_INLINE Int8 bits_from(const Float8& at, const Float8& shift)
+{
+    return {{bits_from4(at.v[0], shift.v[0]), bits_from4(at.v[1], shift.v[1])}};
+}
+SURFELAO_MASK_INLINE Float8 fma(const Float8& x, const Float8& y, const Float8& z)
+{
+    return {{x.v[0] * y.v[0] + z.v[0], x.v[1] * y.v[1] + z.v[1]}};
+}
+SURFELAO_MASK_INLINE Int8 and_xor(const Int8& x, const Int8& y, const Int8& z)
+{
+    return {{x.v[0] & (y.v[0] ^ z.v[0]), x.v[1] & (y.v[1] ^ z.v[1])}};
+}
+SURFELAO_MASK_INLINE Int8 operator&(const Int8& x, const Int8& y)
+{
+    return {{x.v[0] & y.v[0], x.v[1] & y.v[1]}};
+}
+SURFELAO_MASK_INLINE Int8 operator|(const Int8& x, const Int8& y)
+{
+    return {{x.v[0] | y.v[0], x.v[1] | y.v[1]}};
+}
+SURFELAO_MASK_INLINE void store(std::uint32_t* p, const Int8& x)
+{
+    std::memcpy(p, x.v, sizeof x.v);
+}
+SURFELAO_MASK_INLINE void load_rows(const float* p, Float8& x)
+{
+    std::memcpy(x.v, p, sizeof x.v);
+}
+SURFELAO_MASK_INLINE void load_rows(const std::uint32_t* p, Int8& x)
+{
+    std::memcpy(x.v, p, sizeof x.v);
+}
+SURFELAO_MASK_INLINE void fill_rows(float a, Float8& x)
+{
+    x.v[0] = x.v[1] = Float4{a, a, a, a};
+}
+SURFELAO_MASK_INLINE void fill_rows(std::uint32_t a, Int8& x)
+{
+    x.v[0] = x.v[1] = Word4{a, a, a, a};
 }
 SURFELAO_MASK_INLINE Float16 pack(const Float16& x, const Bool16& m)
 {

@@ -164,7 +164,8 @@ void MaskSolver::ask(const Definition& definition)
 
 MaskWorld MaskSolver::world_of(const MaskQuestion& question) const
 {
-    return {reinterpret_cast<const float*>(question.nodes), &mask_raster(), settings_};
+    return {reinterpret_cast<const float*>(question.nodes), &mask_raster(settings_.rows),
+            settings_};
 }
 
 void MaskSolver::solve(const MaskQuestion& question, ProgressMeter& meter,
