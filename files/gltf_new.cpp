@@ -103,9 +103,10 @@ private:
     /// Per scene triangle; of those without an area the vertices' own.
     [[nodiscard]] std::vector<glm::uvec3> wedges() const
     {
+        const std::vector<glm::uvec3>& shaded = mesh_.surface.corners(mesh_.geometry);
         std::vector<glm::uvec3> corners = scene_.triangles;
-        for (std::size_t t = 0; t < mesh_.geometry.triangles.size(); ++t)
-            corners[mesh_.geometry.scene_triangle(t)] = mesh_.surface.corners[t];
+        for (std::size_t t = 0; t < shaded.size(); ++t)
+            corners[mesh_.geometry.scene_triangle(t)] = shaded[t];
         return corners;
     }
 
