@@ -12,6 +12,7 @@
 //            u_high_words0, u_high_words1, u_high_sheets0, u_high_sheets1
 //                              the same for half 1
 //            u_fill            0: as drawn is all there is
+//            u_graze           MaskSettings::graze
 //            u_moments         RGBA32F, 3 texels a nibble, row by row: what a set bit of it is worth
 //                              (MaskRaster of tree/masks/raster.h). First moments 1 u v of the lower
 //                              two bits, second moment 1 | first of the upper two, second u |
@@ -25,9 +26,9 @@
 // Writes     out_share         RGBA32F: integral of n.w over the hemisphere, over the open bits, over
 //                              those left open by filling, over those left open by closing
 //            out_bent, out_bent_filled, out_bent_closed
-//                              RGBA32F: integral of w (n.w) over the same bits, mask frame | 0; of
-//                              out_bent_filled: integral of n.w over the bits left open by filling
-//                              beside narrow clusters too
+//                              RGBA32F: integral of w (n.w) over the same bits, mask frame | integral
+//                              of n.w over what filling beside narrow clusters too leaves open: of the
+//                              grazing strip, of all, of the strip above the first (kMaskGrazeAbove)
 // CPU twin   first_moments and second_moments in tree/masks/kernel_sums.h, horizon and take_ground in
 //            _raster.h, fill and close in _cracks.h
 #ifndef GROUND
@@ -43,6 +44,7 @@ uniform usampler2D u_high_words1;
 uniform usampler2D u_high_sheets0;
 uniform usampler2D u_high_sheets1;
 uniform int u_fill;
+uniform float u_graze;
 uniform samplerBuffer u_moments;
 uniform samplerBuffer u_receivers;
 uniform int u_slot_count;
@@ -86,12 +88,12 @@ void add(inout Sums sums, int y, uint bits)
 
 float along(Sums sums, vec3 n) { return dot(sums.first, n); }
 
-vec4 bent(Sums sums, vec3 n)
+vec4 bent(Sums sums, vec3 n, float share)
 {
     vec4 a = sums.second;
     vec2 b = sums.rest;
     vec3 turned = vec3(dot(a.xyz, n), dot(vec3(a.y, a.w, b.x), n), dot(vec3(a.z, b.x, b.y), n));
-    return vec4(turned * u_face, 0.0);
+    return vec4(turned * u_face, share);
 }
 
 float shift_of(int y) { return kRowShift[y >> 2][y & 3]; }
@@ -170,7 +172,7 @@ void main()
         add(open, y, ~closed[1 + y]);
     }
     out_share = vec4(along(whole, n), vec3(along(open, n)));
-    out_bent = out_bent_filled = out_bent_closed = bent(open, n);
+    out_bent = out_bent_filled = out_bent_closed = bent(open, n, along(open, n));
     if (u_fill == 0)
         return;
 
@@ -198,9 +200,9 @@ void main()
         grown[1 + y]      = grown_across(filled, y);
         wide_sheets[1 + y] = l | (l << 1) | (l >> 1);
     }
-    Sums cracks     = kNothing;
-    Sums all_cracks = kNothing;
-    Sums closing    = kNothing;
+    Sums cracks  = kNothing;
+    Sums closing = kNothing;
+    Sums left = kNothing, left_low = kNothing, left_next = kNothing;
     for (int y = 0; y < 16; ++y) {
         uint m       = filled[1 + y];
         uint wide    = m | (m << 1) | (m >> 1);
@@ -209,14 +211,20 @@ void main()
         uint high    = grown[2 + y];
         uint columns = grown[1 + y] & low & beside(low, y - 1, y) & high & beside(high, y + 1, y);
         add(cracks, y, ~closed[1 + y] & ~rim_of(filled, y));
-        add(all_cracks, y, ~closed[1 + y] & ~rim_of(all_filled, y));
+        uint openings = ~closed[1 + y] & rim_of(all_filled, y);
+        uint higher   = cone_bits(n, u_graze, y >> 2)[y & 3];
+        uint highest  = cone_bits(n, kMaskGrazeAbove * u_graze, y >> 2)[y & 3];
+        add(left, y, openings);
+        add(left_low, y, openings & ~higher);
+        add(left_next, y, openings & higher & ~highest);
         add(closing, y, (m | ((rows | columns) & grown_across(wide_sheets, y))) & ~closed[1 + y]);
     }
     Sums rest = Sums(open.first - cracks.first, open.second - cracks.second,
                      open.rest - cracks.rest);
     out_share.z     = along(rest, n);
-    out_bent_filled = vec4(bent(rest, n).xyz, along(open, n) - along(all_cracks, n));
+    out_bent.w      = along(left_low, n);
+    out_bent_filled = bent(rest, n, along(left, n));
     rest = Sums(open.first - closing.first, open.second - closing.second, open.rest - closing.rest);
     out_share.w     = along(rest, n);
-    out_bent_closed = bent(rest, n);
+    out_bent_closed = bent(rest, n, along(left_next, n));
 }

@@ -244,6 +244,31 @@ void draw_lists(const MaskWorld& world, const MaskScratch& scratch, const Receiv
     streams.finish();
 }
 
+/// How much of the open bits is open only because what grazes was left out: what of the grazing
+/// strip is open beyond the share of the strip above it.
+SURFELAO_MASK_INLINE float left_out(const MaskWorld& world, const std::uint32_t* open,
+                                    const float* n)
+{
+    const MaskRaster& raster = *world.raster;
+    const float graze = world.settings.graze;
+    alignas(64) std::uint32_t strip[kMaskWords], next[kMaskWords];
+    for (int face = 0; face < kMaskFaces; ++face) {
+        const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
+        const int w = kMaskFaceWords * face;
+        const float na = face % 2 == 0 ? n[a] : -n[a];
+        const Int16 higher = cone_bits(raster, na, n[u], n[v], graze);
+        const Int16 highest = cone_bits(raster, na, n[u], n[v], kMaskGrazeAbove * graze);
+        store(strip + w, load(open + w) & ~higher);
+        store(next + w, load(open + w) & higher & ~highest);
+    }
+    First of_strip, of_next;
+    first_moments(raster, strip, next, of_strip, of_next);
+    // a strip up to the sine g has a share of g^2 of the hemisphere
+    constexpr float kNext = kMaskGrazeAbove * kMaskGrazeAbove - 1.0f;
+    const float more = of_strip.along(n) - of_next.along(n) / kNext;
+    return more > 0.0f ? more : 0.0f;
+}
+
 /// How much of the sky of one receiver with normal n is open, between 0 and 1 to rounding, cracks
 /// counted as closed where much is covered. A sky smaller than a bit is open. weight: of `above`.
 /// `open` becomes the bits that count as open.
@@ -277,9 +302,11 @@ SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32
     float openness = drawn - fill_share * cracks;
 
     const float narrow_weight = (1.0f - openness - kMaskNarrowFrom) / kMaskNarrowRange;
-    if (narrow_weight > 0.0f && openness > 0.0f)
-        openness -=
-            (narrow_weight < 1.0f ? narrow_weight : 1.0f) * fill_share * (cracks_of(true) - cracks);
+    if (narrow_weight > 0.0f && openness > 0.0f) {
+        const float narrow = fill_share * (cracks_of(true) - cracks);
+        openness -= (narrow_weight < 1.0f ? narrow_weight : 1.0f) *
+                    (narrow + left_out(world, open, n) / weight);
+    }
 
     const float close_weight = (1.0f - openness - kMaskCloseFrom) / kMaskCloseRange;
     if (!(world.settings.close > 0.0f && close_weight > 0.0f && openness > 0.0f))
