@@ -251,10 +251,13 @@ SURFELAO_MASK_INLINE float left_out(const MaskWorld& world, const std::uint32_t*
 {
     const MaskRaster& raster = *world.raster;
     const float graze = world.settings.graze;
-    alignas(64) std::uint32_t strip[kMaskWords], next[kMaskWords];
+    alignas(64) std::uint32_t strip[kMaskWords] = {}, next[kMaskWords] = {};
     for (int face = 0; face < kMaskFaces; ++face) {
         const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
         const int w = kMaskFaceWords * face;
+        // most faces of a closed place have no open bit
+        if (bits(nonzero(load(open + w))) == 0)
+            continue;
         const float na = face % 2 == 0 ? n[a] : -n[a];
         const Int16 higher = cone_bits(raster, na, n[u], n[v], graze);
         const Int16 highest = cone_bits(raster, na, n[u], n[v], kMaskGrazeAbove * graze);
