@@ -10,26 +10,46 @@
 namespace surfelao::SURFELAO_MASK_ISA {
 namespace {
 
-/// A clear bit is a crack between two patches where its neighbours left and right are set, or those
-/// above and below, both of the two nearest in direction, and a sheet set one of them. No
-/// half-plane, nor any convex shape, is changed by that. m: set bits; sheets: what of it sheets
-/// set.
-SURFELAO_MASK_INLINE Int16 fill(const MaskRaster& raster, Int16 m, Int16 sheets)
+/// Of each bit's neighbours left and right, and of those above and below, of which each is the two
+/// nearest in direction.
+struct Beside {
+    Int16 sides, stacked;
+};
+
+SURFELAO_MASK_INLINE Beside all_beside(const MaskRaster& raster, Int16 m)
 {
+    const Int16 low = from_below(m), high = from_above(m);
     const Bool16 low_right = nonzero(load(raster.below_is_right));
     const Bool16 high_right = nonzero(load(raster.above_is_right));
-    const auto pair = [](Int16 row, Bool16 right, auto join) {
-        return join(row, select(right, shift_left<1>(row), shift_right<1>(row)));
-    };
-    const auto both = [](Int16 a, Int16 b) { return a & b; };
-    const auto either = [](Int16 a, Int16 b) { return a | b; };
-    const Int16 sides = shift_left<1>(m) & shift_right<1>(m);
-    const Int16 sheet_sides = shift_left<1>(sheets) | shift_right<1>(sheets);
-    const Int16 stacked =
-        pair(from_below(m), low_right, both) & pair(from_above(m), high_right, both);
-    const Int16 sheet_stacked =
-        pair(from_below(sheets), low_right, either) | pair(from_above(sheets), high_right, either);
-    return m | (sides & sheet_sides) | (stacked & sheet_stacked);
+    return {shift_left<1>(m) & shift_right<1>(m),
+            low & select(low_right, shift_left<1>(low), shift_right<1>(low)) & high &
+                select(high_right, shift_left<1>(high), shift_right<1>(high))};
+}
+
+SURFELAO_MASK_INLINE Beside any_beside(const MaskRaster& raster, Int16 m)
+{
+    const Int16 low = from_below(m), high = from_above(m);
+    const Bool16 low_right = nonzero(load(raster.below_is_right));
+    const Bool16 high_right = nonzero(load(raster.above_is_right));
+    return {shift_left<1>(m) | shift_right<1>(m),
+            low | select(low_right, shift_left<1>(low), shift_right<1>(low)) | high |
+                select(high_right, shift_left<1>(high), shift_right<1>(high))};
+}
+
+/// A clear bit is a crack between two patches where its neighbours left and right are set, or those
+/// above and below, and a sheet set one of them. No half-plane, nor any convex shape, is changed by
+/// that. m: set bits; sheets: what of it sheets set.
+SURFELAO_MASK_INLINE Int16 fill(const MaskRaster& raster, Int16 m, Int16 sheets)
+{
+    const Beside set = all_beside(raster, m), by_sheets = any_beside(raster, sheets);
+    return m | (set.sides & by_sheets.sides) | (set.stacked & by_sheets.stacked);
+}
+
+/// The bits that are a crack, if clear, wherever they are: all of their neighbours are set.
+SURFELAO_MASK_INLINE Int16 pinholes(const MaskRaster& raster, Int16 m, Int16 sheets)
+{
+    const Beside set = all_beside(raster, m), by_sheets = any_beside(raster, sheets);
+    return set.sides & set.stacked & (by_sheets.sides | by_sheets.stacked);
 }
 
 /// Of the open bits those that are no cracks: what filling has left open and what touches it. A

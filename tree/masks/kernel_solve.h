@@ -272,6 +272,23 @@ SURFELAO_MASK_INLINE float left_out(const MaskWorld& world, const std::uint32_t*
     return more > 0.0f ? more : 0.0f;
 }
 
+/// Takes the pinholes out of the open bits. Returns their weight.
+SURFELAO_MASK_INLINE float take_pinholes(const MaskRaster& raster, const std::uint32_t* mask,
+                                         const std::uint32_t* above, const float* n,
+                                         std::uint32_t* open)
+{
+    alignas(64) std::uint32_t taken[kMaskWords];
+    Int16 any = all(0u);
+    for (int w = 0; w < kMaskFaces * kMaskFaceWords; w += kLanes) {
+        const Int16 closed = load(mask + w) | ~load(above + w);
+        const Int16 pins = ~closed & pinholes(raster, closed, load(mask + kMaskWords + w));
+        store(taken + w, pins);
+        store(open + w, load(open + w) & ~pins);
+        any = any | pins;
+    }
+    return bits(nonzero(any)) != 0 ? first_moments(raster, taken).along(n) : 0.0f;
+}
+
 /// How much of the sky of one receiver with normal n is open, between 0 and 1 to rounding, cracks
 /// counted as closed where much is covered. A sky smaller than a bit is open. weight: of `above`.
 /// `open` becomes the bits that count as open.
@@ -284,9 +301,16 @@ SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32
     if (!(weight > 0.0f))
         return 1.0f;
     const float drawn = first_moments(raster, open).along(n) / weight;
-    const float fill_weight = (1.0f - drawn - world.settings.fill_from) / kMaskFillRange;
-    if (!(world.settings.fill && fill_weight > 0.0f && drawn > 0.0f))
+    if (!(world.settings.fill && drawn > 0.0f))
         return drawn;
+    const float fill_weight = (1.0f - drawn - world.settings.fill_from) / kMaskFillRange;
+    float openness = drawn;
+    if (fill_weight < 1.0f) {
+        const float share = fill_weight > 0.0f ? 1.0f - fill_weight : 1.0f;
+        openness -= share * take_pinholes(raster, mask, above, n, open) / weight;
+    }
+    if (!(fill_weight > 0.0f))
+        return openness;
 
     alignas(64) std::uint32_t filled[kMaskWords];
     // what cracks are worth; beside_all: beside narrow clusters too
@@ -302,7 +326,7 @@ SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32
     };
     const float fill_share = (fill_weight < 1.0f ? fill_weight : 1.0f) * kMaskFillShare;
     const float cracks = cracks_of(false);
-    float openness = drawn - fill_share * cracks;
+    openness -= fill_share * cracks;
 
     const float narrow_weight = (1.0f - openness - kMaskNarrowFrom) / kMaskNarrowRange;
     if (narrow_weight > 0.0f && openness > 0.0f) {
