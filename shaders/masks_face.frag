@@ -12,7 +12,7 @@
 //            u_high_words0, u_high_words1, u_high_sheets0, u_high_sheets1
 //                              the same for half 1
 //            u_fill            0: as drawn is all there is
-//            u_graze           MaskSettings::graze
+//            u_graze           MaskSettings::graze; within a limit 0
 //            u_moments         RGBA32F, 3 texels a nibble, row by row: what a set bit of it is worth
 //                              (MaskRaster of tree/masks/raster.h). First moments 1 u v of the lower
 //                              two bits, second moment 1 | first of the upper two, second u |

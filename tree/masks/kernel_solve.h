@@ -251,6 +251,9 @@ SURFELAO_MASK_INLINE float left_out(const MaskWorld& world, const std::uint32_t*
 {
     const MaskRaster& raster = *world.raster;
     const float graze = world.settings.graze;
+    // within a limit a ceiling ends above the horizon
+    if (world.settings.limits.distance[0] < __builtin_inff())
+        return 0.0f;
     alignas(64) std::uint32_t strip[kMaskWords] = {}, next[kMaskWords] = {};
     for (int face = 0; face < kMaskFaces; ++face) {
         const int a = face / 2, u = (a + 1) % 3, v = (a + 2) % 3;
