@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -246,6 +247,7 @@ private:
             worth.set("u_max_distance", std::min(limit, std::numeric_limits<float>::max()));
         }
         worth.set("u_fill", settings_.fill ? 1 : 0);
+        worth.set("u_graze", std::isfinite(limit) ? 0.0f : settings_.graze);
         worth.set("u_moments", scene_.moments);
         worth.set("u_receivers", grid.receivers());
         worth.set("u_slot_count", grid.slot_count());
@@ -277,7 +279,7 @@ private:
         for (std::size_t i = 0; i < std::size(inputs); ++i)
             answer.set(inputs[i], batch.sums.color(i));
         answer.set("u_close", settings_.close);
-        answer.set("u_fill_from", settings_.fill_from);
+        answer.set("u_fill_from", settings_.fill ? settings_.fill_from : 1.0f);
         answer.set("u_weight", settings_.limits.weight[k]);
         answer.set("u_slot_count", grid.slot_count());
         answer.set("u_blocks_per_row", grid.blocks_per_row());

@@ -12,6 +12,7 @@
 //            u_high_words0, u_high_words1, u_high_sheets0, u_high_sheets1
 //                              the same for half 1
 //            u_fill            0: as drawn is all there is
+//            u_graze           MaskSettings::graze; within a limit 0
 //            u_moments         RGBA32F, 3 texels a nibble, row by row: what a set bit of it is worth
 //                              (MaskRaster of tree/masks/raster.h). First moments 1 u v of the lower
 //                              two bits, second moment 1 | first of the upper two, second u |
@@ -25,11 +26,12 @@
 // Writes     out_share         RGBA32F: integral of n.w over the hemisphere, over the open bits, over
 //                              those left open by filling, over those left open by closing
 //            out_bent, out_bent_filled, out_bent_closed
-//                              RGBA32F: integral of w (n.w) over the same bits, mask frame | 0; of
-//                              out_bent_filled: integral of n.w over the bits left open by filling
-//                              beside narrow clusters too
+//                              RGBA32F: integral of w (n.w) over the same bits, of the first without
+//                              pinholes, mask frame | integral of n.w over pinholes | over what filling
+//                              beside narrow clusters too leaves open | over that in the grazing strip,
+//                              less the same share of the strip above it
 // CPU twin   first_moments and second_moments in tree/masks/kernel_sums.h, horizon and take_ground in
-//            _raster.h, fill and close in _cracks.h
+//            _raster.h, pinholes, fill, openings and close in _cracks.h
 #ifndef GROUND
 #define GROUND 0
 #endif
@@ -43,6 +45,7 @@ uniform usampler2D u_high_words1;
 uniform usampler2D u_high_sheets0;
 uniform usampler2D u_high_sheets1;
 uniform int u_fill;
+uniform float u_graze;
 uniform samplerBuffer u_moments;
 uniform samplerBuffer u_receivers;
 uniform int u_slot_count;
@@ -86,12 +89,12 @@ void add(inout Sums sums, int y, uint bits)
 
 float along(Sums sums, vec3 n) { return dot(sums.first, n); }
 
-vec4 bent(Sums sums, vec3 n)
+vec4 bent(Sums sums, vec3 n, float share)
 {
     vec4 a = sums.second;
     vec2 b = sums.rest;
     vec3 turned = vec3(dot(a.xyz, n), dot(vec3(a.y, a.w, b.x), n), dot(vec3(a.z, b.x, b.y), n));
-    return vec4(turned * u_face, 0.0);
+    return vec4(turned * u_face, share);
 }
 
 float shift_of(int y) { return kRowShift[y >> 2][y & 3]; }
@@ -108,6 +111,23 @@ uint grown_across(uint rows[18], int y)
     uint low  = rows[y];
     uint high = rows[y + 2];
     return rows[y + 1] | low | beside(low, y - 1, y) | high | beside(high, y + 1, y);
+}
+
+// Of the neighbours of row y's bits those left and right, and those below and above, of which each
+// is the two nearest in direction. rows: as in main.
+uint all_sides(uint rows[18], int y) { return (rows[1 + y] << 1) & (rows[1 + y] >> 1); }
+uint any_sides(uint rows[18], int y) { return (rows[1 + y] << 1) | (rows[1 + y] >> 1); }
+uint all_stacked(uint rows[18], int y)
+{
+    uint low  = rows[y];
+    uint high = rows[2 + y];
+    return low & beside(low, y - 1, y) & high & beside(high, y + 1, y);
+}
+uint any_stacked(uint rows[18], int y)
+{
+    uint low  = rows[y];
+    uint high = rows[2 + y];
+    return low | beside(low, y - 1, y) | high | beside(high, y + 1, y);
 }
 
 // What filling leaves open in row y and what touches it: a notch in the rim of an opening is most
@@ -164,13 +184,18 @@ void main()
         }
     }
     Sums whole = kNothing;
-    Sums open  = kNothing;  // of the first, only `first` is of use
+    Sums open  = kNothing;  // of these two, only `first` is of use
+    Sums rest  = kNothing;  // without pinholes
     for (int y = 0; y < 16; ++y) {
+        uint pinholes = u_fill == 0 ? 0u
+                                    : all_sides(closed, y) & all_stacked(closed, y) &
+                                          (any_sides(sheets, y) | any_stacked(sheets, y));
         add(whole, y, above[1 + y]);
         add(open, y, ~closed[1 + y]);
+        add(rest, y, ~closed[1 + y] & ~pinholes);
     }
     out_share = vec4(along(whole, n), vec3(along(open, n)));
-    out_bent = out_bent_filled = out_bent_closed = bent(open, n);
+    out_bent  = bent(rest, n, along(open, n) - along(rest, n));
     if (u_fill == 0)
         return;
 
@@ -178,15 +203,11 @@ void main()
     uint filled[18], all_filled[18];  // the second: whoever has set them
     filled[0] = filled[17] = all_filled[0] = all_filled[17] = 0u;
     for (int y = 0; y < 16; ++y) {
-        uint m    = closed[1 + y];
-        uint l    = sheets[1 + y];
-        uint low  = closed[y];
-        uint high = closed[2 + y];
-        uint sides   = (m << 1) & (m >> 1);
-        uint stacked = low & beside(low, y - 1, y) & high & beside(high, y + 1, y);
-        uint near    = sheets[y] | beside(sheets[y], y - 1, y) | sheets[2 + y] |
-                    beside(sheets[2 + y], y + 1, y);
-        filled[1 + y]     = m | (sides & ((l << 1) | (l >> 1))) | (stacked & near);
+        uint m       = closed[1 + y];
+        uint sides   = all_sides(closed, y);
+        uint stacked = all_stacked(closed, y);
+        filled[1 + y] =
+            m | (sides & any_sides(sheets, y)) | (stacked & any_stacked(sheets, y));
         all_filled[1 + y] = m | sides | stacked;
     }
     // cracks of two bits: grown by one bit along the rows, then across them, and shrunk again, where
@@ -194,29 +215,29 @@ void main()
     uint grown[18], wide_sheets[18];
     grown[0] = grown[17] = wide_sheets[0] = wide_sheets[17] = 0u;
     for (int y = 0; y < 16; ++y) {
-        uint l            = sheets[1 + y];
-        grown[1 + y]      = grown_across(filled, y);
-        wide_sheets[1 + y] = l | (l << 1) | (l >> 1);
+        grown[1 + y]       = grown_across(filled, y);
+        wide_sheets[1 + y] = sheets[1 + y] | any_sides(sheets, y);
     }
-    Sums cracks     = kNothing;
-    Sums all_cracks = kNothing;
-    Sums closing    = kNothing;
+    // what is left open by filling, by filling beside all, of that at the horizon and above, by closing
+    Sums openings = kNothing, left = kNothing, left_low = kNothing, left_next = kNothing;
+    Sums unclosed = kNothing;
     for (int y = 0; y < 16; ++y) {
-        uint m       = filled[1 + y];
-        uint wide    = m | (m << 1) | (m >> 1);
-        uint rows    = wide & (wide << 1) & (wide >> 1);
-        uint low     = grown[y];
-        uint high    = grown[2 + y];
-        uint columns = grown[1 + y] & low & beside(low, y - 1, y) & high & beside(high, y + 1, y);
-        add(cracks, y, ~closed[1 + y] & ~rim_of(filled, y));
-        add(all_cracks, y, ~closed[1 + y] & ~rim_of(all_filled, y));
-        add(closing, y, (m | ((rows | columns) & grown_across(wide_sheets, y))) & ~closed[1 + y]);
+        uint m        = filled[1 + y];
+        uint wide     = m | (m << 1) | (m >> 1);
+        uint rows     = wide & (wide << 1) & (wide >> 1);
+        uint columns  = grown[1 + y] & all_stacked(grown, y);
+        uint clear    = ~closed[1 + y] & rim_of(all_filled, y);
+        uint higher   = cone_bits(n, u_graze, y >> 2)[y & 3];
+        uint highest  = cone_bits(n, kMaskGrazeAbove * u_graze, y >> 2)[y & 3];
+        add(openings, y, ~closed[1 + y] & rim_of(filled, y));
+        add(left, y, clear);
+        add(left_low, y, clear & ~higher);
+        add(left_next, y, clear & higher & ~highest);
+        add(unclosed, y, ~(m | ((rows | columns) & grown_across(wide_sheets, y))));
     }
-    Sums rest = Sums(open.first - cracks.first, open.second - cracks.second,
-                     open.rest - cracks.rest);
-    out_share.z     = along(rest, n);
-    out_bent_filled = vec4(bent(rest, n).xyz, along(open, n) - along(all_cracks, n));
-    rest = Sums(open.first - closing.first, open.second - closing.second, open.rest - closing.rest);
-    out_share.w     = along(rest, n);
-    out_bent_closed = bent(rest, n);
+    out_share.zw    = vec2(along(openings, n), along(unclosed, n));
+    out_bent_filled = bent(openings, n, along(left, n));
+    // a strip up to the sine g has a share of g^2 of the hemisphere
+    float next      = along(left_next, n) / (kMaskGrazeAbove * kMaskGrazeAbove - 1.0);
+    out_bent_closed = bent(unclosed, n, along(left_low, n) - next);
 }

@@ -3,8 +3,8 @@
 #include "receiver_grid.glsl"
 #include "rows.glsl"
 // masks_result.frag: occlusion and bent normal of each slot from the sums over all faces. Where much
-// is covered cracks count as filled, by degrees; where nearly all is, those beside narrow clusters
-// and those of two bits too.
+// is covered cracks count as filled, by degrees; where nearly all is, those beside narrow clusters,
+// those of two bits and what was left out as grazing too.
 //
 // Vertices   fullscreen.vert, over the part of the rows of all slots (rows.glsl) that is computed
 // Drawn by   gpu/gpu_masks.cpp, once per distance limit, added by blending
@@ -54,21 +54,26 @@ void main()
     shares = share.x > 0.0 ? shares : vec3(1.0);
 #endif
     float openness = shares.x;
-    out_result.xyz = texelFetch(u_bent, pixel, 0).xyz;
+    vec4  bare     = texelFetch(u_bent, pixel, 0);
+    out_result.xyz = bare.xyz;
 
-    float fill = (1.0 - openness - u_fill_from) / kMaskFillRange;
-    if (fill > 0.0 && openness > 0.0) {
+    float fill = clamp((1.0 - openness - u_fill_from) / kMaskFillRange, 0.0, 1.0);
+    if (openness > 0.0 && bare.w > 0.0)
+        openness -= (1.0 - fill) * bare.w / share.x;
+    if (fill > 0.0 && shares.x > 0.0) {
         vec4  filled     = texelFetch(u_bent_filled, pixel, 0);
-        float fill_share = min(fill, 1.0) * kMaskFillShare;
+        vec4  closed     = texelFetch(u_bent_closed, pixel, 0);
+        float fill_share = fill * kMaskFillShare;
         openness -= fill_share * (shares.x - shares.y);
         out_result.xyz = filled.xyz;
         float narrow = (1.0 - openness - kMaskNarrowFrom) / kMaskNarrowRange;
         if (narrow > 0.0 && openness > 0.0)
-            openness -= min(narrow, 1.0) * fill_share * (shares.y - filled.w / share.x);
+            openness -= min(narrow, 1.0) * (fill_share * (shares.y - filled.w / share.x) +
+                                            max(closed.w, 0.0) / share.x);
         float close = (1.0 - openness - kMaskCloseFrom) / kMaskCloseRange;
         if (u_close > 0.0 && close > 0.0 && openness > 0.0) {
             openness += min(close, 1.0) * u_close * min(shares.z - openness, 0.0);
-            out_result.xyz = texelFetch(u_bent_closed, pixel, 0).xyz;
+            out_result.xyz = closed.xyz;
         }
     }
     openness = clamp(openness, 0.0, 1.0);

@@ -10,27 +10,55 @@
 namespace surfelao::SURFELAO_MASK_ISA {
 namespace {
 
-/// A clear bit is a crack between two patches where its neighbours left and right are set, or those
-/// above and below, both of the two nearest in direction, and a sheet set one of them. No
-/// half-plane, nor any convex shape, is changed by that. m: set bits; sheets: what of it sheets
-/// set.
-SURFELAO_MASK_INLINE Int16 fill(const MaskRaster& raster, Int16 m, Int16 sheets)
+/// Of each bit's neighbours left and right, and of those above and below, of which each is the two
+/// nearest in direction.
+struct Beside {
+    Int16 sides, stacked;
+};
+
+/// Rows below and above within the face, and what of them is the second nearest.
+struct Stacked {
+    Int16 low, low_side, high, high_side;
+};
+
+SURFELAO_MASK_INLINE Stacked stacked(const MaskRaster& raster, Int16 m)
 {
+    const Int16 low = from_below(m) & load(raster.has_below);
+    const Int16 high = from_above(m) & load(raster.has_above);
     const Bool16 low_right = nonzero(load(raster.below_is_right));
     const Bool16 high_right = nonzero(load(raster.above_is_right));
-    const auto pair = [](Int16 row, Bool16 right, auto join) {
-        return join(row, select(right, shift_left<1>(row), shift_right<1>(row)));
-    };
-    const auto both = [](Int16 a, Int16 b) { return a & b; };
-    const auto either = [](Int16 a, Int16 b) { return a | b; };
-    const Int16 below = load(raster.has_below), above = load(raster.has_above);
-    const Int16 sides = shift_left<1>(m) & shift_right<1>(m);
-    const Int16 sheet_sides = shift_left<1>(sheets) | shift_right<1>(sheets);
-    const Int16 stacked = pair(from_below(m) & below, low_right, both) &
-                          pair(from_above(m) & above, high_right, both);
-    const Int16 sheet_stacked = pair(from_below(sheets) & below, low_right, either) |
-                                pair(from_above(sheets) & above, high_right, either);
-    return m | (sides & sheet_sides) | (stacked & sheet_stacked);
+    return {low, select(low_right, shift_left<1>(low), shift_right<1>(low)), high,
+            select(high_right, shift_left<1>(high), shift_right<1>(high))};
+}
+
+SURFELAO_MASK_INLINE Beside all_beside(const MaskRaster& raster, Int16 m)
+{
+    const Stacked near = stacked(raster, m);
+    return {shift_left<1>(m) & shift_right<1>(m),
+            near.low & near.low_side & near.high & near.high_side};
+}
+
+SURFELAO_MASK_INLINE Beside any_beside(const MaskRaster& raster, Int16 m)
+{
+    const Stacked near = stacked(raster, m);
+    return {shift_left<1>(m) | shift_right<1>(m),
+            near.low | near.low_side | near.high | near.high_side};
+}
+
+/// A clear bit is a crack between two patches where its neighbours left and right are set, or those
+/// above and below, and a sheet set one of them. No half-plane, nor any convex shape, is changed by
+/// that. m: set bits; sheets: what of it sheets set.
+SURFELAO_MASK_INLINE Int16 fill(const MaskRaster& raster, Int16 m, Int16 sheets)
+{
+    const Beside set = all_beside(raster, m), by_sheets = any_beside(raster, sheets);
+    return m | (set.sides & by_sheets.sides) | (set.stacked & by_sheets.stacked);
+}
+
+/// The bits that are a crack, if clear, wherever they are: all of their neighbours are set.
+SURFELAO_MASK_INLINE Int16 pinholes(const MaskRaster& raster, Int16 m, Int16 sheets)
+{
+    const Beside set = all_beside(raster, m), by_sheets = any_beside(raster, sheets);
+    return set.sides & set.stacked & (by_sheets.sides | by_sheets.stacked);
 }
 
 /// Of the open bits those that are no cracks: what filling has left open and what touches it. A
@@ -47,20 +75,13 @@ SURFELAO_MASK_INLINE Int16 openings(const MaskRaster& raster, Int16 open, Int16 
 /// one bit along the rows, then across them, and shrunk again. Only beside bits that sheets set.
 SURFELAO_MASK_INLINE Int16 close(const MaskRaster& raster, Int16 m, Int16 sheets)
 {
-    const Bool16 low_right = nonzero(load(raster.below_is_right));
-    const Bool16 high_right = nonzero(load(raster.above_is_right));
-    const auto beside = [](Int16 row, Bool16 right) {
-        return select(right, shift_left<1>(row), shift_right<1>(row));
-    };
     const auto grown_across = [&](Int16 x) {
-        const Int16 low = from_below(x) & load(raster.has_below);
-        const Int16 high = from_above(x) & load(raster.has_above);
-        return x | low | beside(low, low_right) | high | beside(high, high_right);
+        const Stacked near = stacked(raster, x);
+        return x | near.low | near.low_side | near.high | near.high_side;
     };
     const auto shrunk_across = [&](Int16 x) {
-        const Int16 low = from_below(x) & load(raster.has_below);
-        const Int16 high = from_above(x) & load(raster.has_above);
-        return x & low & beside(low, low_right) & high & beside(high, high_right);
+        const Stacked near = stacked(raster, x);
+        return x & near.low & near.low_side & near.high & near.high_side;
     };
     const Int16 wide = m | shift_left<1>(m) | shift_right<1>(m);
     const Int16 rows = wide & shift_left<1>(wide) & shift_right<1>(wide);

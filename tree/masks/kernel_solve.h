@@ -245,6 +245,53 @@ void draw_lists(const MaskWorld& world, const MaskScratch& scratch, const Receiv
     streams.finish();
 }
 
+/// How much of the open bits is open only because what grazes was left out: what of the grazing
+/// strip is open beyond the share of the strip above it.
+SURFELAO_MASK_INLINE float left_out(const MaskWorld& world, const std::uint32_t* open,
+                                    const float* n)
+{
+    const MaskRaster& raster = *world.raster;
+    const float graze = world.settings.graze;
+    // within a limit a ceiling ends above the horizon
+    if (world.settings.limits.distance[0] < __builtin_inff())
+        return 0.0f;
+    alignas(64) std::uint32_t strip[kMaskWords] = {}, next[kMaskWords] = {};
+    for (int w = 0; w < raster.words; w += kLanes) {
+        // most faces of a closed place have no open bit
+        if (bits(nonzero(load(open + w))) == 0)
+            continue;
+        const int a = w / (2 * raster.rows), u = (a + 1) % 3, v = (a + 2) % 3;
+        const Float16 na = all(n[a]) * load(raster.side[w / kLanes % 2]);
+        const Int16 higher = cone_bits(raster, na, n[u], n[v], graze);
+        const Int16 highest = cone_bits(raster, na, n[u], n[v], kMaskGrazeAbove * graze);
+        store(strip + w, load(open + w) & ~higher);
+        store(next + w, load(open + w) & higher & ~highest);
+    }
+    First of_strip, of_next;
+    first_moments(raster, strip, next, of_strip, of_next);
+    // a strip up to the sine g has a share of g^2 of the hemisphere
+    constexpr float kNext = kMaskGrazeAbove * kMaskGrazeAbove - 1.0f;
+    const float more = of_strip.along(n) - of_next.along(n) / kNext;
+    return more > 0.0f ? more : 0.0f;
+}
+
+/// Takes the pinholes out of the open bits. Returns their weight.
+SURFELAO_MASK_INLINE float take_pinholes(const MaskRaster& raster, const std::uint32_t* mask,
+                                         const std::uint32_t* above, const float* n,
+                                         std::uint32_t* open)
+{
+    alignas(64) std::uint32_t taken[kMaskWords];
+    Int16 any = all(0u);
+    for (int w = 0; w < raster.words; w += kLanes) {
+        const Int16 closed = load(mask + w) | ~load(above + w);
+        const Int16 pins = ~closed & pinholes(raster, closed, load(mask + kMaskWords + w));
+        store(taken + w, pins);
+        store(open + w, load(open + w) & ~pins);
+        any = any | pins;
+    }
+    return bits(nonzero(any)) != 0 ? first_moments(raster, taken).along(n) : 0.0f;
+}
+
 /// How much of the sky of one receiver with normal n is open, between 0 and 1 to rounding, cracks
 /// counted as closed where much is covered. A sky smaller than a bit is open. weight: of `above`.
 /// `open` becomes the bits that count as open.
@@ -257,9 +304,16 @@ SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32
     if (!(weight > 0.0f))
         return 1.0f;
     const float drawn = first_moments(raster, open).along(n) / weight;
-    const float fill_weight = (1.0f - drawn - world.settings.fill_from) / kMaskFillRange;
-    if (!(world.settings.fill && fill_weight > 0.0f && drawn > 0.0f))
+    if (!(world.settings.fill && drawn > 0.0f))
         return drawn;
+    const float fill_weight = (1.0f - drawn - world.settings.fill_from) / kMaskFillRange;
+    float openness = drawn;
+    if (fill_weight < 1.0f) {
+        const float share = fill_weight > 0.0f ? 1.0f - fill_weight : 1.0f;
+        openness -= share * take_pinholes(raster, mask, above, n, open) / weight;
+    }
+    if (!(fill_weight > 0.0f))
+        return openness;
 
     alignas(64) std::uint32_t filled[kMaskWords];
     // what cracks are worth; beside_all: beside narrow clusters too
@@ -275,12 +329,14 @@ SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32
     };
     const float fill_share = (fill_weight < 1.0f ? fill_weight : 1.0f) * kMaskFillShare;
     const float cracks = cracks_of(false);
-    float openness = drawn - fill_share * cracks;
+    openness -= fill_share * cracks;
 
     const float narrow_weight = (1.0f - openness - kMaskNarrowFrom) / kMaskNarrowRange;
-    if (narrow_weight > 0.0f && openness > 0.0f)
-        openness -=
-            (narrow_weight < 1.0f ? narrow_weight : 1.0f) * fill_share * (cracks_of(true) - cracks);
+    if (narrow_weight > 0.0f && openness > 0.0f) {
+        const float narrow = fill_share * (cracks_of(true) - cracks);
+        openness -= (narrow_weight < 1.0f ? narrow_weight : 1.0f) *
+                    (narrow + left_out(world, open, n) / weight);
+    }
 
     const float close_weight = (1.0f - openness - kMaskCloseFrom) / kMaskCloseRange;
     if (!(world.settings.close > 0.0f && close_weight > 0.0f && openness > 0.0f))
