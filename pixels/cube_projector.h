@@ -19,13 +19,11 @@
 ///
 ///     shown = sum over k of (w_k - w_k+1) * blend of the maps 1 to k
 ///
-/// Where all that answer weigh less than a quarter, the pixel's own answer has the rest. It has
-/// half where no map is sure of itself: where less than .75 of the bilinear weight counts, beside
-/// edges, or cos < .05, in texels far longer than what they show. Of all pairs of maps and places
-/// that are off by more than .06, these are six of seven in a room and four of five on the bunny,
-/// and when such a map came or went alone, that showed: of a million changes along a path with
-/// three maps at a time 50 were beyond 2 of 255 in the room and 7 on the bunny. One pixel in a
-/// hundred more is asked itself; .5 or .9 of the weight and cos < .1 do as well.
+/// Where all that answer weigh less than a quarter, the pixel's own answer has the rest; where none
+/// of them is sure of itself, less than one: where less than .75 of the bilinear weight counts,
+/// beside edges, or cos < .05, in texels far longer than what they show. These are most of the
+/// pairs of maps and places that are off by more than .06; when such a map came or went alone, that
+/// showed: four times as fast as its weight.
 #pragma once
 
 #include "pixels/cube_map.h"

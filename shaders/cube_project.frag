@@ -35,7 +35,6 @@ const float kLeastWeight = 0.02;  // of the bilinear weights
 const float kWhole = 0.25;        // weight of sure maps that need no help
 const float kSureWeight = 0.75;   // of the bilinear weights
 const float kSureCosine = 0.05;   // to the centre
-const float kUnsureShare = 0.5;   // what others count at most
 
 vec3 in_world(vec3 v) { return v.x * u_right + v.y * u_up + v.z * u_forward; }
 
@@ -116,6 +115,5 @@ void main()
             sum += texelFetch(u_maps, 2 * k + 1).x * vec3(blend.x / blend.y, 1.0, blend.z / blend.y);
     }
     if (sum.y > 0.0)
-        out_answer = vec2(sum.x / sum.y,
-                          min(1.0, sum.z / kWhole + kUnsureShare * (sum.y - sum.z)));
+        out_answer = vec2(sum.x / sum.y, min(1.0, sum.z / kWhole + sum.y - sum.z));
 }

@@ -294,14 +294,15 @@ TEST(CubeProjector, HolesAreSolvedAtTheirOwnPixels)
     CubeAnswer none = answer_from_maps(view, projector);
     EXPECT_EQ(none.holes, view.seen().pixels.size());
     EXPECT_EQ(none.coverage(), 0.0);
-    projector.add(scene.map({0.7f, 0.1f, 0.3f}, settings));
+    projector.add(scene.map({0.7f, 0.1f, 0.3f}, settings), 0.125f);
     CubeAnswer one = answer_from_maps(view, projector);
     EXPECT_GT(one.coverage(), 0.2);
     EXPECT_LT(one.coverage(), 0.9);
     const std::vector<float> told = one.occlusion;
+    EXPECT_GT(std::ranges::count(one.share, 0.5f), 100);
+    EXPECT_GT(std::ranges::count(one.share, 0.125f), 0) << "where the map is not sure of itself";
     EXPECT_EQ(std::ranges::count_if(one.share, [](float share) { return share == 0.0f; }),
               static_cast<std::ptrdiff_t>(one.holes));
-    EXPECT_GT(std::ranges::count(one.share, 0.5f), 0) << "a map that is not sure has half";
     solve_holes(one, view, scene.world(), settings);
     const std::vector<Occlusion> direct =
         answer(view, scene.occluders, scene.screen, settings.engine, settings.definition).values;

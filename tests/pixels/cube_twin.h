@@ -90,7 +90,7 @@ inline TwinAnswer twin_answer(std::span<const CubeMap> maps, std::span<const Pro
     }
     if (weight == 0.0)
         return {};
-    const double share = sure / 0.25 + 0.5 * (weight - sure);
+    const double share = sure / 0.25 + weight - sure;
     return {static_cast<float>(shown / weight), static_cast<float>(std::min(1.0, share))};
 }
 
