@@ -353,6 +353,8 @@ BakeReport bake(const BakeSettings& settings, const StageProgress& progress)
 SceneBake bake_scene(Scene scene, std::span<const Scene> others, const BakeSettings& settings,
                      const StageProgress& progress)
 {
+    if (!settings.output.empty())
+        check_before_work(settings, true);
     enter(progress, "read");
     Stopwatch watch;
     return bake_read(std::move(scene), others, settings, watch, progress);

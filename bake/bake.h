@@ -162,8 +162,9 @@ struct SceneBake {
     std::optional<MapBake> map;
 };
 
-/// bake() of a scene at hand, which writes nothing: settings.input and .output are empty. others:
-/// they occlude too (PartChoice::occluders). For vertices, points and maps. Throws as bake().
+/// bake() of a scene at hand. others: they occlude too (PartChoice::occluders). Where
+/// settings.output is empty, nothing is written; settings.input is for marks alone. For vertices,
+/// points and maps. Throws as bake().
 [[nodiscard]] SceneBake bake_scene(Scene scene, std::span<const Scene> others,
                                    const BakeSettings& settings,
                                    const StageProgress& progress = {});

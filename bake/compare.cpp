@@ -186,7 +186,8 @@ void take_scene(Scene scene, const CompareSettings& settings, Comparison& compar
     check_target(scene, settings.target, settings.parts);
     if (!scene.triangles.empty()) {
         comparison.mesh = std::make_shared<const Mesh>(
-            mesh_of(std::move(scene), settings.target.normals, settings.parts, settings.reading));
+            mesh_of(std::move(scene), read_others(settings.parts, settings.reading),
+                    settings.target.normals, settings.parts));
         return;
     }
     require(!settings.texels, scene.name + ": has points only, no faces: --at points");

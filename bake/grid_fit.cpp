@@ -13,9 +13,10 @@ namespace {
 
 /// In each cube that the surface cuts, inside or not. Mean error of harmonics and of cones over an
 /// open and a thin scene of the choosing half: .0162 and .0186 without, .0149 and .0175 with two,
-/// .0147 and .0173 with four, which cost twice as much. Bunny, 32 cells: .0105 and .0152; .0094 and
-/// .0147; .0088 and .0143.
-constexpr int kPlacesACube = 2;
+/// .0147 and .0173 with four. Told from two to four by others, 32 cells: bunny .0095 and .0144 to
+/// .0085 and .0137, spot .0104 and .0160 to .0099 and .0157, skull and boat the same, wingnut .0120
+/// and .0189 to .0130 and .0194.
+constexpr int kPlacesACube = 4;
 
 /// What a cell's own value counts, in places: so little that it decides only where they leave it
 /// free. With four places, the same scenes: .02 .0146 and .0172, .5 .0150 and .0176. To fit the

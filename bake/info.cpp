@@ -275,7 +275,7 @@ Info inspect(const std::filesystem::path& input, const Progress& progress,
         look_at_points(scene, progress, info);
         return info;
     }
-    const auto mesh = std::make_shared<const Mesh>(mesh_of(std::move(scene), {}, {}, reading));
+    const auto mesh = std::make_shared<const Mesh>(mesh_of(std::move(scene), {}, {}, {}));
     const VertexTarget target(mesh, {});
     look_at(*mesh, info);
     // the bake is the first half of the work, the rays are the second

@@ -137,8 +137,9 @@ private:
     std::vector<std::string> first_notes(const std::vector<Occlusion>& values,
                                          const std::optional<Misfit>& misfit) const
     {
-        const Mesh mesh = mesh_of(Scene(world_.scene()), settings_.target.normals, settings_.parts,
-                                  settings_.reading, world_.frame());
+        const Mesh mesh =
+            mesh_of(Scene(world_.scene()), read_others(settings_.parts, settings_.reading),
+                    settings_.target.normals, settings_.parts, world_.frame());
         return notes_of(
             {mesh, analyse_topology(mesh.geometry), settings_.engine.definition, values, misfit});
     }

@@ -1,6 +1,5 @@
 #include "bake/moving_poses.h"
 
-#include "bake/moving_world.h"
 #include "bake/roles.h"
 
 #include <glm/geometric.hpp>
@@ -132,25 +131,6 @@ void follow_triangles(const std::vector<glm::vec3>& made_positions,
         if (length > 0.0)
             mesh.surface.normals[wedge] = glm::vec3(sums[wedge] / length);
     }
-}
-
-Box box_of_moments(const std::filesystem::path& input, std::span<const Moment> moments,
-                   const PartChoice& choice, const ReadOptions& reading)
-{
-    const Scene rest = read_rest(input, reading);
-    const Motion motion(rest, reading.moment.value_or(Moment{}).animation);
-    Roles roles = roles_of({&rest, 1}, read_occluders(choice, reading), choice).front();
-    std::vector<std::string> notes;
-    open_materials(rest, choice.clear, roles, notes);
-    const std::vector<bool> left_out = left_out_of(roles, rest.triangles.size());
-    Scene scene = rest;
-    Box box;
-    for (const Moment& moment : moments) {
-        const std::vector<PartPose> poses = motion.at(moment.seconds);
-        move_scene(rest, motion, poses, scene);
-        include(scene, poses, left_out, box);
-    }
-    return box;
 }
 
 }  // namespace surfelao

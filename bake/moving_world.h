@@ -160,12 +160,6 @@ private:
     std::size_t receiver_count_ = 0;
 };
 
-/// The box of all that is there at any of these moments: what moves is measured alike from first to
-/// last in its frame. Reads the file once. Throws as read_scene() and Motion.
-[[nodiscard]] Box box_of_moments(const std::filesystem::path& input,
-                                 std::span<const Moment> moments, const PartChoice& choice,
-                                 const ReadOptions& reading = {});
-
 /// Values at the vertices of a moving world.
 class MovingValues {
 public:

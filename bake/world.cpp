@@ -191,14 +191,12 @@ BakeWorld read_world(std::span<const std::filesystem::path> inputs, const Normal
     return make_world(read_all(inputs, reading), read_others(choice, reading), normals, choice);
 }
 
-Mesh mesh_of(Scene scene, const NormalSettings& normals, const PartChoice& choice,
-             const ReadOptions& reading, const std::optional<Frame>& frame)
+Mesh mesh_of(Scene scene, std::span<const Scene> others, const NormalSettings& normals,
+             const PartChoice& choice, const std::optional<Frame>& frame)
 {
     std::vector<Scene> input;
     input.push_back(std::move(scene));
-    return std::move(
-        make_world(std::move(input), read_others(choice, reading), normals, choice, frame)
-            .meshes.front());
+    return std::move(make_world(std::move(input), others, normals, choice, frame).meshes.front());
 }
 
 Mesh read_mesh(const std::filesystem::path& input, const NormalSettings& normals,

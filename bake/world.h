@@ -73,9 +73,10 @@ struct BakeWorld {
                                    const NormalSettings& normals, const PartChoice& choice,
                                    const ReadOptions& reading = {});
 
-/// Of a single input that was read; PartChoice::occluders are read too. frame: as make_world().
-[[nodiscard]] Mesh mesh_of(Scene scene, const NormalSettings& normals, const PartChoice& choice,
-                           const ReadOptions& reading = {}, const std::optional<Frame>& frame = {});
+/// Of a single input. others, frame: as make_world().
+[[nodiscard]] Mesh mesh_of(Scene scene, std::span<const Scene> others,
+                           const NormalSettings& normals, const PartChoice& choice,
+                           const std::optional<Frame>& frame = {});
 
 /// Of a single input.
 [[nodiscard]] Mesh read_mesh(const std::filesystem::path& input, const NormalSettings& normals,

@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/engine_options.h"
 #include "cli/frame_options.h"
+#include "cli/frame_scenes.h"
 #include "cli/grid_bake_options.h"
 #include "cli/output.h"
 #include "cli/part_options.h"
@@ -202,10 +203,10 @@ int tell_failure(const std::exception& error, std::span<BatchEntry> entries)
     return dynamic_cast<const SettingsError*>(&error) != nullptr ? kWrongUsage : kFailed;
 }
 
-/// One job, or several that are baked together; `label` stands in front of its progress. The exit
-/// code: whatever it is, the others can still be done.
+/// One job, or several that are baked together; `label` stands in front of its progress; frames:
+/// null, or those of which it is one. The exit code: whatever it is, the others can still be done.
 int run_jobs(const std::vector<BakeSettings>& settings, bool ask_before_replacing, bool overwrite,
-             const std::string& label, std::span<BatchEntry> entries)
+             const std::string& label, FrameScenes* frames, std::span<BatchEntry> entries)
 {
     try {
         for (const BakeSettings& one : settings) {
@@ -215,8 +216,14 @@ int run_jobs(const std::vector<BakeSettings>& settings, bool ask_before_replacin
                 refuse_foreign_text(one);
         }
         ProgressBar bar(label);
-        std::vector<BakeReport> reports = bake_together(
-            settings, [&](std::string_view stage, double done) { return bar.update(stage, done); });
+        const auto update = [&](std::string_view stage, double done) {
+            return bar.update(stage, done);
+        };
+        std::vector<BakeReport> reports;
+        if (frames != nullptr)
+            reports.push_back(frames->bake(settings.front(), update));
+        else
+            reports = bake_together(settings, update);
         for (std::size_t i = 0; i < reports.size(); ++i)
             entries[i].report = std::move(reports[i]);
     } catch (const Cancelled&) {
@@ -328,15 +335,17 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
         finish(options, entries, written);
         return code;
     }
-    const std::optional<Box> box = box_of_frames(frames_of(options), options.inputs.front(),
-                                                 part_choice_of(options.parts), options.reading);
+    std::optional<FrameScenes> frames;
+    if (options.frames.frames)
+        frames.emplace(options.inputs.front(), seconds_of(options.frames, options.inputs),
+                       part_choice_of(options.parts), options.reading);
     const std::size_t step = options.together ? jobs.size() : 1;
     for (std::size_t first = 0; first < jobs.size(); first += step) {
         std::vector<BakeSettings> settings;
         for (const Job& job : std::span(jobs).subspan(first, step))
             settings.push_back(settings_for(options, job));
-        if (box)
-            settings.front().frame = frame_of(*box);
+        if (frames)
+            settings.front().frame = frames->frame();
         const std::span<BatchEntry> of_run = std::span(entries).subspan(first, step);
         if (options.resume && std::ranges::all_of(settings, is_finished)) {
             for (const BatchEntry& entry : of_run)
@@ -345,7 +354,8 @@ int run(const BakeOptions& options, const std::vector<Job>& jobs)
             continue;
         }
         const int of_jobs = run_jobs(settings, ask, options.overwrite,
-                                     batch && step == 1 ? label_of(jobs, first) : "", of_run);
+                                     batch && step == 1 ? label_of(jobs, first) : "",
+                                     frames ? &*frames : nullptr, of_run);
         code = std::max(code, of_jobs);  // wrong usage is what its user can mend
         if (of_jobs != kDone)
             continue;

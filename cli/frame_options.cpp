@@ -105,16 +105,4 @@ std::vector<FrameFile> frames_of(const FrameOptions& options, std::span<const st
     return files;
 }
 
-std::optional<Box> box_of_frames(std::span<const FrameFile> frames,
-                                 const std::filesystem::path& input, const PartChoice& choice,
-                                 const ReadOptions& reading)
-{
-    if (frames.empty())
-        return {};
-    std::vector<Moment> moments;
-    for (const FrameFile& frame : frames)
-        moments.push_back(frame.moment);
-    return box_of_moments(input, moments, choice, reading);
-}
-
 }  // namespace surfelao

@@ -1,7 +1,6 @@
 /// frame_options.h: the options of frames of an animation, and the files that they become.
 #pragma once
 
-#include "bake/moving_world.h"
 #include "files/scene_io.h"
 
 #include <filesystem>
@@ -48,12 +47,6 @@ struct FrameFile {
 [[nodiscard]] std::vector<FrameFile> frames_of(const FrameOptions& options,
                                                std::span<const std::string> inputs,
                                                const std::string& pattern,
-                                               const ReadOptions& reading);
-
-/// Of all frames together; empty where there are none. Throws as box_of_moments().
-[[nodiscard]] std::optional<Box> box_of_frames(std::span<const FrameFile> frames,
-                                               const std::filesystem::path& input,
-                                               const PartChoice& choice,
                                                const ReadOptions& reading);
 
 }  // namespace surfelao

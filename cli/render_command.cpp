@@ -258,12 +258,11 @@ int run(const RenderCommandOptions& options, FrameSequence* sequence)
     Stopwatch watch;
     const TargetSettings target = target_settings_of(options.surface, options.show.up);
     const UpAxis up = up_axis_of(options.show);
-    Scene scene =
-        sequence != nullptr ? sequence->scene() : read_scene(options.input, options.reading);
+    Scene scene = sequence != nullptr ? sequence->scene() : scene_of(options);
     const Model model = model_of(std::move(scene), up, target,
                                  {.parts = part_choice_of(options.parts),
                                   .ground = ground_plane_of(options.measure, options.show.up),
-                                  .reading = options.reading,
+                                  .others = options.once.others,
                                   .frame = common_frame_of(options)});
     const Frame& frame = model.geometry().frame;
     EngineSettings engine = settings_of(options.engine);
@@ -280,7 +279,7 @@ int run(const RenderCommandOptions& options, FrameSequence* sequence)
     Shown shown;
     if (picture.view.colors == Colors::textured && !model.cloud)
         shown.paint = base_paint_of(*model.mesh);
-    const double read_s = watch.lap();
+    const double read_s = options.once.seconds + watch.lap();
 
     const std::uint32_t rays = options.show.reference_rays;
     if (texels)
@@ -330,19 +329,27 @@ int run_frames(const RenderCommandOptions& options, bool asks_pixels)
         return asks_pixels ? render_pixels(one) : run(one, sequence ? &*sequence : nullptr);
     };
     RenderCommandOptions one = options;
+    const PartChoice parts = part_choice_of(options.parts);
+    Stopwatch watch;
+    one.once.others = read_others(parts, options.reading);
+    one.once.seconds = watch.lap();
     if (options.engine.engine == "grid")
         one.grid_sources = grid_sources_for(options, frames);
     if (frames.empty())
         return run_one(one);
+    const std::vector<double> seconds = seconds_of(options.frames, {&options.input, 1});
+    watch.lap();
     // what moves is kept from frame to frame where values at vertices are shown
     if (!asks_pixels && !shown_texels_of(options.texels) &&
         needs_answer(view_options_of(options.show).colors) &&
         settings_of(options.engine).device == Device::cpu &&
         !ground_plane_of(options.measure, options.show.up))
-        sequence.emplace(options, seconds_of(options.frames, {&options.input, 1}));
-    one.box = sequence ? sequence->box()
-                       : box_of_frames(frames, options.input, part_choice_of(options.parts),
-                                       options.reading);
+        sequence.emplace(options, seconds);
+    else
+        one.once.played = std::make_shared<PlayedScene>(options.input, options.reading);
+    one.once.box =
+        sequence ? sequence->box() : one.once.played->box_at(seconds, parts, one.once.others);
+    one.once.seconds += watch.lap();
     for (const FrameFile& frame : frames) {
         one.reading.moment = frame.moment;
         if (sequence)
@@ -350,6 +357,7 @@ int run_frames(const RenderCommandOptions& options, bool asks_pixels)
         one.output = frame.output.string();
         if (const int code = run_one(one); code != kDone)
             return code;
+        one.once.seconds = 0.0;
     }
     return kDone;
 }

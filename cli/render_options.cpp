@@ -19,10 +19,11 @@ Camera camera_of(const RenderCommandOptions& options, std::span<const glm::vec3>
                  const Frame& frame)
 {
     std::array<glm::vec3, 8> corners;
-    if (options.box) {
+    if (options.once.box) {
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const glm::dvec3 share(i & 1, i >> 1 & 1, i >> 2);
-            const glm::dvec3 corner = glm::mix(options.box->low, options.box->high, share);
+            const glm::dvec3 corner =
+                glm::mix(options.once.box->low, options.once.box->high, share);
             corners[i] = (corner - frame.centre) / frame.diagonal;
         }
         seen = corners;
@@ -37,7 +38,13 @@ Camera camera_of(const RenderCommandOptions& options, std::span<const glm::vec3>
 
 std::optional<Frame> common_frame_of(const RenderCommandOptions& options)
 {
-    return options.box ? std::optional(frame_of(*options.box)) : std::nullopt;
+    return options.once.box ? std::optional(frame_of(*options.once.box)) : std::nullopt;
+}
+
+Scene scene_of(const RenderCommandOptions& options)
+{
+    return options.once.played ? options.once.played->at(options.reading.moment->seconds)
+                               : read_scene(options.input, options.reading);
 }
 
 PixelEngine engine_at_pixels(const RenderCommandOptions& options)

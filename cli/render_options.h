@@ -1,6 +1,7 @@
 /// render_options.h: what `render` was asked for, and its ways to make a picture.
 #pragma once
 
+#include "bake/played_scene.h"
 #include "cli/cube_options.h"
 #include "cli/frame_options.h"
 #include "cli/grid_options.h"
@@ -12,21 +13,33 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace surfelao {
+
+/// What is read before the first picture, for all of them.
+struct ReadOnce {
+    std::vector<Scene> others;            ///< PartChoice::occluders
+    std::shared_ptr<PlayedScene> played;  ///< the input of frames that are whole scenes, else null
+    std::optional<Box> box;               ///< of all frames, for each of them
+    double seconds = 0.0;                 ///< that reading took; the first picture tells it
+};
 
 struct RenderCommandOptions : ModelOptions {
     std::string input;
     std::string output;
     FrameOptions frames;
-    std::optional<Box> box = {};  ///< of all frames, for each of them
     int width = 1280, height = 720;
     int samples = 16;
     std::string backend = "auto";
     CubeOptions cubes;
     GridOptions grids;
     std::shared_ptr<const GridSources> grid_sources = {};  ///< of all frames, once they are there
+    ReadOnce once = {};
 };
+
+/// The input at the options' moment.
+[[nodiscard]] Scene scene_of(const RenderCommandOptions& options);
 
 /// "egl", "osmesa", "auto"
 [[nodiscard]] GlBackend backend_of(const std::string& name);

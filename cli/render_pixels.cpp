@@ -47,8 +47,8 @@ void choose_engine(const RenderCommandOptions& options, PixelJob& job)
         job.settings.engine = engine_at_pixels(options);
     if (auto* grids =
             job.settings.engine ? std::get_if<GridPixels>(&*job.settings.engine) : nullptr)
-        grids->world = grid_world_of(job.mesh, options.reading, part_choice_of(options.parts),
-                                     *options.grid_sources);
+        grids->world = grid_world_of(job.mesh, options.once.others, part_choice_of(options.parts),
+                                     *options.grid_sources, options.reading.moment);
     if (colors == Colors::difference)
         job.settings.reference_rays = rays;
 }
@@ -57,12 +57,12 @@ PixelJob read_job(const RenderCommandOptions& options)
 {
     const TargetSettings target = target_settings_of(options.surface, options.show.up);
     const PartChoice parts = part_choice_of(options.parts);
-    Scene scene = read_scene(options.input, options.reading);
+    Scene scene = scene_of(options);
     if (scene.triangles.empty())
         throw UsageError(options.input + ": has points only, no faces: --at points.");
     check_target(scene, target, parts);
 
-    PixelJob job{mesh_of(std::move(scene), target.normals, parts, options.reading,
+    PixelJob job{mesh_of(std::move(scene), options.once.others, target.normals, parts,
                          common_frame_of(options))};
     const Geometry& geometry = job.mesh.geometry;
     const Frame& frame = geometry.frame;
@@ -144,7 +144,7 @@ int render_pixels(const RenderCommandOptions& options)
     ProgressBar bar;
     Stopwatch watch;
     PixelJob job = read_job(options);
-    const double read_s = watch.lap();
+    const double read_s = options.once.seconds + watch.lap();
 
     const GlContext context = GlContext::create(backend_of(options.backend));
     const DrawnMesh drawn(context, job.mesh.geometry, job.mesh.surface);

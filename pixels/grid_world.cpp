@@ -110,7 +110,7 @@ Label label_of(const std::vector<std::vector<bool>>& triangles)
 }
 
 /// All that occludes but the objects: as if they alone were baked, and did not occlude.
-std::shared_ptr<const Geometry> rest_of(const Mesh& mesh, const ReadOptions& reading,
+std::shared_ptr<const Geometry> rest_of(const Mesh& mesh, std::span<const Scene> others,
                                         PartChoice choice,
                                         const std::vector<std::vector<bool>>& triangles)
 {
@@ -120,7 +120,7 @@ std::shared_ptr<const Geometry> rest_of(const Mesh& mesh, const ReadOptions& rea
     scene.labels.push_back(label_of(triangles));
     choice.receivers = {kWithGrids};
     choice.exclude.push_back(kWithGrids);
-    const Mesh objects = mesh_of(std::move(scene), {.source = NormalSource::flat}, choice, reading,
+    const Mesh objects = mesh_of(std::move(scene), others, {.source = NormalSource::flat}, choice,
                                  mesh.geometry.frame);
     return objects.occluders;
 }
@@ -155,15 +155,16 @@ std::vector<Occlusion> GridWorld::solve_rest(std::span<const Receiver> receivers
     return answers;
 }
 
-std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh, const ReadOptions& reading,
-                                         const PartChoice& choice, const GridSources& sources)
+std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh, std::span<const Scene> others,
+                                         const PartChoice& choice, const GridSources& sources,
+                                         const std::optional<Moment>& moment)
 {
     const std::vector<NodeGrid>& grids = sources.grids;
     const Frame& frame = mesh.geometry.frame;
     const auto triangles = triangles_of(mesh.scene, grids);
     std::vector<PartPose> poses;
-    if (sources.motion && reading.moment)
-        poses = sources.motion->at(reading.moment->seconds);
+    if (sources.motion && moment)
+        poses = sources.motion->at(moment->seconds);
     std::vector<PlacedGrid> objects;
     for (std::size_t i = 0; i < grids.size(); ++i) {
         const auto pose = pose_of(mesh.scene, frame, grids[i], triangles[i], poses);
@@ -176,7 +177,7 @@ std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh, const ReadOptions& re
         objects.push_back({grids[i].grid, *placement});
     }
     return std::make_shared<GridWorld>(std::move(objects),
-                                       rest_of(mesh, reading, choice, triangles));
+                                       rest_of(mesh, others, choice, triangles));
 }
 
 std::vector<Occlusion> solve_with_grids(GridPass& pass, const GBuffer& drawing,

@@ -67,13 +67,15 @@ private:
 };
 
 /// Objects of a scene at a moment, placed from where their grids were made: by the poses of their
-/// nodes. mesh: the scene at that moment; choice, reading: with which it was made.
+/// nodes. mesh: the scene at that moment; others, choice: with which it was made.
 /// An object that is gone (a scale of zero) is left out. Throws InputError for a name that means
 /// nothing in the scene, for two objects that have triangles in common, for one that does not move
 /// as one piece or is sheared or unevenly scaled, and as read_scene().
-[[nodiscard]] std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh, const ReadOptions& reading,
+[[nodiscard]] std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh,
+                                                       std::span<const Scene> others,
                                                        const PartChoice& choice,
-                                                       const GridSources& sources);
+                                                       const GridSources& sources,
+                                                       const std::optional<Moment>& moment = {});
 
 /// Who answers at pixels with grids.
 struct GridPixels {

@@ -303,8 +303,8 @@ PixelComparison compare_pixels(const PixelCompareSettings& settings, const Stage
     Scene scene = read_scene(settings.input, settings.reading);
     if (scene.triangles.empty())
         throw InputError(scene.name + ": has points only, no faces: --at points");
-    const Mesh mesh =
-        mesh_of(std::move(scene), settings.target.normals, settings.parts, settings.reading);
+    const std::vector<Scene> others = read_others(settings.parts, settings.reading);
+    const Mesh mesh = mesh_of(std::move(scene), others, settings.target.normals, settings.parts);
     PixelCompareSettings with_grids = settings;
     std::shared_ptr<GridWorld> world;
     for (PixelEngine& engine : with_grids.engines) {
@@ -312,7 +312,8 @@ PixelComparison compare_pixels(const PixelCompareSettings& settings, const Stage
         if (grids == nullptr)
             continue;
         if (!world)
-            world = grid_world_of(mesh, settings.reading, settings.parts, settings.grids);
+            world = grid_world_of(mesh, others, settings.parts, settings.grids,
+                                  settings.reading.moment);
         grids->world = world;
     }
     return compare_pixels(mesh, with_grids, progress);

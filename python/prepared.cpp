@@ -128,7 +128,7 @@ std::shared_ptr<PreparedMesh> prepare_arrays(const py::object& vertices, const p
             if (!progress("read", 0.0))
                 throw Cancelled();
             auto mesh =
-                std::make_shared<const Mesh>(mesh_of(std::move(*scene), target.normals, {}));
+                std::make_shared<const Mesh>(mesh_of(std::move(*scene), {}, target.normals, {}));
             if (!progress("prepare", 0.0))
                 throw Cancelled();
             Prepared prepared = prepare(mesh->occluding(), choice);

@@ -32,7 +32,9 @@ const float kPlane = 1.0;         // footprints
 const float kReach = 3.0;         // footprints over the cosine
 const float kSameNormal = 0.8;    // cosine
 const float kLeastWeight = 0.02;  // of the bilinear weights
-const float kWhole = 0.25;        // weight of maps that need no help
+const float kWhole = 0.25;        // weight of sure maps that need no help
+const float kSureWeight = 0.75;   // of the bilinear weights
+const float kSureCosine = 0.05;   // to the centre
 
 vec3 in_world(vec3 v) { return v.x * u_right + v.y * u_up + v.z * u_forward; }
 
@@ -95,8 +97,8 @@ void main()
     vec3 point = u_eye + in_world(position_at(pixel, seen));
     vec3 normal = in_world(seen.xyz);
 
-    vec2 blend = vec2(0.0);
-    vec2 sum = vec2(0.0);
+    vec3 blend = vec3(0.0);  // occlusion, all, sure ones
+    vec3 sum = vec3(0.0);
     for (int k = 0; k < u_map_count; ++k) {
         vec4 map = texelFetch(u_maps, 2 * k);
         vec3 d = point - map.xyz;
@@ -106,11 +108,12 @@ void main()
         if (answer.y >= kLeastWeight) {
             vec3 size = abs(d);
             float quality = cosine * max(size.x, max(size.y, size.z)) / (distance * distance);
-            blend += pow(quality, 4.0) * vec2(answer.x / answer.y, 1.0);
+            bool is_sure = answer.y >= kSureWeight && cosine >= kSureCosine;
+            blend += pow(quality, 4.0) * vec3(answer.x / answer.y, 1.0, is_sure ? 1.0 : 0.0);
         }
         if (blend.y > 0.0)
-            sum += texelFetch(u_maps, 2 * k + 1).x * vec2(blend.x / blend.y, 1.0);
+            sum += texelFetch(u_maps, 2 * k + 1).x * vec3(blend.x / blend.y, 1.0, blend.z / blend.y);
     }
     if (sum.y > 0.0)
-        out_answer = vec2(sum.x / sum.y, min(1.0, sum.y / kWhole));
+        out_answer = vec2(sum.x / sum.y, min(1.0, sum.z / kWhole + sum.y - sum.z));
 }

@@ -283,7 +283,7 @@ Model model_of(Scene scene, UpAxis up, const TargetSettings& settings, const Mod
     if (scene.triangles.empty())
         return make_cloud_model(std::move(scene), up, settings, choice.ground);
     return make_model(
-        mesh_of(std::move(scene), settings.normals, choice.parts, choice.reading, choice.frame), up,
+        mesh_of(std::move(scene), choice.others, settings.normals, choice.parts, choice.frame), up,
         settings, kLargestSplat, choice.ground);
 }
 

@@ -96,8 +96,8 @@ struct Model {
 struct ModelChoice {
     PartChoice parts = {};
     std::optional<GroundPlane> ground = {};
-    ReadOptions reading = {};         ///< of PartChoice::occluders
-    std::optional<Frame> frame = {};  ///< of meshes, in place of their own
+    std::span<const Scene> others = {};  ///< PartChoice::occluders, read
+    std::optional<Frame> frame = {};     ///< of meshes, in place of their own
 };
 
 /// Of a scene that was read, whichever it is. Throws as make_mesh() and make_point_target(), and

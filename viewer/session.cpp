@@ -182,9 +182,10 @@ void Session::start_making(Making making)
                 made->scene = making.scene ? making.scene : std::make_shared<const Scene>(scene);
             if (!making.beside.empty())
                 scene = with_files(std::move(scene), making.beside, progress);
+            const std::vector<Scene> others = read_others(making.parts, {});
             made->model = std::make_shared<const Model>(
                 model_of(std::move(scene), making.up, making.target,
-                         {.parts = making.parts, .ground = making.ground}));
+                         {.parts = making.parts, .ground = making.ground, .others = others}));
             const std::shared_ptr<const Mesh>& mesh = made->model->mesh;
             if (!made->scene)
                 made->scene = std::shared_ptr<const Scene>(mesh, &mesh->scene);

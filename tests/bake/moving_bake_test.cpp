@@ -4,10 +4,12 @@
 #include "bake/moving_compare.h"
 #include "bake/moving_solver.h"
 #include "bake/moving_world.h"
+#include "bake/played_scene.h"
 #include "temporary_folder.h"
 #include "tests/files/gltf_maker.h"
 
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -113,6 +115,26 @@ MovingWorld world_of(const std::vector<BakeSettings>& frames)
 {
     const double seconds[] = {0.0, 0.5, 1.0, 1.5, 2.0};
     return MovingWorld(frames.front().input, seconds, {}, {}, {});
+}
+
+// Read once, it stands at each moment as the file does, also back at an earlier one.
+TEST_F(MovingBake, APlayedSceneIsTheFileAtEachMoment)
+{
+    const fs::path file = folder_ / "boxes.glb";
+    PlayedScene played(file, {});
+    const double seconds[] = {0.0, 1.0, 0.5};
+    const Box all = played.box_at(seconds, {}, {});
+    EXPECT_EQ(all.low, glm::dvec3(0.0));
+    EXPECT_EQ(all.high, glm::dvec3(kSquares, 4.5, kSquares));
+    for (const double moment : seconds) {
+        const Scene then = read_scene(file, {.moment = Moment{moment, {}}});
+        const Scene& now = played.at(moment);
+        EXPECT_EQ(now.triangles, then.triangles);
+        EXPECT_EQ(now.notes, then.notes);
+        ASSERT_EQ(now.positions.size(), then.positions.size());
+        for (std::size_t v = 0; v < then.positions.size(); ++v)
+            ASSERT_LT(glm::distance(now.positions[v], then.positions[v]), 1e-12) << moment;
+    }
 }
 
 // The floor, and both boxes as they stand after a second.

@@ -306,7 +306,7 @@ void print_robot(const GlContext& context, const char* file)
     for (const double seconds : {0.0, 0.25, 0.5, 0.75}) {
         const ReadOptions then{.moment = Moment{seconds, ""}};
         const Mesh mesh = make_mesh(read_scene(file, then));
-        const auto world = grid_world_of(mesh, then, {}, sources);
+        const auto world = grid_world_of(mesh, {}, {}, sources, then.moment);
         const DrawnMesh drawn(context, mesh.geometry, mesh.surface);
         Camera camera;
         camera.eye = {0.5f, 0.25f, 0.7f};

@@ -5,6 +5,7 @@
 #include "surfels/errors.h"
 
 #include <gtest/gtest.h>
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -293,17 +294,21 @@ TEST(CubeProjector, HolesAreSolvedAtTheirOwnPixels)
     CubeAnswer none = answer_from_maps(view, projector);
     EXPECT_EQ(none.holes, view.seen().pixels.size());
     EXPECT_EQ(none.coverage(), 0.0);
-    projector.add(scene.map({0.7f, 0.1f, 0.3f}, settings));
+    projector.add(scene.map({0.7f, 0.1f, 0.3f}, settings), 0.125f);
     CubeAnswer one = answer_from_maps(view, projector);
     EXPECT_GT(one.coverage(), 0.2);
     EXPECT_LT(one.coverage(), 0.9);
-    const std::vector<float> covered = one.occlusion;
+    const std::vector<float> told = one.occlusion;
+    EXPECT_GT(std::ranges::count(one.share, 0.5f), 100);
+    EXPECT_GT(std::ranges::count(one.share, 0.125f), 0) << "where the map is not sure of itself";
+    EXPECT_EQ(std::ranges::count_if(one.share, [](float share) { return share == 0.0f; }),
+              static_cast<std::ptrdiff_t>(one.holes));
     solve_holes(one, view, scene.world(), settings);
     const std::vector<Occlusion> direct =
         answer(view, scene.occluders, scene.screen, settings.engine, settings.definition).values;
     int wrong = 0;
     for (std::size_t i = 0; i < direct.size(); ++i) {
-        const float wanted = one.hole[i] != 0 ? direct[i].occlusion : covered[i];
+        const float wanted = glm::mix(direct[i].occlusion, told[i], one.share[i]);
         wrong += std::abs(one.occlusion[i] - wanted) > 0.02f ? 1 : 0;
     }
     EXPECT_EQ(wrong, 0);

@@ -144,7 +144,7 @@ TEST(GridWorld, GridsFollowTheirNodes)
     const GridSources sources = bake_moving_grids(kRobot, then, coarse, {});
     ASSERT_EQ(sources.grids.size(), 11u);
     const Mesh posed = make_mesh(read_scene(kRobot, then));
-    const std::shared_ptr<GridWorld> world = grid_world_of(posed, then, {}, sources);
+    const std::shared_ptr<GridWorld> world = grid_world_of(posed, {}, {}, sources, then.moment);
     ASSERT_EQ(world->objects().size(), 11u);
     EXPECT_EQ(world->rest().triangles.size(), 2u);
     const Mesh rest = make_mesh(read_scene(kRobot));
@@ -198,7 +198,7 @@ TEST(GridWorld, SaysWhatIsWrong)
     const auto fault = [&](const std::vector<NodeGrid>& grids) {
         GridSources sources{grids, std::make_shared<const Motion>(robot.scene, "walk")};
         try {
-            static_cast<void>(grid_world_of(robot, then, {}, sources));
+            static_cast<void>(grid_world_of(robot, {}, {}, sources, Moment{0.3, "walk"}));
         } catch (const InputError& error) {
             return std::string(error.what());
         }
