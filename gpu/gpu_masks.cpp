@@ -18,7 +18,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -247,7 +246,6 @@ private:
             worth.set("u_max_distance", std::min(limit, std::numeric_limits<float>::max()));
         }
         worth.set("u_fill", settings_.fill ? 1 : 0);
-        worth.set("u_graze", std::isfinite(limit) ? 0.0f : settings_.graze);
         worth.set("u_moments", scene_.moments);
         worth.set("u_receivers", grid.receivers());
         worth.set("u_slot_count", grid.slot_count());

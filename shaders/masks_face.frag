@@ -12,7 +12,6 @@
 //            u_high_words0, u_high_words1, u_high_sheets0, u_high_sheets1
 //                              the same for half 1
 //            u_fill            0: as drawn is all there is
-//            u_graze           MaskSettings::graze; within a limit 0
 //            u_moments         RGBA32F, 3 texels a nibble, row by row: what a set bit of it is worth
 //                              (MaskRaster of tree/masks/raster.h). First moments 1 u v of the lower
 //                              two bits, second moment 1 | first of the upper two, second u |
@@ -28,8 +27,7 @@
 //            out_bent, out_bent_filled, out_bent_closed
 //                              RGBA32F: integral of w (n.w) over the same bits, of the first without
 //                              pinholes, mask frame | integral of n.w over pinholes | over what filling
-//                              beside narrow clusters too leaves open | over that in the grazing strip,
-//                              less the same share of the strip above it
+//                              beside narrow clusters too leaves open | 0
 // CPU twin   first_moments and second_moments in tree/masks/kernel_sums.h, horizon and take_ground in
 //            _raster.h, pinholes, fill, openings and close in _cracks.h
 #ifndef GROUND
@@ -45,7 +43,6 @@ uniform usampler2D u_high_words1;
 uniform usampler2D u_high_sheets0;
 uniform usampler2D u_high_sheets1;
 uniform int u_fill;
-uniform float u_graze;
 uniform samplerBuffer u_moments;
 uniform samplerBuffer u_receivers;
 uniform int u_slot_count;
@@ -218,26 +215,18 @@ void main()
         grown[1 + y]       = grown_across(filled, y);
         wide_sheets[1 + y] = sheets[1 + y] | any_sides(sheets, y);
     }
-    // what is left open by filling, by filling beside all, of that at the horizon and above, by closing
-    Sums openings = kNothing, left = kNothing, left_low = kNothing, left_next = kNothing;
-    Sums unclosed = kNothing;
+    // what is left open by filling, by filling beside all, by closing
+    Sums openings = kNothing, left = kNothing, unclosed = kNothing;
     for (int y = 0; y < 16; ++y) {
         uint m        = filled[1 + y];
         uint wide     = m | (m << 1) | (m >> 1);
         uint rows     = wide & (wide << 1) & (wide >> 1);
         uint columns  = grown[1 + y] & all_stacked(grown, y);
-        uint clear    = ~closed[1 + y] & rim_of(all_filled, y);
-        uint higher   = cone_bits(n, u_graze, y >> 2)[y & 3];
-        uint highest  = cone_bits(n, kMaskGrazeAbove * u_graze, y >> 2)[y & 3];
         add(openings, y, ~closed[1 + y] & rim_of(filled, y));
-        add(left, y, clear);
-        add(left_low, y, clear & ~higher);
-        add(left_next, y, clear & higher & ~highest);
+        add(left, y, ~closed[1 + y] & rim_of(all_filled, y));
         add(unclosed, y, ~(m | ((rows | columns) & grown_across(wide_sheets, y))));
     }
     out_share.zw    = vec2(along(openings, n), along(unclosed, n));
     out_bent_filled = bent(openings, n, along(left, n));
-    // a strip up to the sine g has a share of g^2 of the hemisphere
-    float next      = along(left_next, n) / (kMaskGrazeAbove * kMaskGrazeAbove - 1.0);
-    out_bent_closed = bent(unclosed, n, along(left_low, n) - next);
+    out_bent_closed = bent(unclosed, n, 0.0);
 }

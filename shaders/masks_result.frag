@@ -3,8 +3,8 @@
 #include "receiver_grid.glsl"
 #include "rows.glsl"
 // masks_result.frag: occlusion and bent normal of each slot from the sums over all faces. Where much
-// is covered cracks count as filled, by degrees; where nearly all is, those beside narrow clusters,
-// those of two bits and what was left out as grazing too.
+// is covered cracks count as filled, by degrees; where nearly all is, those beside narrow clusters
+// and those of two bits too.
 //
 // Vertices   fullscreen.vert, over the part of the rows of all slots (rows.glsl) that is computed
 // Drawn by   gpu/gpu_masks.cpp, once per distance limit, added by blending
@@ -68,8 +68,7 @@ void main()
         out_result.xyz = filled.xyz;
         float narrow = (1.0 - openness - kMaskNarrowFrom) / kMaskNarrowRange;
         if (narrow > 0.0 && openness > 0.0)
-            openness -= min(narrow, 1.0) * (fill_share * (shares.y - filled.w / share.x) +
-                                            max(closed.w, 0.0) / share.x);
+            openness -= min(narrow, 1.0) * fill_share * (shares.y - filled.w / share.x);
         float close = (1.0 - openness - kMaskCloseFrom) / kMaskCloseRange;
         if (u_close > 0.0 && close > 0.0 && openness > 0.0) {
             openness += min(close, 1.0) * u_close * min(shares.z - openness, 0.0);

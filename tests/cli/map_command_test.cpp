@@ -79,7 +79,7 @@ TEST_F(MapCommand, RefusesWhatItCannotDo)
           {{"twice.obj", "-o", "x.png"}, 1, "are for other maps"},
           {{"bricks.obj", "-o", "x.png"}, 1, "times over"},
           {{"in.obj", "-o", "x.off", "--at", "texels"}, 1, "a map goes into"},
-          {{"in.obj", "-o", "x.obj", "--at", "texels", "--charts", "blended"}, 1, "from glTF"},
+          {{"in.obj", "-o", "x.obj", "--at", "texels", "--charts", "blended"}, 1, "into .glb"},
           {{"in.obj", "-o", "x.png", "--size", "0"}, 2, "--size"},
           {{"in.obj", "-o", "x.png", "--size", "65536"}, 2, "--size"},
           {{"in.obj", "-o", "x.png", "--depth", "32"}, 1, "8 or 16 bits"},

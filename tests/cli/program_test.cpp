@@ -135,7 +135,6 @@ TEST_F(ProgramTest, FailuresAreOneSentenceAndExitOneAndLeaveTheOldFile)
         {"bake", in(), "-o", in() + "/out.ply"},
         {"bake", in(), "-o", folder_ / "out.xyz"},
         {"bake", in(), "-o", folder_ / "out.stl"},
-        {"bake", in(), "-o", folder_ / "out.glb"},
         {"bake", in(), "-o", out(), "--json", in() + "/report.json"},
         {"bake", in(), "-o", out(), "--max-distance", "1e-60"},
         {"bake", in(), "-o", out(), "--offset", "100%"},

@@ -257,29 +257,20 @@ TEST(MaskWorlds, BodiesAreClosedFromInside)
             << quality;
 }
 
-// Between two skins all is covered down to the horizon. What does not reach above the grazing strip
-// is not drawn there, and is no opening.
-TEST(MaskWorlds, NoLightFallsInAlongTheHorizonBetweenTwoSkins)
+// Under a ball near a wide floor all is covered but the horizon, and that is open.
+TEST(MaskWorlds, TheHorizonAloneIsOpenUnderWhatStandsOverAFloor)
 {
-    const Geometry geometry = make_geometry(scenes::nested_shells(2, 0.05, 16));
-    std::vector<Receiver> between;
-    for (const Receiver& there : vertex_receivers(geometry)) {
-        if (glm::length(there.position) < 0.28f)  // on the inner one
-            between.push_back(there);
-    }
-    ASSERT_GT(between.size(), 500u);
-    struct Row {
-        float quality;
-        double most_open;
-    };
-    // .0039, .0023, .0001; where the strip is left open .0203, .0080, .0008
-    for (const Row row : {Row{MaskOptions::kDraft, 0.008}, Row{MaskOptions::kGood, 0.004},
-                          Row{MaskOptions::kBest, 0.0004}}) {
-        double open = 0.0;
-        for (const Occlusion& one : solve(geometry, between, {.quality = row.quality}))
-            open += 1.0 - one.occlusion;
-        EXPECT_LT(open / static_cast<double>(between.size()), row.most_open) << row.quality;
-    }
+    const double height = 1.0, reach = 5.0;
+    const Geometry geometry =
+        make_geometry(scenes::sphere({0, 0, 1 + height}, 1, 16) +
+                      scenes::sheet({-reach, -reach, 0}, {2 * reach, 0, 0}, {0, 2 * reach, 0}, 1));
+    const std::vector<Receiver> under{receiver_at(geometry, {0, 0, height}, {0, 0, -1})};
+    // the form factor of a rectangle's corner, four times
+    const double x = reach / height, root = std::sqrt(1 + x * x);
+    const double covered = 4.0 / std::numbers::pi * x / root * std::atan(x / root);
+    for (const float quality : {MaskOptions::kDraft, MaskOptions::kGood, MaskOptions::kBest})
+        EXPECT_NEAR(solve(geometry, under, {.quality = quality})[0].occlusion, covered, 0.002)
+            << quality;
 }
 
 TEST(MaskWorlds, RefusesWhatItDoesNotMeasure)

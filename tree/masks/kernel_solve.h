@@ -245,36 +245,6 @@ void draw_lists(const MaskWorld& world, const MaskScratch& scratch, const Receiv
     streams.finish();
 }
 
-/// How much of the open bits is open only because what grazes was left out: what of the grazing
-/// strip is open beyond the share of the strip above it.
-SURFELAO_MASK_INLINE float left_out(const MaskWorld& world, const std::uint32_t* open,
-                                    const float* n)
-{
-    const MaskRaster& raster = *world.raster;
-    const float graze = world.settings.graze;
-    // within a limit a ceiling ends above the horizon
-    if (world.settings.limits.distance[0] < __builtin_inff())
-        return 0.0f;
-    alignas(64) std::uint32_t strip[kMaskWords] = {}, next[kMaskWords] = {};
-    for (int w = 0; w < raster.words; w += kLanes) {
-        // most faces of a closed place have no open bit
-        if (bits(nonzero(load(open + w))) == 0)
-            continue;
-        const int a = w / (2 * raster.rows), u = (a + 1) % 3, v = (a + 2) % 3;
-        const Float16 na = all(n[a]) * load(raster.side[w / kLanes % 2]);
-        const Int16 higher = cone_bits(raster, na, n[u], n[v], graze);
-        const Int16 highest = cone_bits(raster, na, n[u], n[v], kMaskGrazeAbove * graze);
-        store(strip + w, load(open + w) & ~higher);
-        store(next + w, load(open + w) & higher & ~highest);
-    }
-    First of_strip, of_next;
-    first_moments(raster, strip, next, of_strip, of_next);
-    // a strip up to the sine g has a share of g^2 of the hemisphere
-    constexpr float kNext = kMaskGrazeAbove * kMaskGrazeAbove - 1.0f;
-    const float more = of_strip.along(n) - of_next.along(n) / kNext;
-    return more > 0.0f ? more : 0.0f;
-}
-
 /// Takes the pinholes out of the open bits. Returns their weight.
 SURFELAO_MASK_INLINE float take_pinholes(const MaskRaster& raster, const std::uint32_t* mask,
                                          const std::uint32_t* above, const float* n,
@@ -332,11 +302,9 @@ SURFELAO_MASK_INLINE float openness_of(const MaskWorld& world, const std::uint32
     openness -= fill_share * cracks;
 
     const float narrow_weight = (1.0f - openness - kMaskNarrowFrom) / kMaskNarrowRange;
-    if (narrow_weight > 0.0f && openness > 0.0f) {
-        const float narrow = fill_share * (cracks_of(true) - cracks);
-        openness -= (narrow_weight < 1.0f ? narrow_weight : 1.0f) *
-                    (narrow + left_out(world, open, n) / weight);
-    }
+    if (narrow_weight > 0.0f && openness > 0.0f)
+        openness -=
+            (narrow_weight < 1.0f ? narrow_weight : 1.0f) * fill_share * (cracks_of(true) - cracks);
 
     const float close_weight = (1.0f - openness - kMaskCloseFrom) / kMaskCloseRange;
     if (!(world.settings.close > 0.0f && close_weight > 0.0f && openness > 0.0f))
