@@ -162,8 +162,9 @@ WrittenFile contents_with(const fs::path& path, const Scene& scene, const WriteO
 {
     const auto* asset = dynamic_cast<const GltfAsset*>(scene.asset.get());
     if (asset == nullptr)
-        throw InputError(path.string() +
-                         ": only a scene that was read from glTF can be written as glTF, use .ply or .obj");
+        throw InputError(
+            path.string() +
+            ": only a scene that was read from glTF can be written as glTF, use .ply or .obj");
     json document = *asset->document;
     const bool binary = type_of(path) == FileType::glb;
     std::string bytes;
