@@ -1,7 +1,7 @@
 #include "files/import/materials.h"
 
-#include "files/gltf_uri.h"
 #include "files/gltf_buffer.h"
+#include "files/gltf_uri.h"
 #include "files/import/names.h"
 
 #include <assimp/material.h>
