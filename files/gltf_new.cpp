@@ -220,8 +220,7 @@ private:
                 vertices.push_back(key_of(triangle, corner));
         }
         std::ranges::sort(vertices);
-        const auto rest = std::ranges::unique(vertices);
-        vertices.erase(rest.begin(), rest.end());
+        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
 
         tinygltf::Mesh mesh;
         mesh.name = name;
