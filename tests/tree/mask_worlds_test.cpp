@@ -217,8 +217,8 @@ TEST(MaskWorlds, WiresAreAsOpenAsTheyAre)
     double darker = 0.0;
     for (std::size_t i = 0; i < some.size(); ++i)
         darker += good[i * kStep].occlusion - exact[i].occlusion;
-    // .0024, and .0025 as Clang compiles it: closed pinholes are a little of each, and worth more on
-    // hills (below)
+    // .0024, and .0025 as Clang compiles it: closed pinholes are a little of each, and worth more
+    // on hills (below)
     EXPECT_NEAR(darker / static_cast<double>(some.size()), 0.0, 0.0028);
 }
 
