@@ -97,6 +97,33 @@ public:
 
     [[nodiscard]] std::size_t lost_pictures() const { return lost_pictures_; }
 
+    /// The mesh's objects and groups, of the triangles as they stand in the glTF.
+    [[nodiscard]] std::vector<Label> labels() const
+    {
+        std::vector<std::uint32_t> place(order_.size());
+        for (std::uint32_t i = 0; i < order_.size(); ++i)
+            place[order_[i]] = i;
+        std::vector<Label> labels;
+        for (const Label& label : scene_.labels) {
+            if (label.kind != LabelKind::object && label.kind != LabelKind::group)
+                continue;
+            std::vector<std::uint32_t> places;
+            for (const Label::Range& range : label.ranges)
+                places.insert(places.end(), place.begin() + range.first,
+                              place.begin() + range.first + range.count);
+            std::sort(places.begin(), places.end());
+            Label moved{label.kind, label.name, {}};
+            for (const std::uint32_t at : places) {
+                if (moved.ranges.empty() ||
+                    moved.ranges.back().first + moved.ranges.back().count != at)
+                    moved.ranges.push_back({at, 0});
+                ++moved.ranges.back().count;
+            }
+            labels.push_back(std::move(moved));
+        }
+        return labels;
+    }
+
 private:
     static constexpr std::size_t kMostBytes = 0xf0000000;  // and the JSON beside them
 
@@ -225,7 +252,9 @@ private:
         tinygltf::Mesh mesh;
         mesh.name = name;
         tinygltf::Primitive primitive = primitive_of(vertices);
-        for (const auto& [material, indices] : indices_by_material(triangles, vertices)) {
+        for (const auto& [material, own] : by_material(triangles)) {
+            const std::vector<std::uint32_t> indices = indices_of(own, vertices);
+            order_.insert(order_.end(), own.begin(), own.end());
             primitive.material = material;
             primitive.indices = add_accessor(
                 model_, std::as_bytes(std::span(indices)), TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
@@ -243,17 +272,25 @@ private:
     }
 
     /// -1: of no material.
-    std::map<int, std::vector<std::uint32_t>> indices_by_material(
-        std::span<const std::uint32_t> triangles, std::span<const Key> vertices) const
+    std::map<int, std::vector<std::uint32_t>> by_material(
+        std::span<const std::uint32_t> triangles) const
     {
-        std::map<int, std::vector<std::uint32_t>> indices;
+        std::map<int, std::vector<std::uint32_t>> own;
+        for (const std::uint32_t triangle : triangles)
+            own[base_.triangles.empty() ? -1 : static_cast<int>(base_.triangles[triangle]) - 1]
+                .push_back(triangle);
+        return own;
+    }
+
+    std::vector<std::uint32_t> indices_of(std::span<const std::uint32_t> triangles,
+                                          std::span<const Key> vertices) const
+    {
+        std::vector<std::uint32_t> indices;
+        indices.reserve(3 * triangles.size());
         for (const std::uint32_t triangle : triangles) {
-            const int material =
-                base_.triangles.empty() ? -1 : static_cast<int>(base_.triangles[triangle]) - 1;
-            std::vector<std::uint32_t>& own = indices[material];
             for (int corner = 0; corner < 3; ++corner) {
                 const auto found = std::ranges::lower_bound(vertices, key_of(triangle, corner));
-                own.push_back(static_cast<std::uint32_t>(found - vertices.begin()));
+                indices.push_back(static_cast<std::uint32_t>(found - vertices.begin()));
             }
         }
         return indices;
@@ -306,6 +343,7 @@ private:
     std::vector<glm::uvec3> corners_;
     glm::dvec3 middle_{0.0};
     BaseColors base_;
+    std::vector<std::uint32_t> order_;  ///< the scene's triangles as the glTF has them
     std::size_t lost_pictures_ = 0;
     tinygltf::Model model_;
 };
@@ -321,12 +359,14 @@ Scene as_gltf(const std::filesystem::path& path, Scene scene, const NormalSettin
                          ": has points only, which are not written as glTF, use .ply");
     std::string glb;
     std::vector<std::string> notes;
+    std::vector<Label> labels;
     {
         const Mesh mesh = make_mesh(std::move(scene), normals);
         NewGltf made(path, mesh);
         made.add_all();
         glb = made.glb();
         notes = mesh.scene.notes;
+        labels = made.labels();
         if (made.lost_pictures() > 0)
             notes.push_back("textures that are neither PNG nor JPEG are left out of the glTF: " +
                             std::to_string(made.lost_pictures()));
@@ -334,6 +374,7 @@ Scene as_gltf(const std::filesystem::path& path, Scene scene, const NormalSettin
     Scene result = read_gltf(path, std::move(glb));
     result.name = path.filename().string();
     result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
+    result.labels.insert(result.labels.end(), labels.begin(), labels.end());
     return result;
 }
 

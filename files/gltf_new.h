@@ -10,6 +10,7 @@
 ///   nodes      one for each object of the file (OBJ's o, else g; text STL's solid), named as it is
 ///   materials  colour, map of colour (PNG or JPEG), opacity (OBJ with its MTL)
 ///   colours    of vertices as COLOR_0
+/// Names of groups stay in Scene::labels, so that options name the same parts as without.
 ///
 /// Coordinates stay what they are, in float; where they lie so far out that this loses more than
 /// kFarInSizes allows, the nodes carry the middle of the box as a translation. Axes are not turned.

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -18,7 +19,7 @@ constexpr const char* kCornerObj =
     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 1\nv 1 1 1\n"
     "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
     "o floor\nusemtl paint\nf 1/1 2/2 3/3 4/4\n"
-    "o wall\nusemtl glass\nf 2/1 5/2 6/3 3/4\n";
+    "o wall\ng left\nusemtl glass\nf 2/1 5/2 6/3 3/4\n";
 constexpr const char* kCornerMtl =
     "newmtl paint\nKd 1 .5 0\nmap_Kd paint.png\nnewmtl glass\nd .25\nnewmtl tga\nmap_Kd a.tga\n";
 
@@ -53,6 +54,9 @@ TEST(GltfNew, HasTheObjectsPlacesAndMaterialsOfTheMesh)
     EXPECT_EQ(material_at(2).name, "glass");
     EXPECT_EQ(material_at(2).opacity, Opacity::clear);
     EXPECT_FLOAT_EQ(material_at(2).alpha, 0.25f);
+    const auto wall = std::ranges::find(scene.labels, "left", &Label::name);
+    ASSERT_NE(wall, scene.labels.end());
+    EXPECT_EQ(wall->ranges, (std::vector<Label::Range>{{2, 2}}));
     ASSERT_FALSE(scene.notes.empty());
     EXPECT_EQ(scene.notes.front(),
               "textures that are neither PNG nor JPEG are left out of the glTF: 1");
