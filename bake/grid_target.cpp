@@ -129,10 +129,11 @@ public:
         std::vector<Receiver> receivers;
         for (std::size_t begin = 0; begin < places.size(); begin += kBandCells) {
             const std::size_t count = std::min(kBandCells, places.size() - begin);
-            receivers.clear();
-            for (std::size_t i = begin; i < begin + count; ++i)
-                for (const glm::vec3 direction : sphere.directions)
-                    receivers.push_back({places[i], direction});
+            receivers.resize(count * kHemispheres);
+            for_cells(count, [&](std::size_t i) {
+                for (std::size_t k = 0; k < kHemispheres; ++k)
+                    receivers[i * kHemispheres + k] = {places[begin + i], sphere.directions[k]};
+            });
             const auto in_stage = [&](double done) {
                 return progress_(stage,
                                  (static_cast<double>(begin) + done * static_cast<double>(count)) /
@@ -142,9 +143,10 @@ public:
                 solve(prepared_, receivers, engine_, progress_ ? Progress(in_stage) : Progress());
             bake_.residual = solution.residual;
             bake_.receivers += receivers.size();
-            for (std::size_t i = 0; i < count; ++i)
+            for_cells(count, [&](std::size_t i) {
                 sphere.fit(&solution.occlusion[i * kHemispheres], grid_.store,
                            &values[(begin + i) * channels]);
+            });
         }
         return values;
     }
@@ -160,6 +162,16 @@ public:
     }
 
 private:
+    /// one(i) for i < count, on all cores.
+    template <class One>
+    static void for_cells(std::size_t count, const One& one)
+    {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 256), [&](const auto& some) {
+            for (std::size_t i = some.begin(); i < some.end(); ++i)
+                one(i);
+        });
+    }
+
     const Prepared& prepared_;
     const EngineSettings& engine_;
     const StageProgress& progress_;
@@ -280,21 +292,22 @@ void repair_cells(const Geometry& object, const RayScene& scene, std::span<const
     const std::vector<std::uint8_t> is_inside =
         inside_object(scene, places, grid.store, grid.values);
     move_cells_out(object, scene, places, is_inside, solver, bake);
+    // places inside are left out before anybody is asked there: of two nearly one
     std::vector<glm::dvec3> beside = places_beside(grid, is_inside);
     std::vector<glm::vec3> in_unit;
     for (const glm::dvec3 place : beside)
         in_unit.push_back(in_frame(place, object.frame));
-    std::vector<float> values = solver.values_at("repair", in_unit);
-    const std::vector<std::uint8_t> is_hidden = inside_object(scene, in_unit, grid.store, values);
-    const std::size_t channels = channels_of(grid.store);
+    const std::vector<std::uint8_t> is_hidden = inside_object(scene, in_unit);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < beside.size(); ++i) {
         if (is_hidden[i] != 0)
             continue;
         beside[kept] = beside[i];
-        std::copy_n(&values[i * channels], channels, &values[kept++ * channels]);
+        in_unit[kept++] = in_unit[i];
     }
-    fit_inside(grid, is_inside, std::span(beside).first(kept), values);
+    beside.resize(kept);
+    in_unit.resize(kept);
+    fit_inside(grid, is_inside, beside, solver.values_at("repair", in_unit));
 }
 
 float largest_on_faces(const AoGrid& grid)
