@@ -93,9 +93,8 @@ void set_warp(Program& program, const AoGrid& grid)
     const glm::vec3 cells(grid.cells), scale = 0.5f * (cells - 1.0f) / cells;
     const glm::vec3 far = (1.0f - grid.inner_share) / (1.0f - grid.inner);
     program.set("u_inner", grid.inner);
-    program.set("u_near", scale * grid.inner_share / grid.inner);
     program.set("u_far", scale * far);
-    program.set("u_far_start", scale * (grid.inner_share - far * grid.inner));
+    program.set("u_bend", scale * (grid.inner_share / grid.inner - far));
 }
 
 }  // namespace

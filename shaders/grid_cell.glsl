@@ -6,8 +6,7 @@
 //                    distance of 1 adds
 //   u_to_grid        directions of view space to those of the grid
 //   u_inner          AoGrid: a
-//   u_near u_far u_far_start  half boxes to half textures: u_near x within a, beyond it
-//                    u_far x + u_far_start
+//   u_far u_bend     half boxes to half textures: u_far x + u_bend (x cut to [-a, a])
 //   u_border         RESCALE: V_M, 1 / (1 - V_M)
 //   u_cells          RGBA16F, a texel a cell: m / (4 pi), alpha; SH: coefficients 0 to 3
 //   u_surface        as in g_buffer.glsl: normal in view space, distance forward
@@ -16,9 +15,8 @@ uniform mat3 u_start;
 uniform mat3 u_along;
 uniform mat3 u_to_grid;
 uniform vec3 u_inner;
-uniform vec3 u_near;
 uniform vec3 u_far;
-uniform vec3 u_far_start;
+uniform vec3 u_bend;
 uniform sampler3D u_cells;
 uniform sampler2D u_surface;
 #ifdef RESCALE
@@ -40,11 +38,7 @@ float farthest_out(vec3 x)
     return max(size.x, max(size.y, size.z));
 }
 
-vec3 cell_place(vec3 x)
-{
-    vec3 far = u_far * x + sign(x) * u_far_start;
-    return 0.5 + mix(far, u_near * x, lessThan(abs(x), u_inner));
-}
+vec3 cell_place(vec3 x) { return 0.5 + u_far * x + u_bend * clamp(x, -u_inner, u_inner); }
 
 float border_weight(vec3 x, float alpha)
 {
