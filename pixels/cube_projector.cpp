@@ -133,7 +133,7 @@ void CubeProjector::project(const GBuffer& seen, const Framebuffer& target, int 
     for (std::size_t k = 0; k < used.size(); ++k) {
         const float next = k + 1 < used.size() ? used[k + 1].weight : 0.0f;
         records.emplace_back(centres[used[k].index], static_cast<float>(used[k].index));
-        records.emplace_back(used[k].weight - next, 0.0f, 0.0f, 0.0f);
+        records.emplace_back(used[k].weight - next, used[k].weight, 0.0f, 0.0f);
     }
     if (records.empty())
         return;

@@ -19,11 +19,11 @@
 ///
 ///     shown = sum over k of (w_k - w_k+1) * blend of the maps 1 to k
 ///
-/// Where all that answer weigh less than a quarter, the pixel's own answer has the rest; where none
-/// of them is sure of itself, less than one: where less than .75 of the bilinear weight counts,
-/// beside edges, or cos < .05, in texels far longer than what they show. These are most of the
-/// pairs of maps and places that are off by more than .06; when such a map came or went alone, that
-/// showed: four times as fast as its weight.
+/// over those that answer there. Where the first of them weighs less than half the pixel's own
+/// answer has the rest: a map that comes alone comes twice as fast as its weight, however sure it
+/// seems of itself. Four times as fast showed where maps are wrong, beside edges and in closed
+/// contacts (room, three maps: 8 jumps of 2.3 million, .0235 the largest; now .0076); as fast as
+/// its weight, most pixels of a body from outside need their own answers (bunny: 84 % for 15 %).
 #pragma once
 
 #include "pixels/cube_map.h"

@@ -10,7 +10,7 @@
 //            u_distances  R32F, all texels of all maps: x + size (y + size (face + 6 map))
 //            u_values     R32UI, likewise: occlusion | normal.x << 8 | normal.y << 16, bytes
 //            u_maps       RGBA32F, two texels per map in use, falling by weight: its centre, its
-//                         index; how much more it weighs than the next one
+//                         index; how much more it weighs than the next one, its weight
 //            u_map_count  in use
 //            u_face_size  texels along the edge of a face
 // Writes     out_answer   occlusion | share: 0 = none answers, 1 = needs no help
@@ -32,9 +32,7 @@ const float kPlane = 1.0;         // footprints
 const float kReach = 3.0;         // footprints over the cosine
 const float kSameNormal = 0.8;    // cosine
 const float kLeastWeight = 0.02;  // of the bilinear weights
-const float kWhole = 0.25;        // weight of sure maps that need no help
-const float kSureWeight = 0.75;   // of the bilinear weights
-const float kSureCosine = 0.05;   // to the centre
+const float kWhole = 0.5;         // weight of a map that needs no help
 
 vec3 in_world(vec3 v) { return v.x * u_right + v.y * u_up + v.z * u_forward; }
 
@@ -97,8 +95,9 @@ void main()
     vec3 point = u_eye + in_world(position_at(pixel, seen));
     vec3 normal = in_world(seen.xyz);
 
-    vec3 blend = vec3(0.0);  // occlusion, all, sure ones
-    vec3 sum = vec3(0.0);
+    vec2 blend = vec2(0.0);  // occlusion, all
+    vec2 sum = vec2(0.0);
+    float most = 0.0;  // the weight of the first that answers
     for (int k = 0; k < u_map_count; ++k) {
         vec4 map = texelFetch(u_maps, 2 * k);
         vec3 d = point - map.xyz;
@@ -108,12 +107,14 @@ void main()
         if (answer.y >= kLeastWeight) {
             vec3 size = abs(d);
             float quality = cosine * max(size.x, max(size.y, size.z)) / (distance * distance);
-            bool is_sure = answer.y >= kSureWeight && cosine >= kSureCosine;
-            blend += pow(quality, 4.0) * vec3(answer.x / answer.y, 1.0, is_sure ? 1.0 : 0.0);
+            blend += pow(quality, 4.0) * vec2(answer.x / answer.y, 1.0);
         }
-        if (blend.y > 0.0)
-            sum += texelFetch(u_maps, 2 * k + 1).x * vec3(blend.x / blend.y, 1.0, blend.z / blend.y);
+        if (blend.y > 0.0) {
+            vec2 weight = texelFetch(u_maps, 2 * k + 1).xy;
+            sum += weight.x * vec2(blend.x / blend.y, 1.0);
+            most = max(most, weight.y);
+        }
     }
     if (sum.y > 0.0)
-        out_answer = vec2(sum.x / sum.y, min(1.0, sum.z / kWhole + sum.y - sum.z));
+        out_answer = vec2(sum.x / sum.y, min(1.0, most / kWhole));
 }

@@ -13,6 +13,7 @@
 #include "files/scene_io.h"
 #include "pixels/cube_answer.h"
 #include "pixels/cube_placement.h"
+#include "reference/closest_hit.h"
 #include "reference/rays.h"
 #include "surfels/stopwatch.h"
 
@@ -227,8 +228,24 @@ void print_projection(Benchmark& bench, const NamedPlaces& places, const CubeSet
                 1e3 * median(draw), 1e3 * median(project));
 }
 
+/// Of the places of which the surface from eye to place hides none: one each.
+std::vector<std::uint8_t> seen_from(const RayScene& scene, std::span<const Receiver> places,
+                                    glm::vec3 eye)
+{
+    constexpr float kShort = 0.999f;  // of the way: the place's own triangle is not in it
+    std::vector<Ray> rays;
+    for (const Receiver& place : places) {
+        const glm::vec3 way = place.position - eye;
+        rays.push_back({eye, glm::normalize(way), kShort * glm::length(way)});
+    }
+    std::vector<std::uint8_t> seen;
+    for (const ClosestHit& hit : closest_hits(scene, rays))
+        seen.push_back(hit.triangle == ClosestHit::kNone ? 1 : 0);
+    return seen;
+}
+
 /// Of places on the surface that stay where they are while the eye moves: how many change by more
-/// than 2 of 255 from frame to frame. Holes have their own answers.
+/// than 2 of 255 from frame to frame while the eye sees them. Holes have their own answers.
 void print_path(Benchmark& bench, const NamedPlaces& places, const CubeSettings& settings)
 {
     std::vector<CubeMap> maps;
@@ -246,6 +263,7 @@ void print_path(Benchmark& bench, const NamedPlaces& places, const CubeSettings&
     for (const CubeMap& map : maps)
         centres.push_back(map.centre);
     const std::vector<float> whole(maps.size(), 1.0f);
+    const RayScene scene(bench.mesh.geometry, RayScene::Build::robust);
     std::size_t changes[2] = {0, 0};
     float largest[2] = {0.0f, 0.0f};
     for (int way = 0; way < 2; ++way) {  // 0: fading, 1: the nearest as they are
@@ -258,12 +276,13 @@ void print_path(Benchmark& bench, const NamedPlaces& places, const CubeSettings&
             std::vector<ProjectedMap> used = nearest_maps(centres, whole, eye, kFewMaps);
             for (ProjectedMap& map : used)
                 map.weight = way == 0 ? map.weight : 1.0f;
+            const std::vector<std::uint8_t> is_seen = seen_from(scene, receivers, eye);
             std::vector<float> now;
             for (std::size_t i = 0; i < receivers.size(); ++i) {
                 const TwinAnswer told =
                     twin_answer(maps, used, receivers[i].position, receivers[i].normal);
                 now.push_back(glm::mix(own[i].occlusion, told.occlusion, told.share));
-                if (before.empty())
+                if (before.empty() || is_seen[i] == 0)
                     continue;
                 const float change = std::abs(now.back() - before[i]);
                 changes[way] += change > 2.0f / 255.0f ? 1 : 0;

@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -67,7 +67,8 @@ inline glm::vec2 twin_texels(const CubeMap& map, glm::vec3 point, glm::vec3 norm
 inline TwinAnswer twin_answer(std::span<const CubeMap> maps, std::span<const ProjectedMap> used,
                               glm::vec3 point, glm::vec3 normal, const TwinTests& tests = {})
 {
-    double sum = 0.0, qualities = 0.0, sure_ones = 0.0, shown = 0.0, weight = 0.0, sure = 0.0;
+    double sum = 0.0, qualities = 0.0, shown = 0.0, weight = 0.0;
+    float share = 0.0f;
     for (std::size_t k = 0; k < used.size(); ++k) {
         const glm::vec3 d = point - maps[used[k].index].centre;
         const float distance = glm::length(d);
@@ -79,19 +80,17 @@ inline TwinAnswer twin_answer(std::span<const CubeMap> maps, std::span<const Pro
                 std::pow(cosine * std::max({size.x, size.y, size.z}) / (distance * distance), 4.0);
             sum += read.y < 0.02f ? 0.0 : quality * read.x / read.y;
             qualities += read.y < 0.02f ? 0.0 : quality;
-            sure_ones += read.y >= 0.75f && cosine >= 0.05f ? quality : 0.0;
         }
         const float next = k + 1 < used.size() ? used[k + 1].weight : 0.0f;
         if (qualities > 0.0) {
             shown += (used[k].weight - next) * sum / qualities;
             weight += used[k].weight - next;
-            sure += (used[k].weight - next) * sure_ones / qualities;
+            share = std::max(share, used[k].weight);
         }
     }
     if (weight == 0.0)
         return {};
-    const double share = sure / 0.25 + weight - sure;
-    return {static_cast<float>(shown / weight), static_cast<float>(std::min(1.0, share))};
+    return {static_cast<float>(shown / weight), std::min(1.0f, share / 0.5f)};
 }
 
 }  // namespace surfelao
