@@ -84,9 +84,9 @@ struct Sums {
 
 class Grouper {
 public:
-    /// answers: with the receivers' normals in place of these; empty: the receivers stay.
+    /// answers: become as many as receivers, with their normals; null: the receivers stay.
     Grouper(std::span<const Receiver> receivers, const glm::mat3& frame,
-            std::span<Occlusion> answers)
+            std::vector<Occlusion>* answers)
         : receivers_(receivers), answers_(answers), frame_(frame)
     {
     }
@@ -121,16 +121,20 @@ private:
     {
         const std::size_t count = receivers_.size();
         keys_.resize(count);
+        if (answers_ != nullptr)
+            answers_->reserve(count);
         for (std::size_t begin = 0; begin < count; begin += kForgottenAtOnce) {
             const std::size_t end = std::min(count, begin + kForgottenAtOnce);
             const std::span<Key> keys = std::span(keys_).subspan(begin, end - begin);
+            if (answers_ != nullptr)
+                answers_->resize(end);  // memory that what is forgotten leaves
             for_blocks(keys, [&](std::span<Key> block, std::size_t) {
                 for (Key& key : block) {
                     const auto receiver = static_cast<std::uint32_t>(&key - keys_.data());
                     const glm::vec3 p = frame_ * receivers_[receiver].position;
                     key = {{p.x, p.y, p.z}, receiver};
-                    if (!answers_.empty())
-                        answers_[receiver].bent_normal = receivers_[receiver].normal;
+                    if (answers_ != nullptr)
+                        (*answers_)[receiver].bent_normal = receivers_[receiver].normal;
                 }
             });
             if (forget)
@@ -205,7 +209,8 @@ private:
 
     glm::vec3 normal_of(std::uint32_t receiver) const
     {
-        return answers_.empty() ? receivers_[receiver].normal : answers_[receiver].bent_normal;
+        return answers_ == nullptr ? receivers_[receiver].normal
+                                   : (*answers_)[receiver].bent_normal;
     }
 
     std::size_t longest_axis(std::size_t begin, std::size_t end) const
@@ -282,7 +287,7 @@ private:
     }
 
     std::span<const Receiver> receivers_;
-    std::span<Occlusion> answers_;
+    std::vector<Occlusion>* answers_;
     glm::mat3 frame_;
     RawVector<Key> keys_, spare_;
     ReceiverGroups out_;
@@ -292,13 +297,13 @@ private:
 
 ReceiverGroups group_receivers(std::span<const Receiver> receivers, const glm::mat3& frame)
 {
-    return Grouper(receivers, frame, {}).build({});
+    return Grouper(receivers, frame, nullptr).build({});
 }
 
 ReceiverGroups group_receivers(std::span<const Receiver> receivers, const glm::mat3& frame,
-                               std::span<Occlusion> answers, const ForgetReceivers& forget)
+                               std::vector<Occlusion>& answers, const ForgetReceivers& forget)
 {
-    return Grouper(receivers, frame, answers).build(forget);
+    return Grouper(receivers, frame, &answers).build(forget);
 }
 
 }  // namespace surfelao

@@ -40,10 +40,11 @@ struct ReceiverGroups {
 [[nodiscard]] ReceiverGroups group_receivers(std::span<const Receiver> receivers,
                                              const glm::mat3& frame = glm::mat3(1.0f));
 
-/// The same, forgetting all receivers on the way. Their normals are the bent normals of the
-/// answers, one for each, from then on.
+/// The same, forgetting all receivers on the way. `answers`, empty before, grows to one for each as
+/// they go, whose bent normals are their normals from then on.
 [[nodiscard]] ReceiverGroups group_receivers(std::span<const Receiver> receivers,
-                                             const glm::mat3& frame, std::span<Occlusion> answers,
+                                             const glm::mat3& frame,
+                                             std::vector<Occlusion>& answers,
                                              const ForgetReceivers& forget);
 
 /// With v from `center` to a point, along = dot(v, axis) and across = |v - along * axis|, no

@@ -72,18 +72,47 @@ SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, const std::uint32_
     add_first<kAxis, 3>(raster, 4 * row, front, back, sum);
 }
 
-/// As many rows at a time as a register holds: their sums stay in registers. What of the register
-/// lies beyond a face's rows weighs nothing.
+/// Whether a register holds both faces of an axis: then the table knows the sign of each.
+template <int kRows>
+constexpr bool kHoldsPair = kByteRows == 2 * kRows;
+
+template <int kAxis, int kPart>
+SURFELAO_MASK_INLINE void add_first_of_pair(const MaskRaster& raster, Bytes pair, ByteSum* sum)
+{
+    const Bytes set = counts<2, kPart>(pair);
+    sum[kAxis].add(set, raster.first[0][kPart]);
+    sum[(kAxis + 1) % 3].add(set, raster.first[1][kPart]);
+    sum[(kAxis + 2) % 3].add(set, raster.first[2][kPart]);
+}
+
+template <int kAxis>
+SURFELAO_MASK_INLINE void add_first_of_pair(const MaskRaster& raster, const std::uint32_t* mask,
+                                            ByteSum* sum)
+{
+    const Bytes pair = load_bytes(mask + kAxis * kByteRows);
+    add_first_of_pair<kAxis, 0>(raster, pair, sum);
+    add_first_of_pair<kAxis, 1>(raster, pair, sum);
+    add_first_of_pair<kAxis, 2>(raster, pair, sum);
+    add_first_of_pair<kAxis, 3>(raster, pair, sum);
+}
+
+/// As many rows at a time as a register holds: their sums stay in registers.
 template <int kRows>
 SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, const std::uint32_t* mask,
                                     ByteSum* sum)
 {
     ByteSum part[3] = {};
+    if constexpr (kHoldsPair<kRows>) {
+        add_first_of_pair<0>(raster, mask, part);
+        add_first_of_pair<1>(raster, mask, part);
+        add_first_of_pair<2>(raster, mask, part);
+    } else {
 #pragma GCC unroll 1
-    for (int row = 0; row < kRows; row += kByteRows) {
-        add_first<0, kRows>(raster, mask, row, part);
-        add_first<1, kRows>(raster, mask, row, part);
-        add_first<2, kRows>(raster, mask, row, part);
+        for (int row = 0; row < kRows; row += kByteRows) {
+            add_first<0, kRows>(raster, mask, row, part);
+            add_first<1, kRows>(raster, mask, row, part);
+            add_first<2, kRows>(raster, mask, row, part);
+        }
     }
     for (int k = 0; k < 3; ++k)
         sum[k] = part[k];
@@ -98,11 +127,18 @@ SURFELAO_MASK_INLINE void add_first(const MaskRaster& raster, const std::uint32_
         add_first<kMaskCoarseRows>(raster, mask, sum);
 }
 
+/// Whether FacePair::more of a face's own rows was summed up.
+SURFELAO_MASK_INLINE bool has_more(const MaskRaster& raster)
+{
+    return raster.rows == kMaskRows ? !kHoldsPair<kMaskRows> : !kHoldsPair<kMaskCoarseRows>;
+}
+
 SURFELAO_MASK_INLINE First first_of(const MaskRaster& raster, const std::int32_t* totals)
 {
     First first;
+    const std::int32_t more = has_more(raster) ? 2 * raster.first_sum[0] : 0;
     for (int k = 0; k < 3; ++k)
-        first.at[k] = totals[k] - 2 * raster.first_sum[0];
+        first.at[k] = totals[k] - more;
     return first;
 }
 
@@ -153,15 +189,43 @@ SURFELAO_MASK_INLINE void add_second(const MaskRaster& raster, const std::uint32
     add_second<kAxis, 1>(raster, 4 * row, front, back, sum);
 }
 
+template <int kAxis, int kPart>
+SURFELAO_MASK_INLINE void add_second_of_pair(const MaskRaster& raster, Bytes pair, ByteSum* sum)
+{
+    constexpr int u = (kAxis + 1) % 3, v = (kAxis + 2) % 3;
+    const Bytes set = counts<4, kPart>(pair);
+    sum[kAxis].add(set, raster.second[0][kPart]);
+    sum[3 + kAxis].add(set, raster.second[1][kPart]);
+    sum[3 + v].add(set, raster.second[2][kPart]);
+    sum[u].add(set, raster.second[3][kPart]);
+    sum[3 + u].add(set, raster.second[4][kPart]);
+    sum[v].add(set, raster.second[5][kPart]);
+}
+
+template <int kAxis>
+SURFELAO_MASK_INLINE void add_second_of_pair(const MaskRaster& raster, const std::uint32_t* mask,
+                                             ByteSum* sum)
+{
+    const Bytes pair = load_bytes(mask + kAxis * kByteRows);
+    add_second_of_pair<kAxis, 0>(raster, pair, sum);
+    add_second_of_pair<kAxis, 1>(raster, pair, sum);
+}
+
 template <int kRows>
 SURFELAO_MASK_INLINE void add_second(const MaskRaster& raster, const std::uint32_t* mask,
                                      ByteSum* sum)
 {
+    if constexpr (kHoldsPair<kRows>) {
+        add_second_of_pair<0>(raster, mask, sum);
+        add_second_of_pair<1>(raster, mask, sum);
+        add_second_of_pair<2>(raster, mask, sum);
+    } else {
 #pragma GCC unroll 1
-    for (int row = 0; row < kRows; row += kByteRows) {
-        add_second<0, kRows>(raster, mask, row, sum);
-        add_second<1, kRows>(raster, mask, row, sum);
-        add_second<2, kRows>(raster, mask, row, sum);
+        for (int row = 0; row < kRows; row += kByteRows) {
+            add_second<0, kRows>(raster, mask, row, sum);
+            add_second<1, kRows>(raster, mask, row, sum);
+            add_second<2, kRows>(raster, mask, row, sum);
+        }
     }
 }
 
@@ -174,8 +238,10 @@ inline Second second_moments(const MaskRaster& raster, const std::uint32_t* mask
         add_second<kMaskCoarseRows>(raster, mask, sum);
     Second second;
     total(sum, second.at);
+    const std::int32_t more =
+        has_more(raster) ? 4 * (raster.second_sum[1] + raster.second_sum[2]) : 0;
     for (int k = 0; k < 3; ++k)
-        second.at[3 + k] -= 4 * (raster.second_sum[1] + raster.second_sum[2]);
+        second.at[3 + k] -= more;
     return second;
 }
 

@@ -80,10 +80,11 @@ std::vector<Occlusion> solve_masks(const MaskNode* nodes, std::span<const std::u
                                    const Progress& progress, const ForgetReceivers& forget)
 {
     MaskSolver solver(options);
-    std::vector<Occlusion> answers(receivers.size());
+    std::vector<Occlusion> answers;
     const bool forgets = forget && !options.definition.ground;
     const ReceiverGroups groups = forgets ? group_receivers(receivers, kMaskFrame, answers, forget)
                                           : group_receivers(receivers, kMaskFrame);
+    answers.resize(receivers.size());
     if (forgets)
         receivers = {};
     const MaskSkies skies(options.definition, receivers);

@@ -33,7 +33,14 @@ void set_rows(MaskRaster& raster)
     }
 }
 
-/// Order 1: the first moments; 2: the second.
+/// Whether a moment changes its sign from one face of an axis to the other.
+/// order 1: the first moments; 2: the second.
+constexpr bool is_odd(int order, int moment)
+{
+    return order == 1 ? moment == 0 : moment == 1 || moment == 2;
+}
+
+/// kOrder: as is_odd().
 template <int kOrder, int kMoments, int kParts>
 void set_moments(const MaskRaster& raster, std::int8_t (&table)[kMoments][kParts][kMaskFaceBytes],
                  std::int32_t (&sums)[kMoments])
@@ -59,6 +66,9 @@ void set_moments(const MaskRaster& raster, std::int8_t (&table)[kMoments][kParts
                 table[m][part][byte] =
                     static_cast<std::int8_t>(std::lround(kMaskMomentUnit * mean[m]));
                 sums[m] += table[m][part][byte];
+                if (raster.rows == kMaskCoarseRows)
+                    table[m][part][4 * kMaskCoarseRows + byte] = static_cast<std::int8_t>(
+                        is_odd(kOrder, m) ? -table[m][part][byte] : table[m][part][byte]);
             }
         }
     }

@@ -49,10 +49,14 @@ struct alignas(64) MaskRaster {
     ///
     /// First: solid angle / length times 1, u, v; length is that of the direction as written above.
     /// Second: solid angle / length^2 times 1, u, v, uu, uv, vv.
+    ///
+    /// Of eight rows a face's 32 bytes come first; behind them stand those of the face opposite,
+    /// which what changes its sign with the axis has negative: 1 of the first moments, u and v of
+    /// the second.
     alignas(64) std::int8_t first[3][4][kMaskFaceBytes];
     alignas(64) std::int8_t second[6][2][kMaskFaceBytes];
 
-    /// Sums over all parts and bytes.
+    /// Sums over all parts and bytes of one face.
     std::int32_t first_sum[3];
     std::int32_t second_sum[6];
 };
