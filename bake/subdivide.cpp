@@ -392,7 +392,7 @@ private:
                     count += 1.0;
                 }
                 const auto value = static_cast<float>(sum / count);
-                bends = bends || std::abs(value - mean_at(ends)) > tolerance_;
+                bends = bends || std::abs(value - mean_at(ends)) > most_bend_of(ends);
                 middles_.push_back({ends, value});
             }
             if (bends)
@@ -402,6 +402,13 @@ private:
         });
         std::ranges::sort(cut_edges_);
         std::ranges::sort(middles_);
+    }
+
+    /// An edge between two vertices of the file is one of the file.
+    [[nodiscard]] float most_bend_of(std::uint64_t vertices) const
+    {
+        const bool is_old = (vertices & 0xFFFFFFFFu) < mesh_.scene.positions.size();
+        return is_old ? tolerance_ : (1.0f - kPieceMargin) * tolerance_;
     }
 
     [[nodiscard]] float mean_at(std::uint64_t vertices) const

@@ -149,6 +149,21 @@ TEST(Subdivide, CutsNextToNothingTheSecondTime)
     }
 }
 
+// Masks answer otherwise where the same surface has finer triangles.
+TEST(Subdivide, CutsNextToNothingWhereTheAnswersMove)
+{
+    const auto wave = [](double size) {
+        return by_place([size](glm::vec3 p) {
+            return 0.5 + size * std::sin(20.0 * p.x) * std::sin(20.0 * p.y);
+        });
+    };
+    const Scene sheet = scenes::sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+    const Scene once = refined(sheet, wave(0.4));
+    const Scene twice = refined(once, wave(0.4 * 1.05));
+    EXPECT_GT(once.triangles.size(), 100u);
+    EXPECT_EQ(twice.triangles.size(), once.triangles.size());
+}
+
 // Nothing of it shows at the middles of the floor's edges.
 TEST(Subdivide, FindsWhatStandsWithinATriangle)
 {
