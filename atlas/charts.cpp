@@ -3,9 +3,8 @@
 #include "atlas/layout.h"
 #include "atlas/occupancy.h"
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
@@ -443,40 +442,32 @@ Facets make_facets(const Mesh& mesh)
     facets.areas.resize(count);
     facets.neighbours = neighbours_of(geometry);
     std::vector<std::uint8_t> is_alone(count, 0);
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, count, kFacetGrain),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-            for (std::size_t t = range.begin(); t < range.end(); ++t) {
-                const glm::uvec3 own = geometry.triangles[t];
-                const glm::uvec3 welded(geometry.welded[own.x], geometry.welded[own.y],
-                                        geometry.welded[own.z]);
-                const glm::dvec3 true_area = doubled_area(geometry, own);
-                is_alone[t] = glm::dot(doubled_area(geometry, welded), true_area) > 0.0 ? 0 : 1;
-                facets.corners[t] = is_alone[t] != 0 ? own : welded;
-                const glm::dvec3 doubled = doubled_area(geometry, facets.corners[t]);
-                facets.areas[t] = 0.5 * glm::length(doubled);
-                facets.normals[t] = glm::vec3(doubled / glm::length(doubled));
-                glm::vec3 sum(0.0f);
-                for (int k = 0; k < 3; ++k)
-                    sum += mesh.surface.normals[mesh.surface.corners(geometry)[t][k]];
-                const float length = glm::length(sum);
-                facets.shading[t] = length > 0.1f ? sum / length : facets.normals[t];
-            }
-        });
+    for_all(count, kFacetGrain, [&](std::size_t t) {
+        const glm::uvec3 own = geometry.triangles[t];
+        const glm::uvec3 welded(geometry.welded[own.x], geometry.welded[own.y],
+                                geometry.welded[own.z]);
+        const glm::dvec3 true_area = doubled_area(geometry, own);
+        is_alone[t] = glm::dot(doubled_area(geometry, welded), true_area) > 0.0 ? 0 : 1;
+        facets.corners[t] = is_alone[t] != 0 ? own : welded;
+        const glm::dvec3 doubled = doubled_area(geometry, facets.corners[t]);
+        facets.areas[t] = 0.5 * glm::length(doubled);
+        facets.normals[t] = glm::vec3(doubled / glm::length(doubled));
+        glm::vec3 sum(0.0f);
+        for (int k = 0; k < 3; ++k)
+            sum += mesh.surface.normals[mesh.surface.corners(geometry)[t][k]];
+        const float length = glm::length(sum);
+        facets.shading[t] = length > 0.1f ? sum / length : facets.normals[t];
+    });
     for (std::size_t t = 0; t < count; ++t)
         for (std::uint32_t& other : facets.neighbours[t])
             if (other != kNoTriangle && (is_alone[t] != 0 || is_alone[other] != 0))
                 other = kNoTriangle;
     facets.is_smooth.resize(count);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kFacetGrain),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t t = range.begin(); t < range.end(); ++t)
-                              for (std::size_t k = 0; k < 3; ++k)
-                                  facets.is_smooth[t][k] =
-                                      facets.neighbours[t][k] != kNoTriangle &&
-                                      is_smooth_side(mesh, facets, static_cast<std::uint32_t>(t),
-                                                     k);
-                      });
+    for_all(count, kFacetGrain, [&](std::size_t t) {
+        for (std::size_t k = 0; k < 3; ++k)
+            facets.is_smooth[t][k] = facets.neighbours[t][k] != kNoTriangle &&
+                                     is_smooth_side(mesh, facets, static_cast<std::uint32_t>(t), k);
+    });
     return facets;
 }
 

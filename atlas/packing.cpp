@@ -2,10 +2,10 @@
 
 #include "atlas/bit_mask.h"
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 #include "surfels/number_text.h"
 #include "surfels/texels.h"
 
-#include <tbb/parallel_for.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -287,8 +287,7 @@ public:
           padding_(std::max(1u, settings.padding)),
           upright_(shapes.size())
     {
-        tbb::parallel_for(std::size_t{0}, shapes.size(),
-                          [&](std::size_t i) { upright_[i] = upright(shapes[i]); });
+        for_tasks(shapes.size(), [&](std::size_t i) { upright_[i] = upright(shapes[i]); });
         const std::array<std::function<double(const Upright&)>, kOrders> sizes{
             [](const Upright& one) { return one.extent.y; },
             [](const Upright& one) { return one.extent.x * one.extent.y; },
@@ -328,7 +327,7 @@ public:
         const std::uint32_t cell = (size + kMostCells - 1) / kMostCells;
         std::vector<BitMask> masks(shapes_.size());  // with padding
         std::vector<std::uint64_t> covered(shapes_.size());
-        tbb::parallel_for(std::size_t{0}, shapes_.size(), [&](std::size_t i) {
+        for_tasks(shapes_.size(), [&](std::size_t i) {
             const BitMask own = drawn(i, scale);
             covered[i] = own.count();
             const bool is_speck = std::max(own.width(), own.height()) <= kSpeckTexels;
@@ -430,8 +429,7 @@ public:
     std::optional<Packing> first_that_fits(const Trials& trials, std::uint32_t size)
     {
         std::array<std::optional<Packing>, kTrials> found;
-        tbb::parallel_for(std::size_t{0}, kTrials,
-                          [&](std::size_t i) { found[i] = packer_.at(trials[i], size); });
+        for_tasks(kTrials, [&](std::size_t i) { found[i] = packer_.at(trials[i], size); });
         tell();
         for (std::optional<Packing>& one : found)
             if (one)

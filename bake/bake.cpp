@@ -17,11 +17,11 @@
 #include "image/image_file.h"
 #include "surfels/errors.h"
 #include "surfels/folded_mesh.h"
+#include "surfels/for_all.h"
 #include "surfels/number_text.h"
 #include "surfels/stopwatch.h"
 #include "surfels/topology.h"
 
-#include <tbb/parallel_invoke.h>
 #include <glm/vec3.hpp>
 
 #include <algorithm>
@@ -188,7 +188,7 @@ std::vector<Occlusion> bake_at_vertices(const Job& job, BakeReport& report,
     baked.answers = std::vector<Occlusion>();
     folded.unfold();
     std::vector<std::string> written_notes;
-    tbb::parallel_invoke(
+    do_both(
         [&] {
             if (settings.output.empty())
                 return;

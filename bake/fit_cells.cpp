@@ -4,7 +4,6 @@
 #include "surfels/for_all.h"
 #include "surfels/union_find.h"
 
-#include <tbb/parallel_for.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -360,7 +359,7 @@ void add_triangles(std::span<const double> areas, SurfaceSamples& samples)
         std::size_t cell, sample;
     };
     const auto for_each_block = [&](const auto& body) {
-        tbb::parallel_for(std::size_t{0}, (rows.size() + kBlock - 1) / kBlock, [&](std::size_t b) {
+        for_tasks((rows.size() + kBlock - 1) / kBlock, [&](std::size_t b) {
             body(b, b * kBlock, std::min(rows.size(), (b + 1) * kBlock));
         });
     };

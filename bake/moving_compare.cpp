@@ -6,10 +6,9 @@
 #include "bake/table.h"
 #include "engines/threads.h"
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 #include "surfels/number_text.h"
 #include "surfels/stopwatch.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -141,7 +140,7 @@ private:
     std::vector<Occlusion> smoothed(const std::vector<Occlusion>& answers) const
     {
         std::vector<Occlusion> means(answers.size());
-        tbb::parallel_for(std::size_t{0}, answers.size(), [&](std::size_t i) {
+        for_tasks(answers.size(), [&](std::size_t i) {
             means[i] = answers[i];
             double sum = 0.0;
             for (const std::uint32_t other : neighbours_[i])

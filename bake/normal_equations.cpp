@@ -1,6 +1,6 @@
 #include "bake/normal_equations.h"
 
-#include <tbb/parallel_for.h>
+#include "surfels/for_all.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ void for_rows(std::size_t count, const Body& body)
     if (blocks <= 1)  // no thread is woken for it
         block(0);
     else
-        tbb::parallel_for(std::size_t{0}, blocks, block);
+        for_tasks(blocks, block);
 }
 
 /// Per column: r.r and r.z of a residual r and of z, which the preconditioner makes of it.

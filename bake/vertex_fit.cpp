@@ -5,7 +5,6 @@
 #include "surfels/buckets.h"
 #include "surfels/for_all.h"
 
-#include <tbb/parallel_for.h>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
@@ -200,7 +199,7 @@ void VertexFit::Impl::make_matrix(const Buckets<std::uint32_t>& corners,
     };
     using Entry = std::pair<std::uint32_t, double>;
     std::vector<Block> blocks((unknown_count + kGrain - 1) / kGrain);
-    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t index) {
+    for_tasks(blocks.size(), [&](std::size_t index) {
         Block& block = blocks[index];
         std::vector<Entry> row;
         const std::size_t end = std::min(unknown_count, (index + 1) * kGrain);

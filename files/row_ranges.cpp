@@ -1,5 +1,7 @@
 #include "files/row_ranges.h"
 
+#include "surfels/for_all.h"
+
 #include <algorithm>
 #include <string_view>
 
@@ -43,9 +45,9 @@ std::vector<RowRange> line_ranges(const TextCursor& cursor)
     while (text.size() - ranges.back().offset > 2 * kRangeBytes)
         ranges.push_back({0, 0, cursor.line_begin(ranges.back().offset + kRangeBytes), 0});
     std::vector<std::uint64_t> lines(ranges.size(), 0);
-    tbb::parallel_for(std::size_t{1}, ranges.size(), [&](std::size_t i) {
-        const std::size_t begin = ranges[i - 1].offset;
-        lines[i] = line_ends(text.substr(begin, ranges[i].offset - begin));
+    for_tasks(ranges.size() - 1, [&](std::size_t i) {
+        const std::size_t begin = ranges[i].offset;
+        lines[i + 1] = line_ends(text.substr(begin, ranges[i + 1].offset - begin));
     });
     for (std::size_t i = 1; i < ranges.size(); ++i)
         ranges[i].line = ranges[i - 1].line + lines[i];
@@ -56,9 +58,9 @@ std::vector<RowRange> row_ranges(const TextCursor& cursor, std::uint64_t count)
 {
     std::vector<RowRange> ranges = line_ranges(cursor);
     std::vector<std::uint64_t> rows(ranges.size(), 0);
-    tbb::parallel_for(std::size_t{1}, ranges.size(), [&](std::size_t i) {
-        const RowRange& before = ranges[i - 1];
-        rows[i] = count_rows(cursor.part(before.offset, ranges[i].offset, before.line));
+    for_tasks(ranges.size() - 1, [&](std::size_t i) {
+        const RowRange& before = ranges[i];
+        rows[i + 1] = count_rows(cursor.part(before.offset, ranges[i + 1].offset, before.line));
     });
     std::size_t used = 1;
     while (used < ranges.size() && ranges[used - 1].first + rows[used] < count) {

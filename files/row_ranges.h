@@ -3,8 +3,7 @@
 #pragma once
 
 #include "files/text_cursor.h"
-
-#include <tbb/parallel_for.h>
+#include "surfels/for_all.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -40,7 +39,7 @@ template <class Body>
 void for_each_in_order(std::size_t count, const Body& body)
 {
     std::vector<std::exception_ptr> faults(count);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    for_tasks(count, [&](std::size_t i) {
         try {
             body(i);
         } catch (...) {

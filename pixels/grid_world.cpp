@@ -1,10 +1,9 @@
 #include "pixels/grid_world.h"
 
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 #include "surfels/labels.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 
@@ -200,13 +199,10 @@ std::vector<Occlusion> solve_with_grids(const GridPixels& settings,
                                         const Progress& progress)
 {
     std::vector<Occlusion> values = settings.world->solve_rest(receivers, settings.rest, progress);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, receivers.size(), kGridGrain),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i)
-                              darken(values[i],
-                                     visibility_at(settings.world->objects(), settings.merge,
-                                                   receivers[i].position, receivers[i].normal));
-                      });
+    for_all(receivers.size(), kGridGrain, [&](std::size_t i) {
+        darken(values[i], visibility_at(settings.world->objects(), settings.merge,
+                                        receivers[i].position, receivers[i].normal));
+    });
     return values;
 }
 

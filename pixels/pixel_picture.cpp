@@ -1,10 +1,9 @@
 #include "pixels/pixel_picture.h"
 
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 #include "surfels/stopwatch.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <glm/common.hpp>
 
 #include <algorithm>
@@ -332,14 +331,11 @@ private:
         const std::vector<Occlusion>& references =
             answers.references.empty() ? answers.values : answers.references;
         std::vector<glm::vec3> colors(receivers.size());
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, receivers.size(), kPaintGrain),
-                          [&](const tbb::blocked_range<std::size_t>& range) {
-                              for (std::size_t i = range.begin(); i < range.end(); ++i)
-                                  colors[i] =
-                                      paint_.color({receivers[i], answers.values[i], references[i],
-                                                    !answers.holes.empty() && answers.holes[i] != 0,
-                                                    with_grids()});
-                          });
+        for_all(receivers.size(), kPaintGrain, [&](std::size_t i) {
+            colors[i] =
+                paint_.color({receivers[i], answers.values[i], references[i],
+                              !answers.holes.empty() && answers.holes[i] != 0, with_grids()});
+        });
         return colors;
     }
 

@@ -1,7 +1,7 @@
 #include "pixels/pixel_samples.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include "surfels/for_all.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -35,13 +35,10 @@ PixelSamples::PixelSamples(const Mesh& mesh, const Rims& rims, std::span<const s
       base_(base),
       middle_shares_(middles.pixels.size())
 {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, middles.pixels.size(), kChunk),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i)
-                              middle_shares_[i] = {
-                                  middles.pixels[i], 1,
-                                  base_ ? base_(middles.points[i]) : glm::vec3(1.0f)};
-                      });
+    for_all(middles.pixels.size(), kChunk, [&](std::size_t i) {
+        middle_shares_[i] = {middles.pixels[i], 1,
+                             base_ ? base_(middles.points[i]) : glm::vec3(1.0f)};
+    });
 }
 
 PixelSamples::Place PixelSamples::place_of(const View& view, const SurfacePoint& point) const
@@ -144,7 +141,7 @@ std::size_t PixelSamples::add(const View& view, std::span<const std::uint32_t> t
         ++share.samples;
         share.base += base;
     };
-    tbb::parallel_for(std::size_t{0}, added.size(), [&](std::size_t chunk) {
+    for_tasks(added.size(), [&](std::size_t chunk) {
         const std::size_t end = std::min(triangles.size(), (chunk + 1) * kChunk);
         for (std::size_t pixel = chunk * kChunk; pixel < end; ++pixel) {
             if (triangles[pixel] != 0)

@@ -1,9 +1,8 @@
 #include "pixels/seen.h"
 
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
@@ -14,24 +13,12 @@
 namespace surfelao {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
-
 /// Not of unit length.
 glm::vec3 face_of(const Geometry& geometry, std::uint32_t triangle)
 {
     const glm::uvec3 t = geometry.triangles[triangle];
     const glm::vec3 a = geometry.positions[t.x];
     return glm::cross(geometry.positions[t.y] - a, geometry.positions[t.z] - a);
-}
-
-template <class Body>
-void for_each(std::size_t count, const Body& body)
-{
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i)
-                              body(i);
-                      });
 }
 
 }  // namespace
@@ -83,7 +70,7 @@ std::vector<Receiver> receivers_facing(const Mesh& mesh, const View& view,
                                        std::span<const SurfacePoint> points, const Offset& offset)
 {
     std::vector<Receiver> receivers = receivers_at(mesh.geometry, mesh.surface, points, offset);
-    for_each(points.size(), [&](std::size_t i) {
+    for_all(points.size(), [&](std::size_t i) {
         const std::uint32_t triangle = points[i].triangle;
         const glm::vec3 face = face_of(mesh.geometry, triangle);
         const glm::vec3 corner = mesh.geometry.positions[mesh.geometry.triangles[triangle].x];
@@ -121,7 +108,7 @@ SeenPixels seen_pixels(const Mesh& mesh, const Rims& rims, const View& view, int
     }
     seen.points.resize(seen.pixels.size());
     const auto columns = static_cast<std::uint32_t>(width);
-    for_each(seen.pixels.size(), [&](std::size_t i) {
+    for_all(seen.pixels.size(), [&](std::size_t i) {
         const std::uint32_t pixel = seen.pixels[i];
         const glm::vec2 middle = glm::vec2(pixel % columns, pixel / columns) + 0.5f;
         seen.points[i] = rims.nearer(

@@ -1,10 +1,9 @@
 #include "reference/moving_rays.h"
 
 #include "reference/embree_scene.h"
+#include "surfels/for_all.h"
 
 #include <embree3/rtcore.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <glm/vec4.hpp>
 
 #include <algorithm>
@@ -58,11 +57,8 @@ struct MovingRayScene::Impl {
         RayBody& body = bodies.at(index);
         if (body.mesh == nullptr)
             return;
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, body.vertices.size(), 4096),
-                          [&](const auto& some) {
-                              for (std::size_t i = some.begin(); i < some.end(); ++i)
-                                  body.buffer[i] = position(body, i);
-                          });
+        for_all(body.vertices.size(), 4096,
+                [&](std::size_t i) { body.buffer[i] = position(body, i); });
         rtcSetGeometryBuildQuality(body.mesh, RTC_BUILD_QUALITY_REFIT);
         rtcUpdateGeometryBuffer(body.mesh, RTC_BUFFER_TYPE_VERTEX, 0);
         rtcCommitGeometry(body.mesh);

@@ -4,10 +4,9 @@
 #include "reference/embree_scene.h"
 #include "reference/sobol.h"
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 
 #include <embree3/rtcore.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 #include <xmmintrin.h>
 #include <glm/geometric.hpp>
@@ -307,11 +306,10 @@ std::vector<Occlusion> trace_all(RTCScene scene, std::span<const Receiver> recei
             receivers[order[i]].normal != glm::vec3(0.0f))
             results[order[i]] = kUnsolved;
     }
-    const tbb::blocked_range<std::size_t> runs(share.begin, share.end, 4);
-    tbb::parallel_for(runs, [&](const auto& range) {
+    for_ranges(share.begin, share.end, 4, [&](std::size_t begin, std::size_t end) {
         const FlushDenormals flush;
         RunTracer<width> tracer(scene, receivers, options, points, results);
-        for (std::size_t run = range.begin(); run < range.end(); ++run) {
+        for (std::size_t run = begin; run < end; ++run) {
             const std::size_t first = run * kPacket;
             const std::size_t count = std::min<std::size_t>(kPacket, order.size() - first);
             tracer.trace(std::span(order).subspan(first, count));
@@ -365,11 +363,11 @@ std::vector<Occlusion> trace_occlusion(const RayScene& scene, std::span<const Re
 std::vector<ClosestHit> closest_hits(const RayScene& scene, std::span<const Ray> rays)
 {
     std::vector<ClosestHit> hits(rays.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), 1024), [&](const auto& some) {
+    for_ranges(0, rays.size(), 1024, [&](std::size_t begin, std::size_t end) {
         const FlushDenormals flush;
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
-        for (std::size_t i = some.begin(); i < some.end(); ++i) {
+        for (std::size_t i = begin; i < end; ++i) {
             const Ray& ray = rays[i];
             RTCRayHit query{};
             query.ray.org_x = ray.origin.x;
@@ -454,19 +452,17 @@ std::vector<NearestPlace> nearest_places(const RayScene& scene, const Geometry& 
                                          std::span<const glm::vec3> places)
 {
     std::vector<NearestPlace> found(places.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size(), 64), [&](const auto& some) {
-        for (std::size_t i = some.begin(); i < some.end(); ++i) {
-            NearestQuery nearest{geometry, places[i], {}};
-            RTCPointQuery query{};
-            query.x = places[i].x;
-            query.y = places[i].y;
-            query.z = places[i].z;
-            query.radius = std::numeric_limits<float>::infinity();
-            RTCPointQueryContext context;
-            rtcInitPointQueryContext(&context);
-            rtcPointQuery(scene.impl().scene, &query, &context, look_at_triangle, &nearest);
-            found[i] = nearest.found;
-        }
+    for_all(places.size(), 64, [&](std::size_t i) {
+        NearestQuery nearest{geometry, places[i], {}};
+        RTCPointQuery query{};
+        query.x = places[i].x;
+        query.y = places[i].y;
+        query.z = places[i].z;
+        query.radius = std::numeric_limits<float>::infinity();
+        RTCPointQueryContext context;
+        rtcInitPointQueryContext(&context);
+        rtcPointQuery(scene.impl().scene, &query, &context, look_at_triangle, &nearest);
+        found[i] = nearest.found;
     });
     return found;
 }

@@ -6,7 +6,6 @@
 #include "surfels/repeated.h"
 #include "surfels/weld.h"
 
-#include <tbb/parallel_reduce.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -258,23 +257,24 @@ void set_areas_and_normals(const UnitPositions& positions, const Sums& sums, Geo
 
 Box box_of(const Scene& scene, const std::vector<bool>& left_out)
 {
-    const auto add = [&](const tbb::blocked_range<std::size_t>& range, Box box) {
-        for (std::size_t t = range.begin(); t < range.end(); ++t) {
+    constexpr std::size_t kBlock = 4096;
+    const std::size_t count = scene.triangles.size();
+    std::vector<Box> boxes((count + kBlock - 1) / kBlock);
+    for_tasks(boxes.size(), [&](std::size_t block) {
+        Box& box = boxes[block];
+        for (std::size_t t = block * kBlock; t < std::min(count, (block + 1) * kBlock); ++t) {
             if (!left_out.empty() && left_out[t])
                 continue;
             for (int corner = 0; corner < 3; ++corner)
                 box.include(scene.positions[scene.triangles[t][corner]]);
         }
-        return box;
-    };
-    const auto join = [](Box a, const Box& b) {
-        a.low = glm::min(a.low, b.low);
-        a.high = glm::max(a.high, b.high);
-        return a;
-    };
-    constexpr std::size_t kGrain = 4096;
-    return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, scene.triangles.size(), kGrain),
-                                Box{}, add, join);
+    });
+    Box all;
+    for (const Box& box : boxes) {
+        all.low = glm::min(all.low, box.low);
+        all.high = glm::max(all.high, box.high);
+    }
+    return all;
 }
 
 Frame frame_of(const Box& box)

@@ -3,8 +3,7 @@
 /// Internal: for the folders' own sources.
 #pragma once
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
+#include "surfels/for_all.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -25,9 +24,8 @@ template <class Body>
 void for_owner_ranges(std::size_t count, const Body& body)
 {
     constexpr std::size_t kFewOwners = 4096;  // a thread's start takes longer
-    const std::size_t ranges =
-        count < kFewOwners ? 1 : static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
-    tbb::parallel_for(std::size_t{0}, ranges, [&](std::size_t i) {
+    const std::size_t ranges = count < kFewOwners ? 1 : loop_threads();
+    for_tasks(ranges, [&](std::size_t i) {
         body(OwnerRange{static_cast<std::uint32_t>(count * i / ranges),
                         static_cast<std::uint32_t>(count * (i + 1) / ranges)});
     });

@@ -1,10 +1,9 @@
 #include "surfels/point_cloud.h"
 
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 #include "surfels/nearest.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 #include <Eigen/Eigenvalues>
 #include <glm/common.hpp>
@@ -42,11 +41,7 @@ constexpr float kGoldenAngle = 2.39996323f;
 template <class Each>
 void for_each_point(std::size_t count, const Each& each)
 {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kPointGrain),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i)
-                              each(i);
-                      });
+    for_all(count, kPointGrain, each);
 }
 
 /// Every third bit, from 21 bits.

@@ -1,8 +1,8 @@
 #include "surfels/texels.h"
 
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 
-#include <tbb/parallel_for.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -351,7 +351,7 @@ std::vector<Texel> MapRaster::texels(std::uint32_t first, std::uint32_t rows) co
         }
     }
     std::vector<std::vector<Texel>> found(strips);
-    tbb::parallel_for(std::size_t{0}, strips, [&](std::size_t s) {
+    for_tasks(strips, [&](std::size_t s) {
         const std::uint32_t begin = first + static_cast<std::uint32_t>(s) * kStripRows;
         Strip strip(*this, begin, std::min(kStripRows, end - begin));
         std::vector<std::uint32_t>& list = of_strip[s];

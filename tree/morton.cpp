@@ -1,9 +1,9 @@
 #include "tree/morton.h"
 
+#include "surfels/for_all.h"
+
 #include <glm/common.hpp>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -59,15 +59,12 @@ std::vector<MortonKey> morton_order(std::span<const glm::vec3> points)
     const double cells_per_length = side > 0.0 ? kCells / side : 0.0;
 
     std::vector<MortonKey> keys(points.size());
-    using Range = tbb::blocked_range<std::size_t>;
-    tbb::parallel_for(Range(0, points.size(), 4096), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const glm::dvec3 offset = drawn_in(points[i]) - begin;
-            keys[i].code = spread(cell(offset.x, cells_per_length)) |
-                           spread(cell(offset.y, cells_per_length)) << 1 |
-                           spread(cell(offset.z, cells_per_length)) << 2;
-            keys[i].index = static_cast<std::uint32_t>(i);
-        }
+    for_all(points.size(), 4096, [&](std::size_t i) {
+        const glm::dvec3 offset = drawn_in(points[i]) - begin;
+        keys[i].code = spread(cell(offset.x, cells_per_length)) |
+                       spread(cell(offset.y, cells_per_length)) << 1 |
+                       spread(cell(offset.z, cells_per_length)) << 2;
+        keys[i].index = static_cast<std::uint32_t>(i);
     });
     tbb::parallel_sort(keys, [](const MortonKey& a, const MortonKey& b) {
         return a.code != b.code ? a.code < b.code : a.index < b.index;

@@ -2,7 +2,7 @@
 /// branches would be guessed wrong, and a wrong guess costs more than moving several keys.
 #pragma once
 
-#include <tbb/parallel_for.h>
+#include "surfels/for_all.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -20,11 +20,10 @@ void for_blocks(std::span<Key> keys, const Work& work)
 {
     if (keys.size() <= kPartBlock)
         return work(keys, 0);
-    tbb::parallel_for(std::size_t{0}, (keys.size() + kPartBlock - 1) / kPartBlock,
-                      [&](std::size_t i) {
-                          const std::size_t begin = i * kPartBlock;
-                          work(keys.subspan(begin, std::min(kPartBlock, keys.size() - begin)), i);
-                      });
+    for_tasks((keys.size() + kPartBlock - 1) / kPartBlock, [&](std::size_t i) {
+        const std::size_t begin = i * kPartBlock;
+        work(keys.subspan(begin, std::min(kPartBlock, keys.size() - begin)), i);
+    });
 }
 
 /// Writes the keys for which below(key) to out[left...], the others to out[..., right - 1] from the

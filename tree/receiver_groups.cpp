@@ -1,12 +1,11 @@
 #include "tree/receiver_groups.h"
 
+#include "surfels/for_all.h"
 #include "tree/discard.h"
 #include "tree/lanes.h"
 #include "tree/part.h"
 
 #include <glm/geometric.hpp>
-
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <bit>
@@ -158,7 +157,7 @@ private:
     static void do_both(std::size_t keys, const Left& left, const Right& right)
     {
         if (keys > kParallelGroup) {
-            tbb::parallel_invoke(left, right);
+            surfelao::do_both(left, right);
         } else {
             left();
             right();

@@ -204,7 +204,7 @@ TEST(Points, FarOffsetsAndDuplicatesChangeNothing)
 
 TEST(Points, FewAndCollinearOnesAreOpen)
 {
-    struct Case {
+    struct FewPoints {
         std::uint32_t points;
         DrawPoint place;
         bool has_normals;
@@ -213,9 +213,10 @@ TEST(Points, FewAndCollinearOnesAreOpen)
     };
     const DrawPoint on_line = [](Random& random) { return random.share() * glm::dvec3(1, 2, 3); };
     const DrawPoint at_one = [](Random&) { return glm::dvec3(7, 8, 9); };
-    for (const Case& c : {Case{100, on_line, false, 100, 0.0f}, Case{100, on_line, true, 0, 1.0f},
-                          Case{1, on_floor, false, 1, 0.0f}, Case{1, on_floor, true, 0, 0.0f},
-                          Case{20, at_one, false, 20, 0.0f}, Case{5, on_floor, false, 0, 0.0f}}) {
+    for (const FewPoints& c :
+         {FewPoints{100, on_line, false, 100, 0.0f}, FewPoints{100, on_line, true, 0, 1.0f},
+          FewPoints{1, on_floor, false, 1, 0.0f}, FewPoints{1, on_floor, true, 0, 0.0f},
+          FewPoints{20, at_one, false, 20, 0.0f}, FewPoints{5, on_floor, false, 0, 0.0f}}) {
         const PointTarget target =
             make_point_target(cloud_of(c.points, c.place, c.has_normals ? up_at : nullptr), {});
         EXPECT_EQ(target.cloud.counts.without_normal, c.without_normal);

@@ -1,11 +1,10 @@
 #include "tree/disks/brute_force.h"
 
+#include "surfels/for_all.h"
 #include "tree/disks/correction.h"
 #include "tree/disks/form_factor.h"
 
 #include <glm/geometric.hpp>
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -89,7 +88,7 @@ DiskResult solve_disks_brute_force(const Octree& octree, std::span<const Receive
         std::vector<double> changes(count, 0.0);
         for (int side = 0; side < (two_sided ? 2 : 1); ++side) {
             const std::vector<Receiver> asked = far_sides(octree, side == 0 ? 1.0f : -1.0f);
-            tbb::parallel_for(std::size_t{0}, count, [&](std::size_t s) {
+            for_tasks(count, [&](std::size_t s) {
                 const Receiver& at = asked[s];
                 const glm::vec3 normal = at.normal;
                 const Sum sum = capped(gather(octree, before, beyond, at));
@@ -115,7 +114,7 @@ DiskResult solve_disks_brute_force(const Octree& octree, std::span<const Receive
     }
 
     result.occlusion.resize(receivers.size());
-    tbb::parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t i) {
+    for_tasks(receivers.size(), [&](std::size_t i) {
         if (receivers[i].normal == glm::vec3(0.0f))
             return;
         const Sum sum = gather(octree, far, settings, receivers[i]);

@@ -1,20 +1,16 @@
 #include "tree/disks/correction.h"
 
+#include "surfels/for_all.h"
 #include "tree/ground.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace surfelao {
 namespace {
-
-using Range = tbb::blocked_range<std::size_t>;
 
 /// Groups that one thread takes at a time: some tens of microseconds each.
 constexpr std::size_t kGroupsPerTask = 16;
@@ -44,10 +40,10 @@ void gather_all(const Octree& octree, const EmitterVisibility& visibility,
                 const ReceiverGroups& groups, const ShareRange& leaves,
                 const GatherSettings& settings, std::span<DiskSum> sums, ProgressMeter& meter)
 {
-    tbb::parallel_for(Range(leaves.begin, leaves.end, kGroupsPerTask), [&](const Range& range) {
+    for_ranges(leaves.begin, leaves.end, kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
         gather_disks(octree, visibility, groups,
-                     std::span(groups.leaves).subspan(range.begin(), range.size()), settings, sums);
-        meter.add(range.size());
+                     std::span(groups.leaves).subspan(begin, end - begin), settings, sums);
+        meter.add(end - begin);
     });
 }
 
@@ -91,8 +87,8 @@ void average_over_nodes(const Octree& octree, const NodeRange& of,
                         std::span<const FarVisibility> same, std::span<const FarVisibility> other,
                         std::span<FarVisibility> nodes)
 {
-    tbb::parallel_for(Range(of.begin, of.end, 256), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+    for_ranges(of.begin, of.end, 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
             const OctreeNode& node = octree.nodes[i];
             glm::dvec4 sum(0.0);
             double area = 0.0;
@@ -113,7 +109,7 @@ void average_over_nodes(const Octree& octree, const NodeRange& of,
 void add_ground(const Definition& definition, std::span<const Receiver> receivers,
                 std::span<DiskSum> sums)
 {
-    tbb::parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t i) {
+    for_tasks(receivers.size(), [&](std::size_t i) {
         if (receivers[i].normal == glm::vec3(0.0f))
             return;
         sums[i].occlusion += ground_share(definition, receivers[i]);

@@ -1,7 +1,6 @@
 #include "tree/disks/disk_forest.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include "surfels/for_all.h"
 
 #include <algorithm>
 #include <utility>
@@ -99,7 +98,6 @@ void DiskForest::lay_out()
 
 void DiskForest::move(const Body& body)
 {
-    using Range = tbb::blocked_range<std::size_t>;
     const Octree& own = body.at_rest;
     const auto nodes = kinds_of(own.two_sided_nodes, own.nodes.size());
     const auto surfels = kinds_of(own.two_sided_surfels, own.surfels.size());
@@ -107,32 +105,33 @@ void DiskForest::move(const Body& body)
     for (int kind = 0; kind < 2; ++kind) {
         const std::uint32_t node_shift = body.nodes[kind].begin - nodes[kind].begin;
         const std::uint32_t surfel_shift = body.surfels[kind].begin - surfels[kind].begin;
-        tbb::parallel_for(
-            Range(nodes[kind].begin, nodes[kind].end, kPiece), [&](const Range& some) {
-                for (std::size_t i = some.begin(); i < some.end(); ++i) {
-                    OctreeNode node = own.nodes[i];
-                    node.center = glm::vec3(placed_point(node.center, body.placement));
-                    node.normal = moved_normal(body.placement, node.normal);
-                    node.radius *= scale;
-                    node.area *= scale * scale;
-                    node.next += node_shift;
-                    node.first_surfel += surfel_shift;
-                    octree_.nodes[static_cast<std::uint32_t>(i) + node_shift] = node;
-                }
-            });
-        tbb::parallel_for(
-            Range(surfels[kind].begin, surfels[kind].end, kPiece), [&](const Range& some) {
-                for (std::size_t i = some.begin(); i < some.end(); ++i) {
-                    Surfel surfel = own.surfels[i];
-                    surfel.position = glm::vec3(placed_point(surfel.position, body.placement));
-                    surfel.normal = moved_normal(body.placement, surfel.normal);
-                    surfel.area *= scale * scale;
-                    surfel.reach *= scale;
-                    for (glm::vec3& corner : surfel.corners)
-                        corner = scale * moved_normal(body.placement, corner);
-                    octree_.surfels[static_cast<std::uint32_t>(i) + surfel_shift] = surfel;
-                }
-            });
+        for_ranges(nodes[kind].begin, nodes[kind].end, kPiece,
+                   [&](std::size_t begin, std::size_t end) {
+                       for (std::size_t i = begin; i < end; ++i) {
+                           OctreeNode node = own.nodes[i];
+                           node.center = glm::vec3(placed_point(node.center, body.placement));
+                           node.normal = moved_normal(body.placement, node.normal);
+                           node.radius *= scale;
+                           node.area *= scale * scale;
+                           node.next += node_shift;
+                           node.first_surfel += surfel_shift;
+                           octree_.nodes[static_cast<std::uint32_t>(i) + node_shift] = node;
+                       }
+                   });
+        for_ranges(surfels[kind].begin, surfels[kind].end, kPiece,
+                   [&](std::size_t begin, std::size_t end) {
+                       for (std::size_t i = begin; i < end; ++i) {
+                           Surfel surfel = own.surfels[i];
+                           surfel.position =
+                               glm::vec3(placed_point(surfel.position, body.placement));
+                           surfel.normal = moved_normal(body.placement, surfel.normal);
+                           surfel.area *= scale * scale;
+                           surfel.reach *= scale;
+                           for (glm::vec3& corner : surfel.corners)
+                               corner = scale * moved_normal(body.placement, corner);
+                           octree_.surfels[static_cast<std::uint32_t>(i) + surfel_shift] = surfel;
+                       }
+                   });
     }
 }
 

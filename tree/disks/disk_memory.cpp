@@ -1,11 +1,9 @@
 #include "tree/disks/disk_memory.h"
 
 #include "surfels/bodies.h"
+#include "surfels/for_all.h"
 #include "tree/disks/correction.h"
 #include "tree/receiver_groups.h"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,19 +34,15 @@ void move_groups(const ReceiverGroups& at_rest, const Placement& placement, Rece
         group.radius *= scale;
         group.rise *= scale;
     }
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, at_rest.order.size(), 8192), [&](const auto& some) {
-            for (std::size_t i = some.begin(); i < some.end(); ++i) {
-                const glm::vec3 p(at_rest.position[0][i], at_rest.position[1][i],
-                                  at_rest.position[2][i]);
-                const glm::vec3 n(at_rest.normal[0][i], at_rest.normal[1][i], at_rest.normal[2][i]);
-                const glm::vec3 to = linear * p + shift, along = turn * n;
-                for (int axis = 0; axis < 3; ++axis) {
-                    now.position[axis][i] = to[axis];
-                    now.normal[axis][i] = along[axis];
-                }
-            }
-        });
+    for_all(at_rest.order.size(), 8192, [&](std::size_t i) {
+        const glm::vec3 p(at_rest.position[0][i], at_rest.position[1][i], at_rest.position[2][i]);
+        const glm::vec3 n(at_rest.normal[0][i], at_rest.normal[1][i], at_rest.normal[2][i]);
+        const glm::vec3 to = linear * p + shift, along = turn * n;
+        for (int axis = 0; axis < 3; ++axis) {
+            now.position[axis][i] = to[axis];
+            now.normal[axis][i] = along[axis];
+        }
+    });
 }
 
 /// Receivers of one body, in its own space and where it stands.

@@ -1,12 +1,10 @@
 #include "tree/disks/octree.h"
 
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 #include "tree/morton.h"
 
 #include <glm/geometric.hpp>
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <bit>
@@ -18,8 +16,6 @@
 
 namespace surfelao {
 namespace {
-
-using Range = tbb::blocked_range<std::size_t>;
 
 /// Surfels in one subtree that one thread lays out by itself.
 constexpr std::uint32_t kJobSurfels = 16384;
@@ -105,7 +101,7 @@ void append_tree(Octree& octree, std::span<const MortonKey> keys, std::uint32_t 
     const Layout layout(keys, options.leaf_surfels);
     std::vector<Stretch> stretches;
     layout.cut(0, static_cast<std::uint32_t>(keys.size()), stretches);
-    tbb::parallel_for(std::size_t{0}, stretches.size(), [&](std::size_t s) {
+    for_tasks(stretches.size(), [&](std::size_t s) {
         if (stretches[s].nodes.empty())
             layout.emit(stretches[s].first_surfel, stretches[s].surfel_count, stretches[s].nodes);
     });
@@ -115,7 +111,7 @@ void append_tree(Octree& octree, std::span<const MortonKey> keys, std::uint32_t 
     for (std::size_t s = 0; s < stretches.size(); ++s)
         begin[s + 1] = begin[s] + stretches[s].nodes.size();
     octree.nodes.resize(begin.back());
-    tbb::parallel_for(std::size_t{0}, stretches.size(), [&](std::size_t s) {
+    for_tasks(stretches.size(), [&](std::size_t s) {
         OctreeNode* out = octree.nodes.data() + begin[s];
         for (const OctreeNode& node : stretches[s].nodes) {
             *out = node;
@@ -178,14 +174,12 @@ Octree build_octree(std::span<const Surfel> surfels, std::span<const OccluderSid
     octree.surfels.resize(surfels.size());
     octree.source.resize(surfels.size());
     octree.two_sided_surfels = static_cast<std::uint32_t>(two_sided - keys.begin());
-    tbb::parallel_for(Range(0, keys.size(), 4096), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const std::uint32_t source = keys[i].index;
-            octree.source[i] = source;
-            octree.surfels[i] = surfels[source];
-            if (side(source) == OccluderSide::front)
-                octree.surfels[i].normal = -surfels[source].normal;
-        }
+    for_all(keys.size(), 4096, [&](std::size_t i) {
+        const std::uint32_t source = keys[i].index;
+        octree.source[i] = source;
+        octree.surfels[i] = surfels[source];
+        if (side(source) == OccluderSide::front)
+            octree.surfels[i].normal = -surfels[source].normal;
     });
 
     const std::span<const MortonKey> all(keys);
@@ -193,10 +187,7 @@ Octree build_octree(std::span<const Surfel> surfels, std::span<const OccluderSid
     octree.two_sided_nodes = static_cast<std::uint32_t>(octree.nodes.size());
     append_tree(octree, all.subspan(octree.two_sided_surfels), octree.two_sided_surfels, options);
 
-    tbb::parallel_for(Range(0, octree.nodes.size(), 256), [&](const Range& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i)
-            aggregate(octree, octree.nodes[i]);
-    });
+    for_all(octree.nodes.size(), 256, [&](std::size_t i) { aggregate(octree, octree.nodes[i]); });
     return octree;
 }
 

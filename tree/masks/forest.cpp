@@ -1,5 +1,6 @@
 #include "tree/masks/forest.h"
 
+#include "surfels/for_all.h"
 #include "tree/masks/constants.h"
 #include "tree/masks/masks.h"
 #include "tree/masks/winding.h"
@@ -9,7 +10,6 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -161,7 +161,7 @@ public:
                 place_children(i, below);
             open = std::move(below);
         }
-        tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
+        for_tasks(open.size(), [&](std::size_t i) {
             std::vector<std::uint32_t> left{open[i]};
             while (!left.empty()) {
                 const std::uint32_t node = left.back();
@@ -205,7 +205,7 @@ MaskForest::MaskForest(const Geometry& geometry, std::vector<BodyMesh> bodies)
             bodies.size() == 1 ? geometry : geometry_of(geometry, bodies[k], first_at);
         bodies_[k].vertices = std::move(bodies[k].vertices);
     }
-    tbb::parallel_for(std::size_t{0}, bodies_.size(), [&](std::size_t k) {
+    for_tasks(bodies_.size(), [&](std::size_t k) {
         Body& body = bodies_[k];
         // once, not for each form that it takes
         if (k != 0 && is_winding_mixed(body.at_rest))
@@ -296,7 +296,7 @@ const MaskNode* MaskForest::nodes() const
     const std::lock_guard lock(settling_);
     // a thread that waits here must not take up work that asks for the nodes
     tbb::this_task_arena::isolate([&] {
-        tbb::parallel_for(std::size_t{0}, bodies_.size(), [&](std::size_t k) {
+        for_tasks(bodies_.size(), [&](std::size_t k) {
             if (!std::exchange(bodies_[k].settled, true) && bodies_[k].placement)
                 settle(bodies_[k]);
         });
@@ -332,7 +332,7 @@ void MaskForest::place_before(const View& view, std::span<const std::uint32_t> b
 {
     nodes.resize(nodes_.size());
     const Placement back = inverse(*bodies_[view.viewer].placement);
-    tbb::parallel_for(std::size_t{0}, bodies.size(), [&](std::size_t k) {
+    for_tasks(bodies.size(), [&](std::size_t k) {
         const Body& body = bodies_[bodies[k]];
         const NodePlacer placer(bodies[k] == view.viewer ? Placement{} : back * *body.placement,
                                 body.base);

@@ -1,9 +1,8 @@
 #include "tree/masks/limits.h"
 
+#include "surfels/for_all.h"
 #include "tree/ground.h"
 #include "tree/masks/constants.h"
-
-#include <tbb/parallel_for.h>
 
 namespace surfelao {
 
@@ -29,7 +28,7 @@ MaskSkies::MaskSkies(const Definition& definition, std::span<const Receiver> rec
         return;
     const MaskLimits limits = distance_limits(definition);
     scales_.resize(receivers.size());
-    tbb::parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t i) {
+    for_tasks(receivers.size(), [&](std::size_t i) {
         float mean = 0.0f;
         for (unsigned k = 0; k < limits.count; ++k)
             mean += limits.weight[k] *

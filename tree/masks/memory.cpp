@@ -1,13 +1,11 @@
 #include "tree/masks/memory.h"
 
+#include "surfels/for_all.h"
 #include "surfels/stopwatch.h"
 #include "tree/masks/constants.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <bit>
@@ -198,26 +196,24 @@ float MaskMemory::find_wanted(OfBody& of)
     const float limit = definition_of(of).max_distance;
     of.wanted = of.share;
     constexpr std::size_t kGrain = 64;
-    return tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, of.wanted.size(), kGrain), 0.0f,
-        [&](const tbb::blocked_range<std::size_t>& range, float bound) {
-            std::vector<std::uint64_t> now(words_);
-            for (std::size_t leaf = range.begin(); leaf < range.end(); ++leaf) {
-                const ReceiverGroup& group = of.groups.groups[of.groups.leaves[leaf]];
-                std::ranges::fill(now, std::uint64_t{0});
-                bound = std::max(bound, look_around(of, group, limit, now.data()));
-                bool changed = own;
-                for (std::size_t word = 0; word < words_; ++word) {
-                    std::uint64_t& seen = of.seen[leaf * words_ + word];
-                    changed |= now[word] != seen || (now[word] & moved[word]) != 0;
-                    seen = now[word];
-                }
-                if (!changed)
-                    of.wanted[leaf] = 0;
+    std::vector<float> bounds(of.wanted.size(), 0.0f);
+    for_ranges(0, of.wanted.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint64_t> now(words_);
+        for (std::size_t leaf = begin; leaf < end; ++leaf) {
+            const ReceiverGroup& group = of.groups.groups[of.groups.leaves[leaf]];
+            std::ranges::fill(now, std::uint64_t{0});
+            bounds[leaf] = look_around(of, group, limit, now.data());
+            bool changed = own;
+            for (std::size_t word = 0; word < words_; ++word) {
+                std::uint64_t& seen = of.seen[leaf * words_ + word];
+                changed |= now[word] != seen || (now[word] & moved[word]) != 0;
+                seen = now[word];
             }
-            return bound;
-        },
-        [](float a, float b) { return std::max(a, b); });
+            if (!changed)
+                of.wanted[leaf] = 0;
+        }
+    });
+    return bounds.empty() ? 0.0f : std::ranges::max(bounds);
 }
 
 MaskLeafRoots MaskMemory::leaf_roots_of(const OfBody& of) const

@@ -1,15 +1,35 @@
 #include "tree/masks/solver.h"
 
+#include "surfels/for_all.h"
 #include "tree/masks/constants.h"
 #include "tree/masks/raster.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 
 namespace surfelao {
 namespace {
+
+/// Buffers of one thread: one list of nodes per level of the group tree on the way down.
+struct MaskWorkspace {
+    MaskScratch scratch;
+    std::vector<MaskBuffer<std::uint32_t>> lists;
+    std::vector<std::uint32_t> roots;
+
+    MaskWorkspace() = default;
+    MaskWorkspace(const MaskWorkspace&) = delete;
+    MaskWorkspace& operator=(const MaskWorkspace&) = delete;
+    ~MaskWorkspace()
+    {
+        release(scratch.frontier);
+        release(scratch.sheets);
+        release(scratch.rectangles);
+        release(scratch.triangles);
+        for (MaskBuffer<std::uint32_t>& list : lists)
+            release(list);
+    }
+};
 
 /// Leaf k holds the receivers from kGroupSize k on.
 std::size_t leaf_of(const ReceiverGroup& group)
@@ -54,7 +74,7 @@ void write(const MaskQuestion& question, const ReceiverGroup& group, const MaskA
 template <class Work>
 void for_wanted(const MaskQuestion& question, const Work& work)
 {
-    tbb::parallel_for(std::size_t{0}, question.groups.leaves.size(), [&](std::size_t leaf) {
+    for_tasks(question.groups.leaves.size(), [&](std::size_t leaf) {
         if (question.wanted[leaf] != 0)
             work(question.groups.groups[question.groups.leaves[leaf]]);
     });
@@ -62,15 +82,9 @@ void for_wanted(const MaskQuestion& question, const Work& work)
 
 }  // namespace
 
-MaskWorkspace::~MaskWorkspace()
-{
-    release(scratch.frontier);
-    release(scratch.sheets);
-    release(scratch.rectangles);
-    release(scratch.triangles);
-    for (MaskBuffer<std::uint32_t>& list : lists)
-        release(list);
-}
+struct MaskSolver::Workspaces {
+    tbb::enumerable_thread_specific<MaskWorkspace> of_threads;
+};
 
 /// The way from the root group down to the leaf groups that are wanted.
 /// at_leaf(group, in, in_count, from_above, workspace).
@@ -109,7 +123,7 @@ private:
         const ReceiverGroup& group = question_.groups.groups[index];
         if (!is_wanted(group))
             return;
-        MaskWorkspace& workspace = solver_.workspaces_.local();
+        MaskWorkspace& workspace = solver_.workspaces_->of_threads.local();
         if (group.first_child == 0) {
             at_leaf_(group, in, in_count, from_above, workspace);
             return;
@@ -131,8 +145,8 @@ private:
             solver_.kernel_.descend(world_, group, in, in_count, list, shared, workspace.scratch);
             const std::vector<std::uint32_t> kept(list.data, list.data + list.count);
             release(list);
-            tbb::parallel_invoke([&] { visit_child(0, kept.data(), kept.size(), shared); },
-                                 [&] { visit_child(1, kept.data(), kept.size(), shared); });
+            do_both([&] { visit_child(0, kept.data(), kept.size(), shared); },
+                    [&] { visit_child(1, kept.data(), kept.size(), shared); });
         } else {
             if (workspace.lists.size() <= level)
                 workspace.lists.resize(level + 1);
@@ -152,9 +166,14 @@ private:
 };
 
 MaskSolver::MaskSolver(const MaskOptions& options)
-    : options_(options), settings_(mask_settings(options)), kernel_(*kernel_of(options.kernel))
+    : options_(options),
+      settings_(mask_settings(options)),
+      kernel_(*kernel_of(options.kernel)),
+      workspaces_(std::make_unique<Workspaces>())
 {
 }
+
+MaskSolver::~MaskSolver() = default;
 
 void MaskSolver::ask(const Definition& definition)
 {
@@ -218,7 +237,7 @@ void MaskSolver::solve_kept(const MaskQuestion& question, std::span<const MaskKe
         MaskAnswers found{};
         kernel_.solve_kept(world, group, roots.data(), roots.size(), &kept[leaf], leaves,
                            columns_of(question, group, settings_.limits), found,
-                           workspaces_.local().scratch);
+                           workspaces_->of_threads.local().scratch);
         write(question, group, found, answers);
         meter.add(1);
     });

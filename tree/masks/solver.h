@@ -13,11 +13,10 @@
 #include "tree/raw_vector.h"
 #include "tree/receiver_groups.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -25,18 +24,6 @@ namespace surfelao {
 
 /// The kernel of a set; never null.
 [[nodiscard]] const MaskKernel* kernel_of(MaskKernelSet set);
-
-/// Buffers of one thread: one list of nodes per level of the group tree on the way down.
-struct MaskWorkspace {
-    MaskScratch scratch;
-    std::vector<MaskBuffer<std::uint32_t>> lists;
-    std::vector<std::uint32_t> roots;
-
-    MaskWorkspace() = default;
-    MaskWorkspace(const MaskWorkspace&) = delete;
-    MaskWorkspace& operator=(const MaskWorkspace&) = delete;
-    ~MaskWorkspace();
-};
 
 /// Lists of roots, one per leaf group.
 struct MaskLeafRoots {
@@ -65,6 +52,7 @@ class MaskSolver {
 public:
     /// Throws as solve_masks.
     explicit MaskSolver(const MaskOptions& options);
+    ~MaskSolver();
 
     /// The same options, but for another limit and ground.
     void ask(const Definition& definition);
@@ -84,13 +72,14 @@ public:
 private:
     template <class AtLeaf>
     class Descent;
+    struct Workspaces;
 
     [[nodiscard]] MaskWorld world_of(const MaskQuestion& question) const;
 
     MaskOptions options_;
     MaskSettings settings_;
     const MaskKernel& kernel_;
-    tbb::enumerable_thread_specific<MaskWorkspace> workspaces_;
+    std::unique_ptr<Workspaces> workspaces_;  ///< each thread's own
 };
 
 /// As solve_masks of masks.h, of the trees at these roots.

@@ -1,6 +1,7 @@
 #include "tree/masks/tree.h"
 
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 #include "tree/discard.h"
 #include "tree/masks/constants.h"
 #include "tree/masks/masks.h"
@@ -14,8 +15,6 @@
 #include "tree/raw_vector.h"
 
 #include <glm/geometric.hpp>
-
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <array>
@@ -188,7 +187,7 @@ private:
             right = build_node(first + 1, right_first, middle, end, 1 - side, right_cuts);
         };
         if (count > kMaskParallelNode) {
-            tbb::parallel_invoke(build_left, build_right);
+            do_both(build_left, build_right);
         } else {
             build_left();
             build_right();
