@@ -1,5 +1,6 @@
 #include "bake/subdivide.h"
 
+#include "bake/subdivide_piece.h"
 #include "surfels/errors.h"
 
 #include <tbb/parallel_sort.h>
@@ -19,25 +20,6 @@ namespace surfelao {
 namespace {
 
 constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
-
-/// Places in a triangle are whole numbers of 1 / kPlaceUnit: edges are halved kMostRounds times.
-constexpr std::uint16_t kPlaceUnit = 1u << kMostRounds;
-
-/// Weights of the second and third corner of an old triangle; the first has the rest.
-using Place = glm::vec<2, std::uint16_t>;
-
-glm::vec2 weights_at(const glm::vec2& place)
-{
-    return place / static_cast<float>(kPlaceUnit);
-}
-
-/// A part of an old triangle.
-struct Piece {
-    glm::uvec3 vertices;
-    std::array<Place, 3> places;
-    /// By bits: the middle of the edge behind this corner is known not to bend.
-    std::uint8_t straight = 0;
-};
 
 /// Two numbers without an order, as one.
 std::uint64_t pair_of(std::uint32_t a, std::uint32_t b)
@@ -65,16 +47,6 @@ struct Probe {
 int next(int corner)
 {
     return (corner + 1) % 3;
-}
-
-/// Barycentric weights of a place in a piece, in proportion.
-glm::vec3 shares(const Piece& piece, const glm::vec2& place)
-{
-    const auto cross = [](glm::vec2 a, glm::vec2 b) { return a.x * b.y - a.y * b.x; };
-    const glm::vec2 a = glm::vec2(piece.places[0]) - place, b = glm::vec2(piece.places[1]) - place,
-                    c = glm::vec2(piece.places[2]) - place;
-    const glm::vec3 areas(cross(b, c), cross(c, a), cross(a, b));
-    return areas / (areas.x + areas.y + areas.z);
 }
 
 class Subdivider {
