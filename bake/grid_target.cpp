@@ -4,11 +4,10 @@
 #include "grid/cone.h"
 #include "reference/closest_hit.h"
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 #include "surfels/number_text.h"
 #include "surfels/stopwatch.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <Eigen/Dense>
 #include <glm/geometric.hpp>
 
@@ -26,6 +25,9 @@ constexpr std::size_t kHemispheres = 16;
 
 /// Cells that are solved at once: a million receivers, 44 bytes each and what groups them.
 constexpr std::size_t kBandCells = std::size_t{1} << 16;
+
+/// Cells: each is some ten thousand instructions.
+constexpr std::size_t kGrain = 256;
 
 /// The closer cells reach so far beyond the object, and are about this share of all (bunny, wingnut
 /// and a table, 32 cells, against 1.05 and .65: errors .85 to .95 of the cones, .77 to .87 of the
@@ -130,7 +132,7 @@ public:
         for (std::size_t begin = 0; begin < places.size(); begin += kBandCells) {
             const std::size_t count = std::min(kBandCells, places.size() - begin);
             receivers.resize(count * kHemispheres);
-            for_cells(count, [&](std::size_t i) {
+            for_all(count, kGrain, [&](std::size_t i) {
                 for (std::size_t k = 0; k < kHemispheres; ++k)
                     receivers[i * kHemispheres + k] = {places[begin + i], sphere.directions[k]};
             });
@@ -143,7 +145,7 @@ public:
                 solve(prepared_, receivers, engine_, progress_ ? Progress(in_stage) : Progress());
             bake_.residual = solution.residual;
             bake_.receivers += receivers.size();
-            for_cells(count, [&](std::size_t i) {
+            for_all(count, kGrain, [&](std::size_t i) {
                 sphere.fit(&solution.occlusion[i * kHemispheres], grid_.store,
                            &values[(begin + i) * channels]);
             });
@@ -162,16 +164,6 @@ public:
     }
 
 private:
-    /// one(i) for i < count, on all cores.
-    template <class One>
-    static void for_cells(std::size_t count, const One& one)
-    {
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 256), [&](const auto& some) {
-            for (std::size_t i = some.begin(); i < some.end(); ++i)
-                one(i);
-        });
-    }
-
     const Prepared& prepared_;
     const EngineSettings& engine_;
     const StageProgress& progress_;
@@ -292,7 +284,7 @@ void repair_cells(const Geometry& object, const RayScene& scene, std::span<const
     const std::vector<std::uint8_t> is_inside =
         inside_object(scene, places, grid.store, grid.values);
     move_cells_out(object, scene, places, is_inside, solver, bake);
-    // places inside are left out before anybody is asked there: of two nearly one
+    // places inside are left out before anybody is asked there: more than half of them
     std::vector<glm::dvec3> beside = places_beside(grid, is_inside);
     std::vector<glm::vec3> in_unit;
     for (const glm::dvec3 place : beside)
