@@ -27,7 +27,7 @@ constexpr std::size_t kHemispheres = 16;
 constexpr std::size_t kBandCells = std::size_t{1} << 16;
 
 /// Cells: each is some ten thousand instructions.
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kCellGrain = 256;
 
 /// The closer cells reach so far beyond the object, and are about this share of all (bunny, wingnut
 /// and a table, 32 cells, against 1.05 and .65: errors .85 to .95 of the cones, .77 to .87 of the
@@ -132,7 +132,7 @@ public:
         for (std::size_t begin = 0; begin < places.size(); begin += kBandCells) {
             const std::size_t count = std::min(kBandCells, places.size() - begin);
             receivers.resize(count * kHemispheres);
-            for_all(count, kGrain, [&](std::size_t i) {
+            for_all(count, kCellGrain, [&](std::size_t i) {
                 for (std::size_t k = 0; k < kHemispheres; ++k)
                     receivers[i * kHemispheres + k] = {places[begin + i], sphere.directions[k]};
             });
@@ -145,7 +145,7 @@ public:
                 solve(prepared_, receivers, engine_, progress_ ? Progress(in_stage) : Progress());
             bake_.residual = solution.residual;
             bake_.receivers += receivers.size();
-            for_all(count, kGrain, [&](std::size_t i) {
+            for_all(count, kCellGrain, [&](std::size_t i) {
                 sphere.fit(&solution.occlusion[i * kHemispheres], grid_.store,
                            &values[(begin + i) * channels]);
             });
