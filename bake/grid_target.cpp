@@ -26,7 +26,7 @@ constexpr std::size_t kHemispheres = 16;
 /// Cells that are solved at once: a million receivers, 44 bytes each and what groups them.
 constexpr std::size_t kBandCells = std::size_t{1} << 16;
 
-/// Cells: each is some ten thousand instructions.
+/// Cells that are worth a thread's start: the fit of one is some thousand instructions.
 constexpr std::size_t kCellGrain = 256;
 
 /// The closer cells reach so far beyond the object, and are about this share of all (bunny, wingnut

@@ -140,7 +140,7 @@ private:
     std::vector<Occlusion> smoothed(const std::vector<Occlusion>& answers) const
     {
         std::vector<Occlusion> means(answers.size());
-        for_tasks(answers.size(), [&](std::size_t i) {
+        for_all(answers.size(), [&](std::size_t i) {
             means[i] = answers[i];
             double sum = 0.0;
             for (const std::uint32_t other : neighbours_[i])

@@ -57,8 +57,7 @@ struct MovingRayScene::Impl {
         RayBody& body = bodies.at(index);
         if (body.mesh == nullptr)
             return;
-        for_all(body.vertices.size(), 4096,
-                [&](std::size_t i) { body.buffer[i] = position(body, i); });
+        for_all(body.vertices.size(), [&](std::size_t i) { body.buffer[i] = position(body, i); });
         rtcSetGeometryBuildQuality(body.mesh, RTC_BUILD_QUALITY_REFIT);
         rtcUpdateGeometryBuffer(body.mesh, RTC_BUFFER_TYPE_VERTEX, 0);
         rtcCommitGeometry(body.mesh);

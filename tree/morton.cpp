@@ -59,7 +59,7 @@ std::vector<MortonKey> morton_order(std::span<const glm::vec3> points)
     const double cells_per_length = side > 0.0 ? kCells / side : 0.0;
 
     std::vector<MortonKey> keys(points.size());
-    for_all(points.size(), 4096, [&](std::size_t i) {
+    for_all(points.size(), [&](std::size_t i) {
         const glm::dvec3 offset = drawn_in(points[i]) - begin;
         keys[i].code = spread(cell(offset.x, cells_per_length)) |
                        spread(cell(offset.y, cells_per_length)) << 1 |

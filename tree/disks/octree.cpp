@@ -174,7 +174,7 @@ Octree build_octree(std::span<const Surfel> surfels, std::span<const OccluderSid
     octree.surfels.resize(surfels.size());
     octree.source.resize(surfels.size());
     octree.two_sided_surfels = static_cast<std::uint32_t>(two_sided - keys.begin());
-    for_all(keys.size(), 4096, [&](std::size_t i) {
+    for_all(keys.size(), [&](std::size_t i) {
         const std::uint32_t source = keys[i].index;
         octree.source[i] = source;
         octree.surfels[i] = surfels[source];
