@@ -100,7 +100,6 @@ VertexBake answer(const Job& job, std::optional<Occluders>& engines, VertexTarge
         bake = bake_to_error(mesh, target, settings.engine, offset, *settings.error, settings.check,
                              progress, engines ? &*engines : job.occluders);
     } else {
-        target.fold();
         FoldedCorners corners(*job.mesh);
         VertexBake solved = solve_vertices(
             mesh, target, settings.engine, progress, engines ? &*engines : job.occluders,
@@ -169,7 +168,8 @@ std::vector<Occlusion> bake_at_vertices(const Job& job, BakeReport& report,
         report.seconds.tree += built.tree;
     };
     Stopwatch stage;
-    std::optional<VertexTarget> target(std::in_place, mesh, settings.target);
+    const bool asks_once = !settings.merged && !settings.error && !settings.share;
+    std::optional<VertexTarget> target(std::in_place, mesh, settings.target, asks_once);
     report.receivers = target->receivers().size();
     report.seconds.read += stage.lap();
     if (settings.share) {

@@ -3,6 +3,7 @@
 #include "surfels/edges.h"
 #include "surfels/for_all.h"
 #include "surfels/union_find.h"
+#include "tree/discard.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -392,15 +393,20 @@ void add_triangles(std::span<const double> areas, SurfaceSamples& samples)
     });
 }
 
-void drop_triangles(SurfaceSamples& samples)
+void drop_triangles(SurfaceSamples& samples, std::size_t first, std::size_t end)
 {
     const auto cut = [](auto& list, std::size_t count) {
         list.resize(count);
         list.shrink_to_fit();
     };
-    cut(samples.points, samples.quad_weights.size());
-    cut(samples.areas, samples.quad_weights.size());
+    const std::size_t in_quads = samples.quad_weights.size();
+    cut(samples.areas, in_quads);
     cut(samples.first_sample, samples.quads.size());
+    const std::size_t begin = std::max(first, in_quads);
+    if (end == samples.points.size())
+        cut(samples.points, in_quads);
+    else if (begin < end)
+        discard(std::span(samples.points).subspan(begin, end - begin));
 }
 
 SurfaceSamples samples_of(const Geometry& geometry, std::span<const std::uint32_t> unknowns)

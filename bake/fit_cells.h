@@ -18,8 +18,9 @@ namespace surfelao {
 /// Appends the cells and samples of the triangles to those of the quads. areas: triangle_areas().
 void add_triangles(std::span<const double> areas, SurfaceSamples& samples);
 
-/// Leaves those of the quads.
-void drop_triangles(SurfaceSamples& samples);
+/// Leaves those of the quads, but the places of samples before `first` and from `end` on: range
+/// behind range, each place is there until its range comes, the areas and cells until the first.
+void drop_triangles(SurfaceSamples& samples, std::size_t first, std::size_t end);
 
 inline constexpr std::size_t kQuadsEverywhere = 1u << 16;
 

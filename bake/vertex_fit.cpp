@@ -256,9 +256,9 @@ const SurfaceSamples& VertexFit::samples() const
     return impl_->samples;
 }
 
-void VertexFit::fold()
+void VertexFit::fold(std::size_t first, std::size_t end)
 {
-    drop_triangles(impl_->samples);
+    drop_triangles(impl_->samples, first, end);
 }
 
 void VertexFit::unfold()

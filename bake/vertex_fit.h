@@ -94,9 +94,10 @@ public:
 
     [[nodiscard]] const SurfaceSamples& samples() const;
 
-    /// Samples and their cells are gone until unfolded, which is quick: engines that answer
-    /// meanwhile have the memory. In between nothing else is asked. O(triangles), all threads.
-    void fold();
+    /// Samples are gone until unfolded, which is quick: engines that answer meanwhile have the
+    /// memory. Range behind range: the place of a sample is there until its range comes, and
+    /// nothing else is. Unfolding: O(triangles), all threads.
+    void fold(std::size_t first, std::size_t end);
     void unfold();
 
     /// One per scene vertex: occlusion, cut to [0, 1], and the bent normal: the direction of the

@@ -6,11 +6,18 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
 namespace surfelao {
+namespace {
+
+/// Samples: 12 MiB, and 28 MiB of receivers.
+constexpr std::size_t kFoldedAtOnce = std::size_t{1} << 20;
+
+}  // namespace
 
 Offset offset_of(const TargetSettings& settings, const Frame& frame)
 {
@@ -76,7 +83,8 @@ std::string text_of(const TargetSettings& settings)
     return text;
 }
 
-VertexTarget::VertexTarget(std::shared_ptr<const Mesh> mesh, const TargetSettings& settings)
+VertexTarget::VertexTarget(std::shared_ptr<const Mesh> mesh, const TargetSettings& settings,
+                           bool is_folded)
     : mesh_(std::move(mesh)), settings_(settings)
 {
     const Surface& surface = mesh_->surface;
@@ -87,10 +95,15 @@ VertexTarget::VertexTarget(std::shared_ptr<const Mesh> mesh, const TargetSetting
                 lone_.push_back(vertex);
         }
     }
-    follow_mesh();
+    make_receivers(is_folded);
 }
 
 void VertexTarget::follow_mesh()
+{
+    make_receivers(false);
+}
+
+void VertexTarget::make_receivers(bool folds)
 {
     const Geometry& geometry = mesh_->geometry;
     const Surface& surface = mesh_->surface;
@@ -99,7 +112,20 @@ void VertexTarget::follow_mesh()
         receivers_ = receivers_at_wedges(geometry, surface, offset);
         return;
     }
-    receivers_ = receivers_at(geometry, surface, fit_->samples().points, offset);
+    const std::span<const SurfacePoint> points = fit_->samples().points;
+    receivers_.clear();
+    receivers_.reserve(points.size() + lone_.size());
+    const std::size_t count = points.size();
+    std::size_t end = 0;
+    do {
+        const std::size_t first = end;
+        end = std::min(first + kFoldedAtOnce, count);
+        const std::vector<Receiver> some =
+            receivers_at(geometry, surface, points.subspan(first, end - first), offset);
+        receivers_.insert(receivers_.end(), some.begin(), some.end());
+        if (folds)
+            fit_->fold(first, end);
+    } while (end < count);
     for (const std::uint32_t vertex : lone_) {
         const glm::vec3 normal = surface.normals[vertex];
         const float height = offset.value_or(kMostOffset);
@@ -113,12 +139,6 @@ void VertexTarget::forget_receivers(std::size_t first, std::size_t end)
         receivers_ = std::vector<Receiver>();  // {} would keep the room
     else
         discard(std::span(receivers_).subspan(first, end - first));
-}
-
-void VertexTarget::fold()
-{
-    if (fit_)
-        fit_->fold();
 }
 
 void VertexTarget::unfold()

@@ -71,8 +71,9 @@ inline constexpr double kCoarse = 0.05;
 
 class VertexTarget {
 public:
-    /// mesh: made with settings.normals. O(n).
-    VertexTarget(std::shared_ptr<const Mesh> mesh, const TargetSettings& settings);
+    /// mesh: made with settings.normals. O(n). is_folded: see unfold().
+    VertexTarget(std::shared_ptr<const Mesh> mesh, const TargetSettings& settings,
+                 bool is_folded = false);
 
     [[nodiscard]] std::span<const Receiver> receivers() const { return receivers_; }
 
@@ -80,9 +81,8 @@ public:
     /// what is made of them take memory of their own.
     void forget_receivers(std::size_t first, std::size_t end);
 
-    /// Samples are gone until they are unfolded (VertexFit::fold): meanwhile only the receivers are
-    /// asked for.
-    void fold();
+    /// Until then a folded target has no samples (VertexFit::fold): only its receivers are asked
+    /// for, and most of the memory that they take is that of the samples they are made of.
     void unfold();
 
     /// One per scene vertex. answers: one per receiver. Vertices that no triangle uses and that
@@ -111,6 +111,7 @@ public:
     }
 
 private:
+    void make_receivers(bool folds);
     struct Residuals;
     Residuals residuals(std::span<const Occlusion> answers,
                         std::span<const Occlusion> values) const;

@@ -18,6 +18,10 @@ namespace {
 /// Receivers; smaller groups are made in less time than it takes to hand them to another thread.
 constexpr std::size_t kParallelGroup = 2048;
 
+/// Receivers: the large pages of the columns are then filled one after the other, and the keys
+/// behind them given back, whatever the number of threads: 10 MB less at the peak of 10^7.
+constexpr std::size_t kColumnsAtOnce = std::size_t{1} << 18;
+
 /// Receivers: 28 MiB.
 constexpr std::size_t kForgottenAtOnce = std::size_t{1} << 20;
 
@@ -31,9 +35,35 @@ struct alignas(16) Key {
     std::uint32_t receiver;
 };
 
+/// Keys, 16 MiB: so many have as much memory again to be parted into. More of them have it for a
+/// quarter, or a solution would need most memory while its receivers are sorted.
+constexpr std::size_t kLeastSpare = std::size_t{1} << 20;
+
+/// Brings the keys for which below(key) before the others, and returns how many they are. O(n), and
+/// where `spare` is smaller than `keys`, one that was brought forward changes places with another.
+template <class Below>
+std::size_t part_in_place(std::span<Key> keys, const Below& below, std::span<Key> spare)
+{
+    std::size_t first = 0;
+    for (std::size_t begin = 0; begin < keys.size(); begin += spare.size()) {
+        const std::span<Key> some =
+            keys.subspan(begin, std::min(spare.size(), keys.size() - begin));
+        const std::size_t found = part<Key>(some, below, spare.data());
+        for_blocks(spare.first(some.size()), [&](std::span<const Key> block, std::size_t i) {
+            std::copy(block.begin(), block.end(), some.begin() + i * kPartBlock);
+        });
+        // others of before stand from `first` on, those that were found from `begin` on
+        const std::size_t moved = std::min(begin - first, found);
+        std::swap_ranges(keys.begin() + first, keys.begin() + first + moved,
+                         keys.begin() + begin + found - moved);
+        first += found;
+    }
+    return first;
+}
+
 /// Brings the first `rank` keys along an axis before the others; of keys at one place those of the
-/// first receivers. `spare` is as large as `keys`. O(n) on average; std::nth_element does the same
-/// with a branch for each key, in twice the time.
+/// first receivers. O(n) on average; std::nth_element does the same with a branch for each key, in
+/// twice the time.
 void select(std::span<Key> keys, std::size_t rank, std::size_t axis, std::span<Key> spare)
 {
     while (rank > 0 && rank < keys.size()) {
@@ -48,16 +78,11 @@ void select(std::span<Key> keys, std::size_t rank, std::size_t axis, std::span<K
                          sample.begin() + static_cast<std::ptrdiff_t>(count));
         const float place = *middle;
 
-        const auto part_keys = [&](const auto& below) {
-            const std::size_t first = part<Key>(keys, below, spare.data());
-            for_blocks(spare.first(keys.size()), [&](std::span<const Key> block, std::size_t i) {
-                std::copy(block.begin(), block.end(), keys.begin() + i * kPartBlock);
-            });
-            return first;
-        };
-        std::size_t first = part_keys([=](const Key& key) { return key.at[axis] < place; });
+        std::size_t first = part_in_place(
+            keys, [=](const Key& key) { return key.at[axis] < place; }, spare);
         if (first == 0) {
-            first = part_keys([=](const Key& key) { return key.at[axis] <= place; });
+            first = part_in_place(
+                keys, [=](const Key& key) { return key.at[axis] <= place; }, spare);
             if (rank < first) {
                 std::nth_element(
                     keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(rank),
@@ -99,8 +124,8 @@ public:
                     keys_.end());
         if (keys_.empty())
             return {};
-        spare_.resize(keys_.size());
-        sort_keys(0, keys_.size());
+        spare_.resize(std::min(keys_.size(), std::max(kLeastSpare, keys_.size() / 4)));
+        sort_keys(0, keys_.size(), spare_);
         spare_ = RawVector<Key>();  // before there are columns
         out_.order.resize(keys_.size());
         for (auto* columns : {&out_.position, &out_.normal}) {
@@ -165,15 +190,21 @@ private:
     }
 
     /// In two at the median of the longest extent, again and again.
-    void sort_keys(std::size_t begin, std::size_t end)
+    void sort_keys(std::size_t begin, std::size_t end, std::span<Key> spare)
     {
         const std::size_t middle = middle_of(begin, end);
         if (middle == begin)
             return;
         select(std::span(keys_).subspan(begin, end - begin), middle - begin,
-               longest_axis(begin, end), std::span(spare_).subspan(begin, end - begin));
+               longest_axis(begin, end), spare);
+        if (spare.size() < end - begin) {  // so many that each half takes all threads
+            sort_keys(begin, middle, spare);
+            sort_keys(middle, end, spare);
+            return;
+        }
         do_both(
-            end - begin, [&] { sort_keys(begin, middle); }, [&] { sort_keys(middle, end); });
+            end - begin, [&] { sort_keys(begin, middle, spare.first(middle - begin)); },
+            [&] { sort_keys(middle, end, spare.subspan(middle - begin)); });
     }
 
     /// Group `index` over keys [begin, end); its descendants stand at [first, first + 2
@@ -195,9 +226,16 @@ private:
             const std::size_t left_first = first + 2;
             const std::size_t right_first = left_first + 2 * (leaf_count(middle - begin) - 1);
             Sums right_sums;
-            do_both(
-                end - begin, [&] { sums = build_group(first, left_first, begin, middle); },
-                [&] { right_sums = build_group(first + 1, right_first, middle, end); });
+            const auto build_left = [&] { sums = build_group(first, left_first, begin, middle); };
+            const auto build_right = [&] {
+                right_sums = build_group(first + 1, right_first, middle, end);
+            };
+            if (end - begin > kColumnsAtOnce) {
+                build_left();
+                build_right();
+            } else {
+                do_both(end - begin, build_left, build_right);
+            }
             discard(std::span(keys_).subspan(begin, end - begin));
             sums.position += right_sums.position;
             sums.normal += right_sums.normal;

@@ -218,7 +218,8 @@ TEST(FitSamples, AreTheSameAfterFolding)
     VertexFit folded(mesh.geometry, mesh.surface, {});
     const SurfaceSamples before = folded.samples();
     ASSERT_FALSE(before.quads.empty());
-    folded.fold();
+    folded.fold(0, 1);
+    folded.fold(1, before.points.size());
     EXPECT_EQ(folded.samples().points.size(), before.quad_weights.size());
     folded.unfold();
     const SurfaceSamples& after = folded.samples();

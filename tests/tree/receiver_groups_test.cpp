@@ -151,6 +151,36 @@ TEST(ReceiverGroups, SameBytesForAnyNumberOfThreads)
     }
 }
 
+// More than are parted at once.
+TEST(ReceiverGroups, PartTheMostAlongTheLongestAxisToo)
+{
+    std::vector<Receiver> receivers(5 << 18);
+    std::uint32_t state = 1;
+    const auto next = [&] {
+        state = 1664525u * state + 1013904223u;
+        return static_cast<float>(state >> 8) * 0x1p-24f;
+    };
+    for (Receiver& receiver : receivers) {
+        const float x = next(), y = 0.7f * next();
+        receiver = {{x, y, 0.4f * next()}, {0, 0, 1}};
+    }
+    const ReceiverGroups found = group_receivers(receivers);
+    std::vector<std::uint32_t> order(found.order.begin(), found.order.end());
+    std::sort(order.begin(), order.end());
+    ASSERT_EQ(order.size(), receivers.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i)
+        ASSERT_EQ(order[i], i);
+    const auto parted = [&](const ReceiverGroup& group, int axis) {
+        const RawVector<float>& at = found.position[axis];
+        const std::uint32_t middle = found.groups[group.first_child].end;
+        return *std::max_element(at.begin() + group.begin, at.begin() + middle) <=
+               *std::min_element(at.begin() + middle, at.begin() + group.end);
+    };
+    EXPECT_TRUE(parted(found.groups[0], 0));
+    EXPECT_TRUE(parted(found.groups[found.groups[0].first_child], 1));
+    EXPECT_TRUE(parted(found.groups[found.groups[0].first_child + 1], 1));
+}
+
 // Whole pages within the range may go, nothing beside it.
 TEST(Discard, LeavesWhatIsOutsideOfTheRange)
 {
