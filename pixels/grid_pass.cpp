@@ -73,19 +73,17 @@ Cull back_faces(const PlacedGrid& object)
     return glm::determinant(object.placement.rotation) < 0.0 ? Cull::back : Cull::front;
 }
 
-/// From a pixel's middle (x, y, 1) to half boxes: at distance 0, and what a distance of 1 adds.
+/// From pixels' middles and distances to half boxes.
 void set_rays(Program& program, const glm::dmat4& to_box, const Lens& lens, int width, int height)
 {
     const glm::dvec2 low(lens.low);
     const glm::dvec2 step = glm::dvec2(lens.high - lens.low) / glm::dvec2(width, height);
     const glm::dvec3 across(to_box[0]), upwards(to_box[1]);
-    const glm::dmat3 sides(step.x * across, step.y * upwards, low.x * across + low.y * upwards);
-    glm::dmat3 start(0.0), along(0.0);
-    (lens.orthographic ? start : along) = sides;
-    start[2] += glm::dvec3(to_box[3]);
-    along[2] += glm::dvec3(to_box[2]);
-    program.set("u_start", glm::mat3(start));
-    program.set("u_along", glm::mat3(along));
+    const glm::dvec3 forward(to_box[2]), eye(to_box[3]);
+    const glm::dmat3 pixels(step.x * across, step.y * upwards,
+                            low.x * across + low.y * upwards + (lens.orthographic ? eye : forward));
+    program.set("u_across", glm::mat3(pixels));
+    program.set("u_rest", glm::vec3(lens.orthographic ? forward : eye));
 }
 
 void set_warp(Program& program, const AoGrid& grid)
@@ -133,6 +131,8 @@ Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object,
         definitions.emplace_back("SH");
     if (is_rescaled)
         definitions.emplace_back("RESCALE");
+    if (view.lens.orthographic)
+        definitions.emplace_back("ORTHOGRAPHIC");
     Program& program = context_.program("grid_box.vert", fragment_file, definitions);
     const glm::dmat4 from_box = box_to_view(object, view);
     program.set("u_from_box", glm::mat4(from_box));

@@ -2,21 +2,17 @@
 // Without divisions where the host can divide: a pass is bound by arithmetic.
 //
 // Host side  grid/ao_grid.h, pixels/grid_pass.cpp
-//   u_start u_along  a pixel's middle (x, y, 1) to half boxes at distance 0 forward, and what a
-//                    distance of 1 adds
-//   u_to_grid        directions of view space to those of the grid
-//   u_inner          AoGrid: a
-//   u_far u_bend     half boxes to half textures: u_far x + u_bend (x cut to [-a, a])
-//   u_border         RESCALE: V_M, 1 / (1 - V_M)
-//   u_cells          RGBA16F, a texel a cell: m / (4 pi), alpha; SH: coefficients 0 to 3
-//   u_surface        as in g_buffer.glsl: normal in view space, distance forward
+//   v_...      the uniforms of grid_box.vert
+//   u_border   RESCALE: V_M, 1 / (1 - V_M)
+//   u_cells    RGBA16F, a texel a cell: m / (4 pi), alpha; SH: coefficients 0 to 3
+//   u_surface  as in g_buffer.glsl: normal in view space, distance forward
 // CPU twin   read_values(), border_weight() in grid/ao_grid.cpp
-uniform mat3 u_start;
-uniform mat3 u_along;
-uniform mat3 u_to_grid;
-uniform vec3 u_inner;
-uniform vec3 u_far;
-uniform vec3 u_bend;
+flat in mat3 v_across;
+flat in vec3 v_rest;
+flat in mat3 v_to_grid;
+flat in vec3 v_inner;
+flat in vec3 v_far;
+flat in vec3 v_bend;
 uniform sampler3D u_cells;
 uniform sampler2D u_surface;
 #ifdef RESCALE
@@ -28,8 +24,12 @@ const float kFade = 0.12;  // kGridFade
 // no cell where |x| > 1
 vec3 place_in_box(float distance)
 {
-    vec3 pixel = vec3(gl_FragCoord.xy, 1.0);
-    return u_start * pixel + distance * (u_along * pixel);
+    vec3 across = v_across * vec3(gl_FragCoord.xy, 1.0);
+#ifdef ORTHOGRAPHIC
+    return across + distance * v_rest;
+#else
+    return distance * across + v_rest;
+#endif
 }
 
 float farthest_out(vec3 x)
@@ -38,7 +38,7 @@ float farthest_out(vec3 x)
     return max(size.x, max(size.y, size.z));
 }
 
-vec3 cell_place(vec3 x) { return 0.5 + u_far * x + u_bend * clamp(x, -u_inner, u_inner); }
+vec3 cell_place(vec3 x) { return 0.5 + v_far * x + v_bend * clamp(x, -v_inner, v_inner); }
 
 float border_weight(vec3 x, float alpha)
 {

@@ -5,7 +5,7 @@
 // grid_merge.frag: the cone of one more object, joined to that of those before it.
 //
 // Vertices   grid_box.vert
-// Definitions  SH RESCALE: 0 or 1. GridStore::sh, GridBorder::rescale
+// Definitions  SH RESCALE ORTHOGRAPHIC: GridStore::sh, GridBorder::rescale, Lens
 // Reads      grid_cell.glsl, grid_cap.glsl
 //            u_before  RGBA32F: m / (4 pi) in view space and alpha of the objects before
 // Writes     out_moments  the same with this one
@@ -62,5 +62,5 @@ void main()
     if (!(farthest_out(x) <= 1.0))
         return;
     vec4 own = moments_at(x);
-    out_moments = merged(before, vec4(transpose(u_to_grid) * own.xyz, own.w));
+    out_moments = merged(before, vec4(transpose(v_to_grid) * own.xyz, own.w));
 }

@@ -5,7 +5,7 @@
 // grid_shade.frag: what an object with an AO grid of cones leaves of the light at each pixel.
 //
 // Vertices   grid_box.vert; blended by multiplication
-// Definitions  RESCALE: 0 or 1. GridBorder::rescale
+// Definitions  RESCALE ORTHOGRAPHIC: GridBorder::rescale, Lens
 // Reads      grid_cell.glsl, grid_cone.glsl
 // Writes     out_visibility  1 - occlusion
 // CPU twin   occlusion_at() in grid/ao_grid.cpp
@@ -18,5 +18,5 @@ void main()
     vec3 x = place_in_box(seen.w);
     if (!(farthest_out(x) <= 1.0))
         discard;
-    out_visibility = 1.0 - occlusion_by(moments_at(x), u_to_grid * seen.xyz);
+    out_visibility = 1.0 - occlusion_by(moments_at(x), v_to_grid * seen.xyz);
 }

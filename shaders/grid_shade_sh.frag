@@ -4,7 +4,7 @@
 // grid_shade_sh.frag: what an object with an AO grid of harmonics leaves of the light at each pixel.
 //
 // Vertices   grid_box.vert; blended by multiplication
-// Definitions  RESCALE: 0 or 1. GridBorder::rescale
+// Definitions  RESCALE ORTHOGRAPHIC: GridBorder::rescale, Lens
 // Reads      grid_cell.glsl: u_cells has the coefficients 0 to 3
 //            u_cells_2 u_cells_3  RGBA16F, a texel a cell: 4 to 7, and 8
 // Writes     out_visibility  1 - occlusion
@@ -37,5 +37,5 @@ void main()
     vec3 x = place_in_box(seen.w);
     if (!(farthest_out(x) <= 1.0))
         discard;
-    out_visibility = 1.0 - occlusion_at(x, u_to_grid * seen.xyz);
+    out_visibility = 1.0 - occlusion_at(x, v_to_grid * seen.xyz);
 }
