@@ -25,6 +25,9 @@
 uniform int u_slices;
 uniform float u_thickness;
 
+// Taken once a pixel (pixel_ray.glsl).
+float thickness = u_thickness;
+
 out float out_occlusion;
 
 // from the bit `first` on; first + count <= 32
@@ -55,7 +58,7 @@ uint bits_at(float t, float side, float left, float bits_per_arc, float dither, 
     float weight = weight_at(square);
     if (weight == 0.0)
         return 0u;
-    vec2 back = front - vec2(0.0, u_thickness);
+    vec2 back = front - vec2(0.0, thickness);
     float g = side * slice.sin_gamma;
     float high = mix(-g, front.y * inversesqrt(max(square, 1e-30)), weight);
     float low = mix(-g, back.y * inversesqrt(max(dot(back, back), 1e-30)), weight);
@@ -86,7 +89,7 @@ void main()
         uint bits = 0u;
         // short of a whole bit: rounding does not lift what lies in the tangent plane
         float dither = 0.001 + 0.998 * fract(noise.x + float(s) * 0.618033989);
-        for (int k = 0; k < u_steps; ++k) {
+        for (int k = 0; k < steps; ++k) {
             float t = distance_of_step(k, noise.y);
             bits |= bits_at(t, 1.0, left, bits_per_arc, dither, slice, position) |
                     bits_at(t, -1.0, left, bits_per_arc, dither, slice, position);

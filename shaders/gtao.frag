@@ -56,7 +56,7 @@ void main()
         Slice slice = slice_of(here.xyz, eye, direction, pixels_per_unit);
         float g = slice.sin_gamma;
         vec2 best = vec2(-g, g);
-        for (int k = 0; k < u_steps; ++k) {
+        for (int k = 0; k < steps; ++k) {
             float t = distance_of_step(k, noise.y);
             best.x = higher(best.x, -g, t, 1.0, slice, position);
             best.y = higher(best.y, g, t, -1.0, slice, position);

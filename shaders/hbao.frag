@@ -84,14 +84,14 @@ void main()
         float best = slice.cos_gamma * u_bias.x > low * u_bias.y
                          ? low * u_bias.x + slice.cos_gamma * u_bias.y
                          : 1.0;
-        for (int k = 0; k < u_steps; ++k) {
+        for (int k = 0; k < steps; ++k) {
             vec3 seen;
-            if (!sample_at(u_radius * (float(k) + noise.y) / float(u_steps), 1.0, slice, seen))
+            if (!sample_at(u_radius * (float(k) + noise.y) / float(steps), 1.0, slice, seen))
                 continue;
             vec2 d = vec2(dot(seen - position, slice.across), dot(seen - position, slice.up));
             float square = dot(d, d);
             float c = d.y * inversesqrt(max(square, 1e-30));
-            float fade = max(0.0, 1.0 - square * u_per_square);
+            float fade = max(0.0, 1.0 - square * per_square);
             float weight = u_has_own_fade == 1 ? fade : weight_at(square);
             if (weight > 0.0 && c > best) {
                 occlusion += weight * (c - best);

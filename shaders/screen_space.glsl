@@ -17,4 +17,4 @@ vec2 pixels_at(float z)
     return u_is_orthographic == 1 ? scale : scale / z;
 }
 
-bool is_outside(ivec2 pixel) { return any(greaterThanEqual(uvec2(pixel), uvec2(u_size))); }
+bool is_outside(ivec2 pixel) { return any(greaterThanEqual(uvec2(pixel), uvec2(picture_size))); }

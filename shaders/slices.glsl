@@ -21,6 +21,12 @@ uniform vec2 u_turn;
 uniform float u_per_square;
 uniform int u_is_faded;
 
+// Taken once a pixel (pixel_ray.glsl).
+int steps = u_steps;
+vec2 turn = u_turn;
+float per_square = u_per_square;
+bool is_faded = u_is_faded == 1;
+
 // A surface seen so flatly spans more than 20 times its width in depth per pixel: what moves
 // samples into the slice is bounded there.
 const float kFlattest = 0.05;
@@ -54,8 +60,8 @@ Slice slice_of(vec3 normal, vec3 eye, vec2 direction, vec2 pixels_per_unit)
 
 vec2 turned(vec2 direction)
 {
-    return vec2(direction.x * u_turn.x - direction.y * u_turn.y,
-                direction.x * u_turn.y + direction.y * u_turn.x);
+    return vec2(direction.x * turn.x - direction.y * turn.y,
+                direction.x * turn.y + direction.y * turn.x);
 }
 
 // What the picture shows at the distance t along `across`, on the side 1 or -1; at least a pixel
@@ -74,8 +80,8 @@ bool sample_at(float t, float side, Slice slice, out vec3 position)
 // what a sample at the distance of this square counts
 float weight_at(float square)
 {
-    float rest = max(0.0, 1.0 - square * u_per_square);
-    return u_is_faded == 1 ? rest * rest : (rest > 0.0 ? 1.0 : 0.0);
+    float rest = max(0.0, 1.0 - square * per_square);
+    return is_faded ? rest * rest : (rest > 0.0 ? 1.0 : 0.0);
 }
 
 // Integral of cos(a - gamma) |sin a| over the angles a from V down to the cosine c, on the side

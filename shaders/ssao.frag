@@ -34,6 +34,13 @@ uniform float u_disc_distance;
 uniform float u_reach;
 uniform int u_is_by_ratio;
 
+// Taken once a pixel (pixel_ray.glsl).
+int pairs = u_pairs;
+bool is_paired = u_is_paired == 1;
+float disc_distance = u_disc_distance;
+float reach = u_reach;
+bool is_by_ratio = u_is_by_ratio == 1;
+
 out float out_occlusion;
 
 const float kOutside = -1.0;
@@ -43,14 +50,14 @@ const float kOutside = -1.0;
 float openness(vec3 offset, vec3 position, float radius, vec2 pixels)
 {
     vec3 sampled = position + radius * offset;
-    ivec2 pixel = ivec2(floor(u_disc_distance > 0.0 ? gl_FragCoord.xy + offset.xy * pixels
-                                                    : place_of(sampled)));
-    if (sampled.z <= 0.0 && u_is_orthographic == 0 || is_outside(pixel))
+    ivec2 pixel = ivec2(floor(disc_distance > 0.0 ? gl_FragCoord.xy + offset.xy * pixels
+                                                  : place_of(sampled)));
+    if (sampled.z <= 0.0 && !is_orthographic || is_outside(pixel))
         return kOutside;
     float z = distance_at(pixel);
     float nearer = position.z - z;
-    float validity = u_is_by_ratio == 1 ? 1.0 - clamp(nearer / z, 0.0, 1.0)
-                                        : (nearer <= u_reach * radius ? 1.0 : 0.0);
+    float validity = is_by_ratio ? 1.0 - clamp(nearer / z, 0.0, 1.0)
+                                 : (nearer <= reach * radius ? 1.0 : 0.0);
     return mix(0.5, z > sampled.z ? 1.0 : 0.0, validity);
 }
 
@@ -61,8 +68,8 @@ void main()
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 here = texelFetch(u_surface, pixel, 0);
     float radius = u_radius;
-    if (u_disc_distance > 0.0 && u_is_orthographic == 0)
-        radius *= here.w / u_disc_distance;
+    if (disc_distance > 0.0 && !is_orthographic)
+        radius *= here.w / disc_distance;
     vec2 pixels = radius * pixels_at(here.w);
     out_occlusion = 0.0;
     if (is_background(here) || pixels.y < 1.0)
@@ -74,14 +81,14 @@ void main()
     vec3 axis = vec3(sqrt(1.0 - height * height) * vec2(cos(turn), sin(turn)), height);
     vec3 mirror = normalize(axis - vec3(0.0, 0.0, 1.0));
     float open = 0.0, count = 0.0;
-    for (int i = 0; i < u_pairs; ++i) {
+    for (int i = 0; i < pairs; ++i) {
         vec3 one = mirrored(texelFetch(u_samples, 2 * i).xyz, mirror), other = -one;
-        if (u_is_paired == 0)
+        if (!is_paired)
             other = mirrored(texelFetch(u_samples, 2 * i + 1).xyz, mirror);
         float a = openness(one, position, radius, pixels);
         float b = openness(other, position, radius, pixels);
         vec2 counts = vec2(a == kOutside ? 0.0 : 1.0, b == kOutside ? 0.0 : 1.0);
-        if (u_is_paired == 1)
+        if (is_paired)
             counts = vec2(counts.x * counts.y);
         open += dot(counts, vec2(a, b));
         count += counts.x + counts.y;

@@ -11,7 +11,7 @@ uniform float u_power;
 
 float distance_of_step(int k, float jitter)
 {
-    float x = (float(k) + jitter) / float(u_steps);
+    float x = (float(k) + jitter) / float(steps);
 #if ANY_POWER
     return u_radius * pow(x, u_power);
 #else

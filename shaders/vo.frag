@@ -35,6 +35,11 @@ uniform int u_is_paired;
 uniform float u_reach;
 uniform int u_dual;
 
+// Taken once a pixel (pixel_ray.glsl).
+int pairs = u_pairs;
+bool is_paired = u_is_paired == 1;
+float reach = u_reach;
+
 out float out_occlusion;
 
 const float kTooNear = -1.0;
@@ -47,7 +52,7 @@ float free_length(vec2 offset, float half_length, float z, float radius)
     if (is_outside(pixel))
         return kOutside;
     float depth = (distance_at(pixel) - z) / radius;
-    return depth < -u_reach ? kTooNear : max(min(half_length, depth) + half_length, 0.0);
+    return depth < -reach ? kTooNear : max(min(half_length, depth) + half_length, 0.0);
 }
 
 // Open share of the ball, doubled and cut at 1. turn: cosine and sine
@@ -57,10 +62,10 @@ float open_share(float z, float radius, vec2 turn)
     if (pixels.y < 1.0)
         return 1.0;
     float sum = 0.0, volume = 0.0;
-    for (int i = 0; i < u_pairs; ++i) {
+    for (int i = 0; i < pairs; ++i) {
         vec4 one = texelFetch(u_samples, 2 * i);
         vec4 other = vec4(-one.xy, one.zw);
-        if (u_is_paired == 0)
+        if (!is_paired)
             other = texelFetch(u_samples, 2 * i + 1);
         vec4 xy = vec4(one.x * turn.x - one.y * turn.y, one.x * turn.y + one.y * turn.x,
                        other.x * turn.x - other.y * turn.y, other.x * turn.y + other.y * turn.x);
@@ -68,7 +73,7 @@ float open_share(float z, float radius, vec2 turn)
         float b = free_length(xy.zw * pixels, other.z, z, radius);
         float free_a = a >= 0.0 ? a : one.z, free_b = b >= 0.0 ? b : other.z;
         vec2 counts = vec2(a == kOutside ? 0.0 : 1.0, b == kOutside ? 0.0 : 1.0);
-        if (u_is_paired == 1) {
+        if (is_paired) {
             free_a = a < 0.0 && b >= 0.0 ? 2.0 * one.z - b : free_a;
             free_b = b < 0.0 && a >= 0.0 ? 2.0 * one.z - a : free_b;
             counts = vec2(max(counts.x, counts.y));
