@@ -94,17 +94,21 @@ SurfacePoint Rims::step(const View& view, int width, int height, const SurfacePo
     std::array<std::uint32_t, kMostBetween> reached{point.triangle};
     std::size_t count = 1;
     for (std::size_t n = 0; place && n < count; ++n) {
+        std::array<glm::vec2, 3> corners_at;
+        for (int i = 0; i < 3; ++i) {
+            const auto corner_at = place_in(view, size, corner(reached[n], i));
+            if (!corner_at)
+                return point;
+            corners_at[i] = *corner_at;
+        }
         for (int i = 0; i < 3; ++i) {
             const int next = (i + 1) % 3;
-            const auto a = place_in(view, size, corner(reached[n], i));
-            const auto b = place_in(view, size, corner(reached[n], next));
-            if (!a || !b)
-                return point;
-            const float length2 = glm::dot(*b - *a, *b - *a);
+            const glm::vec2 a = corners_at[i], b = corners_at[next];
+            const float length2 = glm::dot(b - a, b - a);
             const float along =
-                length2 > 0.0f ? glm::clamp(glm::dot(*place - *a, *b - *a) / length2, 0.0f, 1.0f)
+                length2 > 0.0f ? glm::clamp(glm::dot(*place - a, b - a) / length2, 0.0f, 1.0f)
                                : 0.0f;
-            if (glm::distance(*place, glm::mix(*a, *b, along)) > kRimWidth)
+            if (glm::distance(*place, glm::mix(a, b, along)) > kRimWidth)
                 continue;
             const std::uint32_t from = welded(reached[n], i), to = welded(reached[n], next);
             for (const std::uint32_t other_corner : corners()[from]) {
