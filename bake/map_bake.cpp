@@ -4,6 +4,7 @@
 #include "bake/high_to_low.h"
 #include "bake/vertex_fit.h"
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 #include "surfels/stopwatch.h"
 
 #include <glm/geometric.hpp>
@@ -107,6 +108,13 @@ void encode_directions(Map& directions)
     }
 }
 
+std::vector<SurfacePoint> points_of(std::span<const Texel> texels)
+{
+    std::vector<SurfacePoint> points(texels.size());
+    for_all(points.size(), [&](std::size_t i) { points[i] = texels[i].point; });
+    return points;
+}
+
 /// What is displayed at any point of the surface.
 Shown shown_by(const Mesh& mesh, const MapLayout& layout, const std::vector<Map>& visibility)
 {
@@ -199,11 +207,8 @@ private:
             bake.outside_triangles += raster.outside_triangles();
             for (std::uint32_t first = 0; first < height; first += rows) {
                 const std::vector<Texel> texels = raster.texels(first, rows);
-                std::vector<SurfacePoint> points;
-                points.reserve(texels.size());
-                for (const Texel& texel : texels)
-                    points.push_back(texel.point);
-                const std::vector<Receiver> receivers = receivers_of(points, &bake.misses);
+                const std::vector<Receiver> receivers =
+                    receivers_of(points_of(texels), &bake.misses);
                 seconds_.raster += watch.lap();
                 const double begin = first, share = std::min(rows, height - first);
                 const Solution solution = solve(prepared, receivers, engine, [&](double done) {
@@ -230,14 +235,10 @@ private:
             if (hidden.empty())
                 continue;
             const std::vector<Texel> texels = marked_texels(page, hidden);
-            std::vector<SurfacePoint> points;
-            points.reserve(texels.size());
-            for (const Texel& texel : texels)
-                points.push_back(texel.point);
             if (!scene)
                 scene.emplace(occluding(), RayScene::Build::quick);
-            const std::vector<std::uint8_t> inside =
-                inside_bodies(occluding(), *scene, receivers_of(points), definition.max_distance);
+            const std::vector<std::uint8_t> inside = inside_bodies(
+                occluding(), *scene, receivers_of(points_of(texels)), definition.max_distance);
             for (std::size_t i = 0; i < texels.size(); ++i)
                 if (inside[i] == 0)  // one sheet of a texel that is seen is enough
                     hidden[index_of(texels[i])] = 0;

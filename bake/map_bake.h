@@ -39,8 +39,9 @@ struct MapSettings {
     std::uint32_t check = kCheckPoints;  ///< as BakeSettings::check
 };
 
-/// Texels of a band: receivers, answers and what engines need of them take some 100 bytes each.
-inline constexpr std::uint64_t kBandTexels = std::uint64_t{1} << 21;
+/// Texels of a band: receivers, answers and what engines need of them take some 100 bytes each, and
+/// as little as that is used again for the next band (4096^2: a tenth of the time less than 2^19).
+inline constexpr std::uint64_t kBandTexels = std::uint64_t{1} << 17;
 
 struct MapSeconds {
     double raster = 0.0;  ///< which texels, and where each is asked

@@ -105,9 +105,9 @@ SurfacePoint Rims::step(const View& view, int width, int height, const SurfacePo
             const int next = (i + 1) % 3;
             const glm::vec2 a = corners_at[i], b = corners_at[next];
             const float length2 = glm::dot(b - a, b - a);
-            const float along =
-                length2 > 0.0f ? glm::clamp(glm::dot(*place - a, b - a) / length2, 0.0f, 1.0f)
-                               : 0.0f;
+            const float along = length2 > 0.0f
+                                    ? glm::clamp(glm::dot(*place - a, b - a) / length2, 0.0f, 1.0f)
+                                    : 0.0f;
             if (glm::distance(*place, glm::mix(a, b, along)) > kRimWidth)
                 continue;
             const std::uint32_t from = welded(reached[n], i), to = welded(reached[n], next);

@@ -1,5 +1,6 @@
 #include "surfels/texels.h"
 
+#include "surfels/buckets.h"
 #include "surfels/errors.h"
 #include "surfels/for_all.h"
 
@@ -14,8 +15,6 @@
 namespace surfelao {
 namespace {
 
-/// Rows that one thread takes at a time.
-constexpr std::uint32_t kStripRows = 16;
 /// Twice a triangle's area in texels below which it shows nothing.
 constexpr double kFlatTwiceArea = 1e-9;
 /// A triangle of this area in texels has some part above kLeastPart.
@@ -318,6 +317,23 @@ MapRaster::MapRaster(const Geometry& geometry, const UvSet& uvs, MapSize size) :
         outside_ += placed.is_outside ? 1 : 0;
         placed_.push_back(placed);
     }
+    of_strip_ = std::make_shared<const Buckets<std::uint32_t>>(
+        (size_.height + kStripRows - 1) / kStripRows, [&](const auto& put) {
+            for (std::uint32_t i = 0; i < placed_.size(); ++i) {
+                const auto& p = placed_[i].corners;
+                const Span ys =
+                    span_of(std::min({p[0].y, p[1].y, p[2].y}), std::max({p[0].y, p[1].y, p[2].y}));
+                const std::int64_t end = std::min(ys.end, ys.begin + size_.height);
+                std::uint32_t row = folded(ys.begin, size_.height);
+                for (std::int64_t y = ys.begin; y < end;) {
+                    put(row / kStripRows, i);
+                    const std::uint32_t next =
+                        std::min((row / kStripRows + 1) * kStripRows, size_.height);
+                    y += next - row;
+                    row = next == size_.height ? 0 : next;
+                }
+            }
+        });
 }
 
 void MapRaster::mark_shown(std::span<std::uint8_t> triangles) const
@@ -331,40 +347,30 @@ std::vector<Texel> MapRaster::texels(std::uint32_t first, std::uint32_t rows) co
     const std::uint32_t end = std::min(size_.height, first + rows);
     if (first >= end)
         return {};
-    const std::size_t strips = (end - first + kStripRows - 1) / kStripRows;
-    // the triangles of each strip, in their order
-    std::vector<std::vector<std::uint32_t>> of_strip(strips);
-    for (std::uint32_t i = 0; i < placed_.size(); ++i) {
-        const auto& p = placed_[i].corners;
-        const Span ys =
-            span_of(std::min({p[0].y, p[1].y, p[2].y}), std::max({p[0].y, p[1].y, p[2].y}));
-        const bool wraps = ys.end - ys.begin >= size_.height;
-        std::size_t last = strips;  // each strip once
-        for (std::int64_t y = wraps ? 0 : ys.begin; y < (wraps ? size_.height : ys.end); ++y) {
-            const std::uint32_t row = folded(y, size_.height);
-            if (row < first || row >= end)
-                continue;
-            const std::size_t strip = (row - first) / kStripRows;
-            if (strip != last)
-                of_strip[strip].push_back(i);
-            last = strip;
-        }
-    }
+    const std::uint32_t first_strip = first / kStripRows;
+    const std::uint32_t strips = (end - 1) / kStripRows + 1 - first_strip;
     std::vector<std::vector<Texel>> found(strips);
     for_tasks(strips, [&](std::size_t s) {
-        const std::uint32_t begin = first + static_cast<std::uint32_t>(s) * kStripRows;
-        Strip strip(*this, begin, std::min(kStripRows, end - begin));
-        std::vector<std::uint32_t>& list = of_strip[s];
-        list.erase(std::unique(list.begin(), list.end()), list.end());
-        for (const std::uint32_t i : list)
-            strip.add_centres(placed_[i]);
-        for (const std::uint32_t i : list)
-            strip.add_parts(placed_[i]);
+        const auto number = first_strip + static_cast<std::uint32_t>(s);
+        const std::uint32_t begin = std::max(first, number * kStripRows);
+        Strip strip(*this, begin, std::min(end, (number + 1) * kStripRows) - begin);
+        const std::span<const std::uint32_t> list = (*of_strip_)[number];
+        const auto for_each = [&](const auto& add) {
+            for (std::size_t k = 0; k < list.size(); ++k)
+                if (k == 0 || list[k] != list[k - 1])
+                    add(placed_[list[k]]);
+        };
+        for_each([&](const Placed& placed) { strip.add_centres(placed); });
+        for_each([&](const Placed& placed) { strip.add_parts(placed); });
         found[s] = strip.texels();
     });
-    std::vector<Texel> all;
+    std::vector<std::size_t> begins{0};
     for (const std::vector<Texel>& some : found)
-        all.insert(all.end(), some.begin(), some.end());
+        begins.push_back(begins.back() + some.size());
+    std::vector<Texel> all(begins.back());
+    for_tasks(strips, [&](std::size_t s) {
+        std::ranges::copy(found[s], all.begin() + static_cast<std::ptrdiff_t>(begins[s]));
+    });
     return all;
 }
 

@@ -17,11 +17,15 @@
 #include <glm/vec2.hpp>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace surfelao {
+
+template <class Item>
+class Buckets;
 
 /// Where a point of the surface lies in the map; nothing where its triangle has no place there.
 [[nodiscard]] std::optional<glm::dvec2> uv_at(const Geometry& geometry, const UvSet& uvs,
@@ -87,9 +91,13 @@ private:
         bool is_outside = false;
     };
     class Strip;
+    /// Rows that one thread takes at a time.
+    static constexpr std::uint32_t kStripRows = 4;
 
     MapSize size_;
     std::vector<Placed> placed_;
+    /// Those that touch each strip, rising; one may stand there twice.
+    std::shared_ptr<const Buckets<std::uint32_t>> of_strip_;
     std::uint64_t flat_ = 0, outside_ = 0;
     double sheets_ = 0.0;
 };
