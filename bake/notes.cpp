@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace surfelao {
 namespace {
@@ -45,6 +46,48 @@ std::string closed_note(std::span<const Occlusion> values, const Topology& topol
         return {};
     return of_all(closed, values.size(), "vertex|vertices") + (closed == 1 ? " is" : " are") +
            " closed on all sides, as inside of other parts or against them";
+}
+
+/// The mean occlusion of the vertices with a normal that belong to nothing of this name.
+double mean_beside(const Baked& baked, const std::string& name)
+{
+    const Scene& scene = baked.mesh.scene;
+    Surface beside;
+    beside.normals.assign(
+        baked.mesh.surface.normals.begin(),
+        baked.mesh.surface.normals.begin() + std::ptrdiff_t(scene.positions.size()));
+    for (const Label& label : scene.labels) {
+        for (const Label::Range& range : label.ranges) {
+            for (std::uint32_t t = range.first; t < range.first + range.count && label.name == name;
+                 ++t) {
+                for (int corner = 0; corner < 3; ++corner)
+                    beside.normals[scene.triangles[t][corner]] = glm::vec3(0.0f);
+            }
+        }
+    }
+    return mean_occlusion_of(beside, baked.values);
+}
+
+/// Why so little light comes in; empty where enough does.
+std::string dark_note(const Baked& baked)
+{
+    const bool is_far = baked.definition.max_distance > kInteriorDistance;
+    const bool is_interior = mean_occlusion_of(baked.mesh.surface, baked.values) > kInteriorMean;
+    std::string closed;  // a ground closes undersides too, rightly
+    if (!is_interior && !baked.definition.ground)
+        closed = closed_note(baked.values, baked.topology);
+    const std::string around = name_of_enclosing(baked.mesh);
+    if (!around.empty() && mean_beside(baked, around) > kInteriorMean)
+        return "part " + around + " encloses all others, so hardly any light comes in: --exclude " +
+               shell_word(around) + " leaves it out" +
+               (is_far ? ", --preset interior is for interiors" : "");
+    const std::string sky = name_of_sky(baked.mesh);
+    if (!sky.empty() && (is_interior || !closed.empty()))
+        return "part " + sky + " is called like a sky, and much of the rest is closed: --exclude " +
+               shell_word(sky) + " leaves it out";
+    if (is_interior)
+        return is_far ? "an interior: try --preset interior" : "";
+    return closed;
 }
 
 }  // namespace
@@ -103,19 +146,7 @@ std::vector<std::string> notes_of(const Baked& baked)
             "helps");
     for (std::string& hint : hints_by_name(baked.mesh))
         add(std::move(hint));
-    if (mean_occlusion_of(surface, baked.values) > kInteriorMean) {
-        const std::string around = name_of_enclosing(baked.mesh);
-        const bool is_far = baked.definition.max_distance > kInteriorDistance;
-        if (!around.empty())
-            add("part " + around +
-                " encloses all others, so hardly any light comes in: --exclude " +
-                shell_word(around) + " leaves it out" +
-                (is_far ? ", --preset interior is for interiors" : ""));
-        else if (is_far)
-            add("an interior: try --preset interior");
-    } else if (!baked.definition.ground) {  // it closes undersides too, rightly
-        add(closed_note(baked.values, baked.topology));
-    }
+    add(dark_note(baked));
     return notes;
 }
 

@@ -15,10 +15,15 @@
 namespace surfelao {
 namespace {
 
-/// Prefixes of Unreal, suffixes of Godot and others; in any case of letters.
-constexpr std::string_view kHullPrefixes[] = {"ucx_", "ubx_", "usp_", "ucp_"};
-constexpr std::string_view kHullSuffixes[] = {"_collision", "_collider",    "_col",    "-col",
-                                              "-colonly",   "-convcolonly", "-convcol"};
+/// Prefixes of Unreal and others; what names end with, Godot's behind a sign and others' wherever
+/// they stand. In any case of letters.
+constexpr std::string_view kHullPrefixes[] = {"ucx_",   "ubx_",       "usp_",      "ucp_",
+                                              "mcdcx_", "collision_", "collider_", "col_"};
+constexpr std::string_view kHullWords[] = {"col",         "colonly", "convcol",
+                                           "convcolonly", "ucx",     "phys"};
+constexpr std::string_view kHullEnds[] = {"collision", "collisions", "collider", "colliders",
+                                          "hitbox"};
+constexpr std::string_view kSeparators = "_-. $";
 constexpr std::size_t kNamed = 3;
 constexpr std::size_t kMostCandidates = 8;  ///< for what encloses all: each is O(triangles)
 
@@ -28,6 +33,16 @@ std::string lower_case_of(std::string_view text)
     for (char& sign : lower)
         sign = static_cast<char>(std::tolower(static_cast<unsigned char>(sign)));
     return lower;
+}
+
+bool is_digit(char sign)
+{
+    return std::isdigit(static_cast<unsigned char>(sign)) != 0;
+}
+
+bool is_separator(char sign)
+{
+    return kSeparators.find(sign) != kSeparators.npos;
 }
 
 /// Whether any of its triangles is baked.
@@ -42,36 +57,89 @@ bool is_baked(const Mesh& mesh, const Label& label)
     });
 }
 
-/// The pattern that means all hulls which are called like this one; empty for other names.
-std::string hull_pattern(const std::string& name)
+/// Without the number of a copy: rock-col.001, rock_collision_2.
+std::string_view without_copy_number(std::string_view name)
 {
+    std::size_t end = name.size();
+    while (end > 0 && is_digit(name[end - 1]))
+        --end;
+    const bool has_one = end > 1 && end < name.size() && is_separator(name[end - 1]);
+    return has_one ? name.substr(0, end - 1) : name;
+}
+
+/// How much of such a name's end says so; 0: nothing.
+std::size_t hull_end(std::string_view lower)
+{
+    for (const std::string_view end : kHullEnds) {
+        if (lower.ends_with(end))
+            return end.size();
+    }
+    const std::size_t before = lower.find_last_of(kSeparators);
+    const bool is_one =
+        before != lower.npos && before > 0 &&
+        std::ranges::find(kHullWords, lower.substr(before + 1)) != std::end(kHullWords);
+    return is_one ? lower.size() - before : 0;
+}
+
+/// The pattern that means all hulls which are called like this one; empty for other names.
+std::string hull_pattern(const std::string& full_name)
+{
+    const std::string_view name = without_copy_number(full_name);
     const std::string lower = lower_case_of(name);
     for (const std::string_view prefix : kHullPrefixes) {
         if (lower.starts_with(prefix))
-            return name.substr(0, prefix.size()) + "*";
+            return full_name.substr(0, prefix.size()) + "*";
     }
-    for (const std::string_view suffix : kHullSuffixes) {
-        if (lower.ends_with(suffix))
-            return "*" + name.substr(name.size() - suffix.size());
-    }
-    return {};
+    const std::size_t end = hull_end(lower);
+    if (end == 0)
+        return {};
+    const std::string number =
+        name.size() < full_name.size() ? full_name.substr(name.size(), 1) + "*" : "";
+    return "*" + std::string(name.substr(name.size() - end)) + number;
 }
 
-/// rock_LOD1: "rock_LOD" and 1.
+/// rock_LOD1.001, LOD_1_rock: what is around the level, the level as it stands, its number.
 struct Level {
-    std::string_view base;
-    std::string_view digits;
+    std::string_view before, words, after, digits;
+
+    /// The same for all levels of one thing.
+    [[nodiscard]] std::string base() const
+    {
+        return std::string(before) + '*' + lower_case_of(words.substr(0, 3)) + '*' +
+               std::string(after);
+    }
+    /// The name of what has levels: that of the finest, which may have no number.
+    [[nodiscard]] std::string thing() const
+    {
+        std::string_view begin = before, end = after;
+        while (!begin.empty() && is_separator(begin.back()))
+            begin.remove_suffix(1);
+        while (begin.empty() && !end.empty() && is_separator(end.front()))
+            end.remove_prefix(1);
+        return std::string(begin) + std::string(end);
+    }
+    /// Means this level of all things.
+    [[nodiscard]] std::string pattern() const
+    {
+        return (before.empty() && !after.empty() ? "" : "*") + std::string(words) +
+               (after.empty() ? "" : std::string(after.substr(0, 1)) + "*");
+    }
 };
 std::optional<Level> level_of(const std::string& name)
 {
-    std::size_t end = name.size();
-    while (end > 0 && std::isdigit(static_cast<unsigned char>(name[end - 1])) != 0)
-        --end;
-    const std::string_view base = std::string_view(name).substr(0, end);
-    const std::string lower = lower_case_of(base);
-    if (end == name.size() || !(lower.ends_with("lod") || lower.ends_with("lod_")))
+    const std::string_view text = name;
+    const std::size_t begin = lower_case_of(name).rfind("lod");
+    if (begin == std::string::npos)
         return {};
-    return Level{base, std::string_view(name).substr(end)};
+    std::size_t number = begin + 3;
+    number += number < text.size() && is_separator(text[number]) ? 1 : 0;
+    std::size_t end = number;
+    while (end < text.size() && is_digit(text[end]))
+        ++end;
+    if (end == number || (end < text.size() && !is_separator(text[end])))
+        return {};
+    return Level{text.substr(0, begin), text.substr(begin, end - begin), text.substr(end),
+                 text.substr(number, end - number)};
 }
 
 std::string options_for(const std::set<std::string>& patterns)
@@ -115,17 +183,28 @@ bool lie_in_each_other(const Box& a, const Box& b)
     return holds(a, 0.5 * (b.low + b.high)) && holds(b, 0.5 * (a.low + a.high));
 }
 
-/// Sides of the outer box that the inner one does not touch; 0 where it reaches out.
-int free_sides(const Box& outer, const Box& inner)
+/// Sides of a box that are farther out than those of the other.
+int outer_sides(const Box& box, const Box& other)
 {
     int count = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        if (inner.low[axis] < outer.low[axis] || inner.high[axis] > outer.high[axis])
-            return 0;
-        count += inner.low[axis] > outer.low[axis] ? 1 : 0;
-        count += inner.high[axis] < outer.high[axis] ? 1 : 0;
+        count += box.low[axis] < other.low[axis] ? 1 : 0;
+        count += box.high[axis] > other.high[axis] ? 1 : 0;
     }
     return count;
+}
+
+/// A dome may stand on the ground, or in a little of it.
+constexpr int kLeastOuterSides = 5;
+constexpr double kSunk = 0.01;  ///< of its size
+
+/// Whether it has the other within.
+bool encloses(const Box& box, const Box& other)
+{
+    const glm::dvec3 sunk = kSunk * (box.high - box.low);
+    return outer_sides(box, other) >= kLeastOuterSides &&
+           glm::all(glm::lessThanEqual(box.low - sunk, other.low)) &&
+           glm::all(glm::lessThanEqual(other.high, box.high + sunk));
 }
 
 }  // namespace
@@ -142,7 +221,11 @@ std::string shell_word(const std::string& name)
 std::vector<std::string> hints_by_name(const Mesh& mesh)
 {
     std::set<std::string> hulls, hull_patterns;
-    std::map<std::string, std::map<std::string, const Label*>> levels;  // by base and digits
+    struct OfThing {
+        std::string thing;
+        std::map<std::string, const Label*> labels;  // by digits
+    };
+    std::map<std::string, OfThing> levels;  // by base
     for (const Label& label : mesh.scene.labels) {
         if (label.kind == LabelKind::material || !is_baked(mesh, label))
             continue;
@@ -150,8 +233,11 @@ std::vector<std::string> hints_by_name(const Mesh& mesh)
             hulls.insert(label.name);
             hull_patterns.insert(pattern);
         }
-        if (const auto level = level_of(label.name))
-            levels[std::string(level->base)][std::string(level->digits)] = &label;
+        if (const auto level = level_of(label.name)) {
+            OfThing& of_thing = levels[level->base()];
+            of_thing.thing = level->thing();
+            of_thing.labels[std::string(level->digits)] = &label;
+        }
     }
     std::vector<std::string> hints;
     if (!hulls.empty())
@@ -164,22 +250,18 @@ std::vector<std::string> hints_by_name(const Mesh& mesh)
     std::map<std::string_view, const Label*> by_name;
     for (const Label& label : mesh.scene.labels)
         by_name.try_emplace(label.name, &label);
-    for (auto& [base, of_base] : levels) {
-        // rock and rock_LOD1: the finest has no number
-        const std::size_t stem =
-            base.find_last_not_of("_-. ", lower_case_of(base).rfind("lod") - 1);
-        if (stem != std::string::npos && lower_case_of(base).rfind("lod") > 0) {
-            const auto finest = by_name.find(std::string_view(base).substr(0, stem + 1));
-            if (finest != by_name.end() && is_baked(mesh, *finest->second))
-                of_base.try_emplace("", finest->second);
-        }
-        const Box finest = box_of_label(mesh.scene, *of_base.begin()->second);
-        for (const auto& [digits, label] : of_base) {
-            if (label == of_base.begin()->second ||
+    for (auto& [base, of_thing] : levels) {
+        const auto unnumbered = by_name.find(of_thing.thing);
+        if (unnumbered != by_name.end() && is_baked(mesh, *unnumbered->second))
+            of_thing.labels.try_emplace("", unnumbered->second);
+        const Label* finest_label = of_thing.labels.begin()->second;
+        const Box finest = box_of_label(mesh.scene, *finest_label);
+        for (const auto& [digits, label] : of_thing.labels) {
+            if (label == finest_label ||
                 !lie_in_each_other(finest, box_of_label(mesh.scene, *label)))
                 continue;
             coarse.insert(label->name);
-            coarse_patterns.insert("*" + label->name.substr(lower_case_of(base).rfind("lod")));
+            coarse_patterns.insert(level_of(label->name)->pattern());
         }
     }
     if (!coarse.empty())
@@ -197,8 +279,7 @@ std::string name_of_enclosing(const Mesh& mesh)
         if (!is_baked(mesh, label) || triangle_count(label) == scene.triangles.size())
             continue;
         const Box own = box_of_label(scene, label);
-        constexpr int kLeastSides = 5;  // a dome may stand on the ground
-        if (glm::min(own.low, whole.low) != own.low || glm::max(own.high, whole.high) != own.high)
+        if (6 - outer_sides(whole, own) < kLeastOuterSides)
             continue;
         if (++candidates > kMostCandidates)
             return {};
@@ -207,7 +288,27 @@ std::string name_of_enclosing(const Mesh& mesh)
         for (const Label::Range& range : label.ranges)
             std::fill_n(others_only.begin() + std::ptrdiff_t{range.first}, range.count, true);
         const Box rest = box_of(scene, others_only);
-        if (rest.low.x <= rest.high.x && free_sides(own, rest) >= kLeastSides)
+        if (rest.low.x <= rest.high.x && encloses(own, rest))
+            return label.name;
+    }
+    return {};
+}
+
+std::string name_of_sky(const Mesh& mesh)
+{
+    constexpr std::string_view kWords[] = {"sky", "skydome", "skybox", "skysphere"};
+    const auto is_sky = [&](std::string_view lower) {
+        while (!lower.empty()) {
+            const std::size_t end = std::min(lower.find_first_of(kSeparators), lower.size());
+            if (std::ranges::find(kWords, lower.substr(0, end)) != std::end(kWords))
+                return true;
+            lower.remove_prefix(std::min(end + 1, lower.size()));
+        }
+        return false;
+    };
+    for (const Label& label : mesh.scene.labels) {
+        if (is_sky(lower_case_of(label.name)) && is_baked(mesh, label) &&
+            triangle_count(label) < mesh.scene.triangles.size())
             return label.name;
     }
     return {};

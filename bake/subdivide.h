@@ -42,9 +42,7 @@ inline constexpr double kSubdivideTolerance = 0.02;
 /// were pieces cut at the very tolerance, those that bend by hardly less would be cut by a second
 /// run. Without it one over the room (data/) adds 3.2 % of the triangles, with .05 and .1 less than
 /// 1 % and at 6 and 11 % more triangles; over generated scenes of the choosing half
-/// (tests/family.h) .7, .5 and .35 % in the mean, and the worst of them 2.1, 1.5 and 1.1 %. All
-/// with the normals of the first run: where a file holds none they are made anew, of the pieces,
-/// and bend more edges of curved bodies (1.4 % in the mean, 15 % at most; data/blob.off 27 %).
+/// (tests/family.h) .7, .5 and .35 % in the mean, and the worst of them 2.1, 1.5 and 1.1 %.
 inline constexpr float kPieceMargin = 0.1f;
 
 /// In diagonals: two pixels of a picture that shows the whole scene. No half of an edge is shorter.

@@ -2,8 +2,10 @@
 
 #include "files/gltf_cuts.h"
 #include "files/gltf_json.h"
+#include "files/gltf_pose.h"
 #include "files/gltf_uses.h"
-#include "files/refined_faces.h"
+
+#include <glm/geometric.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -12,6 +14,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -23,9 +26,10 @@ using nlohmann::json;
 /// New vertices by the numbers that they and their parents have in their parts.
 struct PartMiddles {
     PartMiddles(const Scene& scene, const Refinement& refinement)
-        : of_part(scene.parts.size()), number_of(scene.positions.size())
+        : of_part(scene.parts.size()),
+          number_of(scene.positions.size()),
+          part_of(scene.positions.size())
     {
-        std::vector<std::uint32_t> part_of(scene.positions.size());
         for (std::uint32_t p = 0; p < scene.parts.size(); ++p) {
             const Part& part = scene.parts[p];
             for (std::uint32_t v = 0; v < part.vertex_count; ++v) {
@@ -43,8 +47,34 @@ struct PartMiddles {
     }
 
     std::vector<std::vector<glm::uvec2>> of_part;
-    std::vector<std::uint32_t> number_of;  ///< per vertex of the refined scene
+    std::vector<std::uint32_t> number_of, part_of;  ///< per vertex of the refined scene
 };
+
+/// World directions at the vertices as normals of each part's mesh space. A normal n becomes M^-T n
+/// in the world, so what comes back is M^T n. A part has none where all of its are zero, else
+/// vertices without (no triangle uses them) have some.
+std::vector<std::vector<float>> part_normals(const GltfAsset& asset, const PartMiddles& middles,
+                                             std::span<const glm::vec3> normals)
+{
+    std::vector<glm::dmat3> to_world;
+    for (const GltfPart& part : asset.parts)
+        to_world.push_back(scaled_to_one(part.to_world));
+    std::vector<std::vector<float>> of_part(asset.parts.size());
+    std::vector<bool> has_any(asset.parts.size(), false);
+    for (std::size_t v = 0; v < normals.size(); ++v) {
+        const std::uint32_t p = middles.part_of[v];
+        const glm::dvec3 direction = glm::dvec3(normals[v]) * to_world[p];
+        const double length = glm::length(direction);
+        const glm::vec3 unit = length > 0.0 ? glm::vec3(direction / length) : glm::vec3(0, 0, 1);
+        has_any[p] = has_any[p] || length > 0.0;
+        of_part[p].insert(of_part[p].end(), {unit.x, unit.y, unit.z});
+    }
+    for (std::size_t p = 0; p < of_part.size(); ++p) {
+        if (!has_any[p])
+            of_part[p].clear();
+    }
+    return of_part;
+}
 
 /// The numbers of an element as they stand in the file.
 using Components = std::array<double, 4>;
@@ -151,14 +181,15 @@ Components middle_of(const Components& a, const Components& b, Meaning meaning)
 class MeshRefiner {
 public:
     MeshRefiner(json& document, const GltfAsset& asset, const Scene& scene,
-                const Refinement& refinement, AddedData& added)
+                const Refinement& refinement, std::span<const glm::vec3> normals, AddedData& added)
         : document_(document),
           asset_(asset),
           scene_(scene),
           refinement_(refinement),
           added_(added),
           elements_(asset),
-          middles_(scene, refinement)
+          middles_(scene, refinement),
+          normals_(part_normals(asset, middles_, normals))
     {
     }
 
@@ -167,20 +198,25 @@ public:
         const std::vector<std::size_t> meshes =
             separate_uses(document_, asset_.uses, uses_to_cut());
         for (std::size_t p = 0; p < scene_.parts.size(); ++p) {
-            if (middles_.of_part[p].empty())
+            if (!is_changed(p))
                 continue;
             refine_part(p, document_["meshes"][meshes[asset_.parts[p].use]]["primitives"]);
         }
     }
 
 private:
+    [[nodiscard]] bool is_changed(std::size_t part) const
+    {
+        return !middles_.of_part[part].empty() || !normals_[part].empty();
+    }
+
     /// Those of which a part is cut, and the other instances of their nodes, which stay in order.
     [[nodiscard]] std::vector<bool> uses_to_cut() const
     {
         std::vector<bool> wanted(asset_.uses.size(), false);
         std::set<std::size_t> nodes;
         for (std::size_t p = 0; p < scene_.parts.size(); ++p) {
-            if (!middles_.of_part[p].empty())
+            if (is_changed(p))
                 nodes.insert(asset_.uses[asset_.parts[p].use].node);
         }
         for (std::size_t u = 0; u < wanted.size(); ++u)
@@ -193,6 +229,9 @@ private:
     {
         const Part& part = scene_.parts[p];
         extended_.clear();
+        std::optional<std::size_t> normals;
+        if (!normals_[p].empty())
+            normals = added_.add_floats(3, normals_[p]);
         const std::vector<std::int32_t>& groups =
             asset_.group_of_primitive[static_cast<std::size_t>(part.mesh)];
         for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -202,6 +241,8 @@ private:
                 numbered("mesh", static_cast<std::size_t>(part.mesh)) + numbered(" primitive", i);
             json& primitive = primitives[i];
             extend(primitive["attributes"], name, p, /*is_base=*/true);
+            if (normals)
+                primitive["attributes"]["NORMAL"] = *normals;
             if (primitive.contains("targets")) {
                 for (json& target : primitive["targets"])
                     extend(target, name + " target", p, /*is_base=*/false);
@@ -322,6 +363,7 @@ private:
     AddedData& added_;
     GltfElements elements_;
     PartMiddles middles_;
+    std::vector<std::vector<float>> normals_;  ///< of each part that gets some
     /// Of the part at hand: by accessor and attribute.
     std::map<std::pair<std::size_t, std::string>, std::size_t> extended_;
 };
@@ -329,9 +371,10 @@ private:
 }  // namespace
 
 void refine_meshes(json& document, const GltfAsset& asset, const Scene& scene,
-                   const Refinement& refinement, AddedData& added)
+                   const Refinement& refinement, std::span<const glm::vec3> normals,
+                   AddedData& added)
 {
-    MeshRefiner(document, asset, scene, refinement, added).refine();
+    MeshRefiner(document, asset, scene, refinement, normals, added).refine();
 }
 
 }  // namespace surfelao

@@ -201,12 +201,13 @@ WrittenFile gltf_contents(const fs::path& path, const Scene& scene,
         });
 }
 
-std::string refined_gltf(const Scene& scene, const Refinement& refinement)
+std::string refined_gltf(const Scene& scene, const Refinement& refinement,
+                         std::span<const glm::vec3> normals)
 {
     const auto& source = dynamic_cast<const GltfAsset&>(*scene.asset);
     return contents_with(source.path, scene, {},
                          [&](json& document, const GltfAsset& asset, AddedData& added) {
-                             refine_meshes(document, asset, scene, refinement, added);
+                             refine_meshes(document, asset, scene, refinement, normals, added);
                              return std::vector<std::string>();
                          })
         .contents;

@@ -38,6 +38,7 @@ namespace surfelao {
 /// A scene that came from OBJ gives the text of its file with nothing changed but the colours of
 /// the `v` lines and, seen from the folder of `path`, the names behind `mtllib`. Where the file's
 /// own colours are not kept, they stand in comments behind everything else, `# own R G B`.
+/// Any other scene gives coordinates, colours, faces and, where each vertex has one, normals.
 /// options.mark: a comment as the first line, in the place of an older one (maker_mark.h).
 [[nodiscard]] WrittenFile obj_contents(const std::filesystem::path& path, const Scene& scene,
                                        std::span<const Occlusion> occlusion,

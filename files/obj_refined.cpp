@@ -41,6 +41,13 @@ public:
         return found->second;
     }
 
+    /// A new one; returns its number, counted from 1.
+    std::uint32_t add_new(std::string row)
+    {
+        added_.append(statement_).append(rows_.add_own(std::move(row))).append(line_end_);
+        return static_cast<std::uint32_t>(rows_.size());
+    }
+
     void add_middle(std::size_t of_a, std::size_t of_b)
     {
         const std::vector<std::string_view> a = rows_.words(of_a), b = rows_.words(of_b);
@@ -53,7 +60,7 @@ public:
         }
         for (; at < count; ++at)
             append_middle(row, a[at], b[at]);
-        added_.append(statement_).append(rows_.add_own(std::move(row))).append(line_end_);
+        add_new(std::move(row));
     }
 
     /// What a word names after so many rows of the file have been seen; 0: none that there is.
@@ -81,11 +88,13 @@ private:
 
 class ObjRefiner {
 public:
-    ObjRefiner(const Scene& scene, const Refinement& refinement)
+    ObjRefiner(const Scene& scene, const Refinement& refinement, std::span<const glm::vec3> normals)
         : scene_(scene),
           old_(dynamic_cast<const ObjSource&>(*scene.asset).text),
           refinement_(refinement),
-          faces_(scene, refinement)
+          faces_(scene, refinement),
+          normals_(normals),
+          numbers_of_normals_(normals.size(), 0)
     {
     }
 
@@ -182,30 +191,60 @@ private:
             counts_back = counts_back || word.find('-') != word.npos;
             corners.push_back(corner_of(word));
         }
-        std::span<const RefinedFaces::Triangle> triangles;
-        if (is_face(statement) && corners.size() >= 3)
-            triangles = faces_.next();
-        if (triangles.empty() && !counts_back)
+        RefinedFaces::Face face;
+        bool is_changed = counts_back;
+        if (is_face(statement) && corners.size() >= 3) {
+            face = faces_.next();
+            is_changed = is_changed || !face.triangles.empty() || !face.vertices.empty();
+            for (std::size_t c = 0; c < corners.size() && face.triangles.empty(); ++c) {
+                if (!face.vertices.empty())
+                    corners[c].vertex = face.vertices[c] + 1;
+                is_changed = give_normal(corners[c]) || is_changed;
+            }
+        }
+        if (!is_changed)
             return;
         copy_to(begin);
         copied_ = cursor.offset();
-        if (triangles.empty()) {
+        if (face.triangles.empty()) {
             text_ += statement;
             for (const ObjCorner& corner : corners)
                 append_corner(corner);
         }
         bool is_first = true;
-        for (const RefinedFaces::Triangle& triangle : triangles) {
+        for (const RefinedFaces::Triangle& triangle : face.triangles) {
             const PieceValues<ObjCorner> values = values_of(triangle, corners);
             for (const glm::uvec3& piece : refinement_.pieces_of(triangle.number)) {
                 text_.append(is_first ? "" : line_end_).append("f");
                 is_first = false;
-                for (int k = 0; k < 3; ++k)
-                    append_corner(values[piece[k]]);
+                for (int k = 0; k < 3; ++k) {
+                    ObjCorner corner = values[piece[k]];
+                    give_normal(corner);
+                    append_corner(corner);
+                }
             }
         }
         if (copied_ < old_.size() && old_[copied_] == kObjRules.comment)
             text_ += ' ';
+    }
+
+    /// That of its vertex, where it has none of the file. Returns whether it got one.
+    bool give_normal(ObjCorner& corner)
+    {
+        if (corner.normal > 0 || normals_.empty())
+            return false;
+        const glm::vec3& normal = normals_[corner.vertex - 1];
+        if (normal == glm::vec3(0.0f))
+            return false;
+        std::uint32_t& number = numbers_of_normals_[corner.vertex - 1];
+        if (number == 0) {
+            std::string row;
+            for (int axis = 0; axis < 3; ++axis)
+                append_shortest(row += ' ', normal[axis]);
+            number = rows_[2].add_new(std::move(row));
+        }
+        corner.normal = number;
+        return true;
     }
 
     [[nodiscard]] ObjCorner corner_of(std::string_view word) const
@@ -249,6 +288,8 @@ private:
     std::string_view old_;
     const Refinement& refinement_;
     RefinedFaces faces_;
+    std::span<const glm::vec3> normals_;             ///< of vertices, for corners without
+    std::vector<std::uint32_t> numbers_of_normals_;  ///< counted from 1; 0: has no line yet
     std::string_view line_end_ = line_end_of(old_);
     ObjRows rows_[3] = {{"v", line_end_}, {"vt", line_end_}, {"vn", line_end_}};
     std::size_t seen_[3] = {0, 0, 0};           ///< rows of the file so far
@@ -259,9 +300,10 @@ private:
 
 }  // namespace
 
-std::string refined_obj(const Scene& scene, const Refinement& refinement)
+std::string refined_obj(const Scene& scene, const Refinement& refinement,
+                        std::span<const glm::vec3> normals)
 {
-    return ObjRefiner(scene, refinement).write();
+    return ObjRefiner(scene, refinement, normals).write();
 }
 
 }  // namespace surfelao

@@ -301,6 +301,13 @@ std::string new_obj(const Scene& scene, std::span<const Occlusion> occlusion, co
                          occlusion.empty() ? Occlusion{} : occlusion[v]);
         text += '\n';
     }
+    const bool has_normals = !map && scene.normals.of_vertices();
+    for (std::size_t v = 0; v < scene.positions.size() && has_normals; ++v) {
+        text += "vn";
+        for (int axis = 0; axis < 3; ++axis)
+            append_shortest(text += ' ', scene.normals.values[v][axis]);
+        text += '\n';
+    }
     if (map) {
         append_uv_lines(text, *map->uvs, "\n");
         text.append("usemtl ").append(kPlainObjMaterial).append("\n");
@@ -314,8 +321,11 @@ std::string new_obj(const Scene& scene, std::span<const Occlusion> occlusion, co
             return;
         }
         text += 'f';
-        for (const std::uint32_t corner : corners)
+        for (const std::uint32_t corner : corners) {
             append_integer(text += ' ', std::int64_t{corner} + 1);
+            if (has_normals)
+                append_integer(text += "//", std::int64_t{corner} + 1);
+        }
         text += '\n';
     });
     if (plan.replaces())

@@ -27,6 +27,7 @@ namespace surfelao {
 /// A scene that came from OFF gives the text of its file with nothing changed but the keyword and
 /// the colours of the vertices (and numbers there that have no meaning: they go). Where the file's
 /// own colours are not kept, they stand in comments behind everything else, `# own R G B A`.
+/// Any other scene gives coordinates, colours, faces and, where each vertex has one, normals.
 /// options.mark: a comment as the last line, in the place of an older one (maker_mark.h).
 [[nodiscard]] WrittenFile off_contents(const Scene& scene, std::span<const Occlusion> occlusion,
                                        const WriteOptions& options = {});

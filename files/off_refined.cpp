@@ -9,31 +9,36 @@ namespace {
 
 class OffRefiner {
 public:
-    OffRefiner(const Scene& scene, const Refinement& refinement)
+    OffRefiner(const Scene& scene, const Refinement& refinement, std::span<const glm::vec3> normals)
         : header_(dynamic_cast<const OffSource&>(*scene.asset).header),
           old_(dynamic_cast<const OffSource&>(*scene.asset).text),
           refinement_(refinement),
           faces_(scene, refinement)
     {
+        if (!header_.has_normals)
+            normals_ = normals;
     }
 
     std::string write()
     {
         TextCursor cursor("", old_.substr(header_.end), kOffRules, 2);
+        std::string vertices;
+        std::size_t copied = header_.end;
         for (std::uint64_t v = 0; v < header_.vertices; ++v) {
             cursor.next_line();
-            const std::size_t begin = cursor.offset();
+            const std::size_t begin = header_.end + cursor.offset();
             go_to_end(cursor);
-            vertices_.add(old_.substr(header_.end + begin, cursor.offset() - begin));
+            const std::size_t end = header_.end + cursor.offset();
+            vertices_.add(old_.substr(begin, end - begin));
             find_bytes(vertices_.words(v));
+            vertices.append(old_.substr(copied, begin - copied));
+            append_row(vertices, old_.substr(begin, end - begin));
+            copied = end;
         }
-        const std::size_t vertices_end = header_.end + cursor.offset();
         const std::string faces = face_lines(cursor);
-        std::string text = keyword_and_counts();
-        text.append(old_.substr(header_.end, vertices_end - header_.end));
         for (const glm::uvec2& of : refinement_.parents)
-            text.append(line_end_).append(middle_row(of));
-        return text.append(faces);
+            append_row(vertices.append(line_end_), middle_row(of));
+        return keyword_and_counts().append(vertices).append(faces);
     }
 
 private:
@@ -41,6 +46,23 @@ private:
     {
         while (!cursor.at_line_end())
             cursor.word();
+    }
+
+    /// Of the next vertex, with its normal behind the coordinates where it gets one.
+    void append_row(std::string& text, std::string_view row)
+    {
+        if (normals_.empty()) {
+            text.append(row);
+            return;
+        }
+        TextCursor cursor("", row, kOffRules, 2);
+        for (int axis = 0; axis < 3; ++axis)
+            cursor.word();
+        text.append(row.substr(0, cursor.offset()));
+        for (int axis = 0; axis < 3; ++axis)
+            append_shortest(text += ' ', normals_[rows_written_][axis]);
+        text.append(row.substr(cursor.offset()));
+        ++rows_written_;
     }
 
     /// Of a vertex of so many words, whose colour would begin at `first`.
@@ -63,7 +85,7 @@ private:
         std::string text;
         std::size_t copied = header_.end + cursor.offset();
         face_count_ = header_.faces;
-        for (std::uint64_t face = 0; face < header_.faces; ++face) {
+        for (std::uint64_t row = 0; row < header_.faces; ++row) {
             cursor.next_line();
             const std::size_t begin = header_.end + cursor.offset();
             const std::int64_t size = cursor.integer({});
@@ -74,8 +96,8 @@ private:
             go_to_end(cursor);
             if (size < 3)
                 continue;
-            const std::span<const RefinedFaces::Triangle> triangles = faces_.next();
-            if (triangles.empty())
+            const RefinedFaces::Face face = faces_.next();
+            if (face.triangles.empty() && face.vertices.empty())
                 continue;
             text.append(old_.substr(copied, begin - copied));
             copied = header_.end + cursor.offset();
@@ -83,19 +105,28 @@ private:
             copied -= rest_of_face.size();
             rest_of_face = rest_of_face.substr(0, rest_of_face.find_last_not_of(" \t") + 1);
             copied += rest_of_face.size();
+            if (face.triangles.empty())
+                append_face(text, face.vertices, rest_of_face);
             bool is_first = true;
-            for (const RefinedFaces::Triangle& triangle : triangles) {
+            for (const RefinedFaces::Triangle& triangle : face.triangles) {
                 for (const glm::uvec3& piece : refinement_.pieces_of(triangle.number)) {
-                    text.append(is_first ? "" : line_end_).append("3");
-                    for (int k = 0; k < 3; ++k)
-                        append_integer(text += ' ', piece[k]);
-                    text.append(rest_of_face);
+                    text.append(is_first ? "" : line_end_);
+                    append_face(text, {&piece.x, 3}, rest_of_face);
                     face_count_ += is_first ? 0 : 1;
                     is_first = false;
                 }
             }
         }
         return text.append(old_.substr(copied));
+    }
+
+    static void append_face(std::string& text, std::span<const std::uint32_t> vertices,
+                            std::string_view rest)
+    {
+        append_integer(text, static_cast<std::int64_t>(vertices.size()));
+        for (const std::uint32_t vertex : vertices)
+            append_integer(text += ' ', vertex);
+        text.append(rest);
     }
 
     [[nodiscard]] std::string keyword_and_counts() const
@@ -108,6 +139,10 @@ private:
         if (header_.keyword.empty() || cursor.at_line_end())
             cursor.next_line();
         std::string text(old_.substr(0, begin + cursor.offset()));
+        if (!normals_.empty() && header_.keyword.empty())
+            text.insert(begin, std::string("NOFF").append(line_end_));
+        else if (!normals_.empty())
+            text.insert(begin - 3, "N");  // OFF is the last of the keyword
         text.append(header_.is_glued ? " " : "");
         append_integer(text, static_cast<std::int64_t>(header_.vertices) +
                                  static_cast<std::int64_t>(refinement_.parents.size()));
@@ -138,6 +173,8 @@ private:
     std::string_view old_;
     const Refinement& refinement_;
     RefinedFaces faces_;
+    std::span<const glm::vec3> normals_;  ///< that the file gets
+    std::size_t rows_written_ = 0;        ///< with one
     TextRows vertices_{kOffRules};
     std::string_view line_end_ = line_end_of(old_);
     std::uint64_t face_count_ = 0;
@@ -146,9 +183,10 @@ private:
 
 }  // namespace
 
-std::string refined_off(const Scene& scene, const Refinement& refinement)
+std::string refined_off(const Scene& scene, const Refinement& refinement,
+                        std::span<const glm::vec3> normals)
 {
-    return OffRefiner(scene, refinement).write();
+    return OffRefiner(scene, refinement, normals).write();
 }
 
 }  // namespace surfelao

@@ -120,13 +120,17 @@ std::string new_off(const Scene& scene, const ColorWords& own, std::span<const O
                     const ColorPlan& plan)
 {
     std::string text;
-    append_keyword(text, {}, plan);
+    OffHeader header;
+    header.has_normals = scene.normals.of_vertices();
+    append_keyword(text, header, plan);
     append_integer(text += '\n', static_cast<std::int64_t>(scene.positions.size()));
     append_integer(text += ' ', static_cast<std::int64_t>(face_count(scene)));
     text += " 0\n";
     for (std::size_t v = 0; v < scene.positions.size(); ++v) {
         for (int axis = 0; axis < 3; ++axis)
             append_shortest(text.append(axis > 0 ? " " : ""), scene.positions[v][axis]);
+        for (int axis = 0; axis < 3 && header.has_normals; ++axis)
+            append_shortest(text += ' ', scene.normals.values[v][axis]);
         append_vertex_color(text, plan, plan.has_own() ? own[v] : "", v, occlusion[v]);
         text += '\n';
     }

@@ -46,8 +46,9 @@ namespace surfelao {
 /// is above 2) keep their place and their type; where others are shown there, they stand last, as
 /// `own_red own_green own_blue`. Alpha is left alone. A file without any gets `uchar red green
 /// blue`. Seen from the folder of `path`, comments `TextureFile` name the same files as before.
-/// Any other scene gives binary_little_endian with the polygons of its source and its colours; a
-/// cloud with its normals, all single numbers that a point has in its source, and its viewpoint.
+/// Any other scene gives binary_little_endian with the polygons of its source, normals where each
+/// vertex has one (`float nx ny nz`), and its colours; a cloud with all single numbers that a point
+/// has in its source, and its viewpoint.
 /// Coordinates are float, or double where rounding to float would move some vertex by more than
 /// kFloatSlack of the bounding box's diagonal (small things far from the origin).
 /// options.mark: a comment behind the line `format`, in the place of an older one (maker_mark.h).

@@ -15,6 +15,8 @@ namespace {
 
 using namespace ply;
 
+constexpr std::array<const char*, 3> kNormal{"nx", "ny", "nz"};
+
 /// Three scalars that are a vector; none where one is missing.
 std::vector<std::size_t> triple_of(const Element& element, std::array<const char*, 3> names)
 {
@@ -36,7 +38,7 @@ public:
           vertices_(vertices),
           notation_(notation_of(header_.form())),
           place_(triple_of(vertices, {"x", "y", "z"})),
-          normal_(triple_of(vertices, {"nx", "ny", "nz"})),
+          normal_(triple_of(vertices, kNormal)),
           text_(source.vertex_rows())
     {
         Data data(no_name_, text_, header_.form());
@@ -45,14 +47,26 @@ public:
             begins_.push_back(data.offset());
             for (const Property& property : vertices_.properties)
                 skip_property(data, property);
+            ends_.push_back(data.offset());
         }
     }
 
-    std::string write(const Refinement& refinement)
+    /// normals: put behind what each row has; empty: none.
+    std::string write(const Refinement& refinement, std::span<const glm::vec3> normals)
     {
         for (const glm::uvec2& of : refinement.parents)
             append_middle_row(of);
-        return std::move(text_);
+        if (normals.empty())
+            return std::move(text_);
+        std::string text;
+        std::size_t copied = 0;
+        for (std::size_t row = 0; row < ends_.size(); ++row) {
+            text.append(text_, copied, ends_[row] - copied);
+            copied = ends_[row];
+            for (int axis = 0; axis < 3; ++axis)
+                append_number(text, Type::float32, normals[row][axis], notation_);
+        }
+        return text.append(text_, copied);
     }
 
 private:
@@ -115,6 +129,7 @@ private:
                 append_number(row, property.type, middle[p].number, notation_);
         }
         text_ += notation_.ascii ? row.substr(1) : row;
+        ends_.push_back(text_.size());
     }
 
     const Header& header_;
@@ -123,7 +138,7 @@ private:
     std::vector<std::size_t> place_, normal_;  ///< properties
     const std::string no_name_;
     std::string text_;
-    std::vector<std::size_t> begins_;  ///< of the rows
+    std::vector<std::size_t> begins_, ends_;  ///< of the rows
 };
 
 /// The rows of a file's faces with pieces of triangles.
@@ -158,13 +173,14 @@ public:
             const std::size_t row_begin = data_.offset();
             read_row(rows);
             row_end = data_.offset();
-            const auto triangles =
-                corners_.size() < 3 ? std::span<const RefinedFaces::Triangle>() : refined_.next();
+            const RefinedFaces::Face face =
+                corners_.size() < 3 ? RefinedFaces::Face() : refined_.next();
             ++count;
-            if (!triangles.empty())
-                append_pieces(triangles);
-            else if (index_type)
-                append_row(corners_, old_[places_ < old_.size() ? places_ : list_]);
+            if (!face.triangles.empty())
+                append_pieces(face.triangles);
+            else if (index_type || !face.vertices.empty())
+                append_row(face.vertices.empty() ? corners_ : face.vertices,
+                           old_[places_ < old_.size() ? places_ : list_]);
             else
                 text_.append(rows.substr(row_begin, row_end - row_begin));
         }
@@ -278,9 +294,14 @@ std::optional<Type> wider_type(const Property& list, std::size_t vertices)
     return Type::int32;
 }
 
-/// The header with other counts and, if there is one, another type of indices.
-std::string new_header(const PlySource& source, std::uint64_t vertices, std::uint64_t faces,
-                       const std::optional<Type>& index_type)
+/// What is new in a header.
+struct HeaderChanges {
+    std::uint64_t vertices = 0, faces = 0;  ///< how many
+    std::optional<Type> index_type;         ///< where the file's is too small
+    bool adds_normals = false;
+};
+
+std::string new_header(const PlySource& source, const HeaderChanges& changes)
 {
     const std::string_view old =
         std::string_view(source.contents).substr(0, source.header.data_begin);
@@ -292,7 +313,16 @@ std::string new_header(const PlySource& source, std::uint64_t vertices, std::uin
     std::size_t copied = 0;
     TextCursor cursor({}, old, {});
     std::string_view element;
+    std::size_t normals_at =
+        changes.adds_normals ? find_element(source.header, "vertex")->lines_end : old.npos;
     while (cursor.next_line()) {
+        if (cursor.offset() >= normals_at) {
+            text.append(old.substr(copied, normals_at - copied));
+            copied = normals_at;
+            for (const char* name : kNormal)
+                text.append("property float ").append(name).append(source.header.newline);
+            normals_at = old.npos;
+        }
         const std::string_view keyword = cursor.word();
         if (keyword == "element") {
             element = cursor.word();
@@ -300,10 +330,11 @@ std::string new_header(const PlySource& source, std::uint64_t vertices, std::uin
                 continue;
             static_cast<void>(cursor.at_line_end());  // goes to the next word
             text.append(old.substr(copied, cursor.offset() - copied));
-            append_integer(text, static_cast<std::int64_t>(element == "vertex" ? vertices : faces));
+            append_integer(text, static_cast<std::int64_t>(element == "vertex" ? changes.vertices
+                                                                               : changes.faces));
             cursor.word();
             copied = cursor.offset();
-        } else if (keyword == "property" && element == "face" && index_type) {
+        } else if (keyword == "property" && element == "face" && changes.index_type) {
             cursor.word();
             cursor.word();
             static_cast<void>(cursor.at_line_end());
@@ -312,7 +343,7 @@ std::string new_header(const PlySource& source, std::uint64_t vertices, std::uin
             const std::size_t end = cursor.offset();
             if (cursor.word() != list)
                 continue;
-            text.append(old.substr(copied, begin - copied)).append(name_of(*index_type));
+            text.append(old.substr(copied, begin - copied)).append(name_of(*changes.index_type));
             copied = end;
         }
     }
@@ -320,17 +351,24 @@ std::string new_header(const PlySource& source, std::uint64_t vertices, std::uin
 }
 
 template <class Data>
-std::string refined(const PlySource& source, const Scene& scene, const Refinement& refinement)
+std::string refined(const PlySource& source, const Scene& scene, const Refinement& refinement,
+                    std::span<const glm::vec3> normals)
 {
     const Element& vertices = *find_element(source.header, "vertex");
     const Element& faces = *find_element(source.header, "face");
     const std::size_t vertex_count = scene.positions.size() + refinement.parents.size();
     const std::optional<Type> index_type =
         wider_type(faces.properties[index_list_of(faces)], vertex_count);
-    const std::string vertex_rows = PlyVertices<Data>(source, vertices).write(refinement);
+    const auto has = [&](const char* name) {
+        return find_scalar(vertices, name) < vertices.properties.size();
+    };
+    if (std::ranges::any_of(kNormal, has))
+        normals = {};
+    const std::string vertex_rows = PlyVertices<Data>(source, vertices).write(refinement, normals);
     PlyFaces<Data> face_writer(source, scene, refinement);
     const std::string face_rows = face_writer.write(index_type);
-    std::string text = new_header(source, vertex_count, face_writer.count, index_type);
+    std::string text =
+        new_header(source, {vertex_count, face_writer.count, index_type, !normals.empty()});
     const std::string_view data = source.data();
     const bool vertices_first = source.vertices_begin < source.faces_begin;
     const std::size_t first_begin = std::min(source.vertices_begin, source.faces_begin);
@@ -346,11 +384,13 @@ std::string refined(const PlySource& source, const Scene& scene, const Refinemen
 
 }  // namespace
 
-std::string refined_ply(const Scene& scene, const Refinement& refinement)
+std::string refined_ply(const Scene& scene, const Refinement& refinement,
+                        std::span<const glm::vec3> normals)
 {
     const auto& source = dynamic_cast<const PlySource&>(*scene.asset);
-    return source.header.format == Format::ascii ? refined<AsciiData>(source, scene, refinement)
-                                                 : refined<BinaryData>(source, scene, refinement);
+    return source.header.format == Format::ascii
+               ? refined<AsciiData>(source, scene, refinement, normals)
+               : refined<BinaryData>(source, scene, refinement, normals);
 }
 
 }  // namespace surfelao

@@ -4,8 +4,6 @@
 #include "files/triangulate.h"
 #include "surfels/number_text.h"
 
-#include <glm/geometric.hpp>
-
 #include <cmath>
 #include <limits>
 
@@ -16,32 +14,37 @@ RefinedFaces::RefinedFaces(const Scene& scene, const Refinement& refinement)
 {
 }
 
-std::span<const RefinedFaces::Triangle> RefinedFaces::next()
+RefinedFaces::Face RefinedFaces::next()
 {
     const std::size_t size = polygons_ ? polygons_->sizes[face_] : 3;
     const std::uint32_t first = triangle_;
     triangle_ += static_cast<std::uint32_t>(size - 2);
     corner_ += size;
     ++face_;
-    triangles_.clear();
-    bool is_split = false;
-    for (std::uint32_t t = first; t < triangle_; ++t)
-        is_split = is_split || refinement_.splits(t);
-    if (!is_split)
-        return triangles_;
+    bool is_cut = false, is_moved = false;
+    for (std::uint32_t t = first; t < triangle_; ++t) {
+        is_cut = is_cut || refinement_.splits(t);
+        is_moved = is_moved || refinement_.pieces_of(t)[0] != scene_.triangles[t];
+    }
+    if (!is_cut && !is_moved)
+        return {};
     cut_.assign(size == 3 ? 1 : 0, glm::uvec3(0, 1, 2));
     if (size > 3)
         triangulate(scene_.positions, {&polygons_->corners[corner_ - size], size}, cut_);
-    for (std::uint32_t t = first; t < triangle_; ++t)
-        triangles_.push_back({t, cut_[t - first]});
-    return triangles_;
-}
-
-glm::dvec3 middle_direction(const glm::dvec3& a, const glm::dvec3& b)
-{
-    const glm::dvec3 sum = a + b;
-    const double length = glm::length(sum);
-    return length > 0.0 ? sum * (0.5 * (glm::length(a) + glm::length(b)) / length) : a;
+    triangles_.clear();
+    vertices_.assign(size, kNoValue);
+    for (std::uint32_t t = first; t < triangle_; ++t) {
+        const glm::uvec3& corners = cut_[t - first];
+        triangles_.push_back({t, corners});
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = refinement_.pieces_of(t)[0][k];
+            std::uint32_t& known = vertices_[corners[k]];
+            // a crease within a polygon: its triangles have different copies of the corner
+            is_cut = is_cut || (known != kNoValue && known != vertex);
+            known = vertex;
+        }
+    }
+    return is_cut ? Face{triangles_, {}} : Face{{}, vertices_};
 }
 
 std::vector<std::string_view> TextRows::words(std::size_t row) const

@@ -30,8 +30,13 @@ public:
         std::uint32_t number;  ///< in the scene
         glm::uvec3 corners;    ///< by their numbers in the file's face
     };
-    /// The triangles of the next face; none where it stays as it is. Good until the next call.
-    [[nodiscard]] std::span<const Triangle> next();
+    /// What becomes of a face; both empty: it stays as it is.
+    struct Face {
+        std::span<const Triangle> triangles;      ///< it is cut: into the pieces of these
+        std::span<const std::uint32_t> vertices;  ///< it is not: but these are its corners now
+    };
+    /// Of the next face. Good until the next call.
+    [[nodiscard]] Face next();
 
 private:
     const Scene& scene_;
@@ -42,10 +47,8 @@ private:
     std::uint32_t triangle_ = 0;  ///< of the scene
     std::vector<glm::uvec3> cut_;
     std::vector<Triangle> triangles_;
+    std::vector<std::uint32_t> vertices_;
 };
-
-/// The mean of two directions, of the mean of their lengths; the first where they cancel.
-[[nodiscard]] glm::dvec3 middle_direction(const glm::dvec3& a, const glm::dvec3& b);
 
 /// Rows of words in a text file: vertices, normals and the like.
 class TextRows {
@@ -82,9 +85,12 @@ void append_middle(std::string& text, std::span<const std::string_view> a,
                    std::span<const std::string_view> b, Triple triple);
 
 /// Each returns the text of the file with the triangles cut. The scene is that of the file without
-/// anything that a bake has added: original_obj() and so on.
-[[nodiscard]] std::string refined_obj(const Scene& scene, const Refinement& refinement);
-[[nodiscard]] std::string refined_off(const Scene& scene, const Refinement& refinement);
-[[nodiscard]] std::string refined_ply(const Scene& scene, const Refinement& refinement);
+/// anything that a bake has added: original_obj() and so on. normals: as in refined_scene().
+[[nodiscard]] std::string refined_obj(const Scene& scene, const Refinement& refinement,
+                                      std::span<const glm::vec3> normals = {});
+[[nodiscard]] std::string refined_off(const Scene& scene, const Refinement& refinement,
+                                      std::span<const glm::vec3> normals = {});
+[[nodiscard]] std::string refined_ply(const Scene& scene, const Refinement& refinement,
+                                      std::span<const glm::vec3> normals = {});
 
 }  // namespace surfelao

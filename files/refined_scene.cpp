@@ -37,7 +37,6 @@ Scene with_colors(const Scene& scene, const Refinement& refinement)
     }
     Scene refined = plain_refined(scene, refinement);
     refined.asset = source;
-    refined.notes.push_back("strips become faces, and only coordinates and colours are kept");
     return refined;
 }
 
@@ -47,24 +46,33 @@ bool has_strips(const ply::PlySource& source)
     return strips && strips->count > 0;
 }
 
-Scene read_refined(const Scene& scene, const Refinement& refinement)
+Scene read_refined(const Scene& scene, const Refinement& refinement,
+                   std::span<const glm::vec3> normals)
 {
     const SourceAsset* asset = scene.asset.get();
     if (const auto* ply = dynamic_cast<const ply::PlySource*>(asset)) {
-        if (has_strips(*ply))
-            return with_colors(scene, refinement);
+        if (has_strips(*ply)) {
+            Scene refined = with_colors(scene, refinement);
+            refined.notes.push_back(
+                "strips become faces, and only coordinates and colours are kept");
+            return refined;
+        }
         const std::string name = (ply->folder / scene.name).string();
-        return read_ply(name, refined_ply(read_ply(name, original_ply(scene)), refinement));
+        return read_ply(name,
+                        refined_ply(read_ply(name, original_ply(scene)), refinement, normals));
     }
     if (const auto* obj = dynamic_cast<const ObjSource*>(asset)) {
         const std::string name = (obj->folder / scene.name).string();
-        return read_obj(name, refined_obj(read_obj(name, original_obj(scene)), refinement));
+        return read_obj(name,
+                        refined_obj(read_obj(name, original_obj(scene)), refinement, normals));
     }
     if (dynamic_cast<const OffSource*>(asset) != nullptr)
-        return read_off(scene.name,
-                        refined_off(read_off(scene.name, original_off(scene)), refinement));
+        return read_off(scene.name, refined_off(read_off(scene.name, original_off(scene)),
+                                                refinement, normals));
     if (const auto* gltf = dynamic_cast<const GltfAsset*>(asset))
-        return read_gltf(gltf->path, refined_gltf(scene, refinement), gltf->moment);
+        return read_gltf(gltf->path, refined_gltf(scene, refinement, normals), gltf->moment);
+    if (dynamic_cast<const ColorSource*>(asset) != nullptr)
+        return with_colors(scene, refinement);
     return plain_refined(scene, refinement);
 }
 
@@ -83,10 +91,13 @@ void check_refinable(const Scene& scene)
     }
 }
 
-Scene refined_scene(const Scene& scene, const Refinement& refinement)
+Scene refined_scene(const Scene& scene, const Refinement& refinement,
+                    std::span<const glm::vec3> normals)
 {
+    SURFELAO_CHECK(normals.empty() ||
+                   normals.size() == scene.positions.size() + refinement.parents.size());
     check_refinable(scene);
-    Scene refined = read_refined(scene, refinement);
+    Scene refined = read_refined(scene, refinement, normals);
     refined.name = scene.name;
     for (const std::string& note : scene.notes) {
         if (std::ranges::find(refined.notes, note) == refined.notes.end())

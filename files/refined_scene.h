@@ -19,10 +19,17 @@
 ///               fans become lists. `_FEATURE_ID_n` is that of the first end. What was there before
 ///               the cut stays in the file, unused
 ///   others      (.stl, scenes made in code) have no asset afterwards
+///
+/// A file may get normals with the cut, where it gives none: PLY nx ny nz and OFF's N only where it
+/// has none at all, glTF's NORMAL in meshes whose vertices get any, OBJ's vn at corners without.
 #pragma once
 
 #include "surfels/refinement.h"
 #include "surfels/scene.h"
+
+#include <glm/vec3.hpp>
+
+#include <span>
 
 namespace surfelao {
 
@@ -30,8 +37,12 @@ namespace surfelao {
 void check_refinable(const Scene& scene);
 
 /// The triangles of the result are the pieces, in their order. Notes are those of the scene. O(n);
-/// the file is written anew in memory and read again. Throws as check_refinable(), and InputError
-/// where an attribute of a glTF has not one element for each vertex.
-[[nodiscard]] Scene refined_scene(const Scene& scene, const Refinement& refinement);
+/// the file is written anew in memory and read again. normals: those that the file gets, one per
+/// vertex of the result in the refinement's numbers (the old ones, then the new), in world space,
+/// of unit length or zero: none. Of glTF only for a scene without normals. Empty: it gets none.
+/// Throws as check_refinable(), and InputError where an attribute of a glTF has not one element for
+/// each vertex.
+[[nodiscard]] Scene refined_scene(const Scene& scene, const Refinement& refinement,
+                                  std::span<const glm::vec3> normals = {});
 
 }  // namespace surfelao

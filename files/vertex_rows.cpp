@@ -372,7 +372,7 @@ NewRows::NewRows(const Scene& scene, std::span<const Occlusion> occlusion,
       plan_(plan_colors(options, own_colors_of(scene), OcclusionPlace::beside, notes))
 {
     const bool is_cloud = scene.triangles.empty();
-    if (is_cloud && !scene.normals.empty()) {
+    if (scene.normals.of_vertices()) {
         for (const char* axis : {"nx", "ny", "nz"})
             columns_.push_back({Type::float32, axis});
     }
@@ -404,7 +404,7 @@ void NewRows::append(std::string& text, std::size_t vertex, Notation notation) c
         return plan_.what == VertexColors::keep ? numbers_of(plan_.own[vertex])
                                                 : plan_.numbers(vertex, occlusion_[vertex]);
     };
-    if (scene_.triangles.empty() && !scene_.normals.empty()) {
+    if (scene_.normals.of_vertices()) {
         for (int axis = 0; axis < 3; ++axis)
             append_number(text, Type::float32, scene_.normals.values[vertex][axis], notation);
     }

@@ -85,8 +85,8 @@ struct VertexChanges {
                                        std::span<const Occlusion> occlusion,
                                        const VertexChanges& changes);
 
-/// Rows for a scene whose file is of another format: behind x y z its colours, in a cloud its
-/// normals and other columns too, and the result.
+/// Rows for a scene whose file is of another format: behind x y z its normals, where each vertex
+/// has one, its colours, in a cloud other columns too, and the result.
 class NewRows {
 public:
     /// occlusion: one for each vertex; must outlive this, as the scene must.

@@ -530,6 +530,19 @@ Receiver turned_round(const Receiver& receiver)
             receiver.offset};
 }
 
+namespace {
+
+/// 1 where the way from one point to another lies in the planes of both, 0 where it is as steep
+/// over one of them as kSteepest.
+float nearness_to_planes(glm::vec3 way, glm::vec3 a, glm::vec3 b)
+{
+    const float steep = std::max(std::abs(glm::dot(way, a)), std::abs(glm::dot(way, b)));
+    const float most2 = kSteepest * kSteepest * glm::dot(way, way);
+    return most2 > 0.0f ? std::max(0.0f, 1.0f - steep * steep / most2) : 1.0f;
+}
+
+}  // namespace
+
 void orient(PointCloud& cloud, std::span<const Occlusion> front, std::span<const Occlusion> back)
 {
     const std::size_t count = cloud.occluders.size();
@@ -544,7 +557,10 @@ void orient(PointCloud& cloud, std::span<const Occlusion> front, std::span<const
             if (other == kNobody)
                 continue;
             const float cosine = glm::dot(cloud.normals[i], cloud.normals[other]);
-            const float weight = cosine * cosine * cosine * cosine;  // not across edges
+            // not across edges, nor from the other side of a thin sheet
+            const float weight = cosine * cosine * cosine * cosine *
+                                 nearness_to_planes(cloud.positions[other] - cloud.positions[i],
+                                                    cloud.normals[i], cloud.normals[other]);
             sum += std::copysign(weight, cosine) * votes[other];
             weights += weight;
         }

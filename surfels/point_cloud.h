@@ -75,6 +75,11 @@ inline constexpr float kWeakVote = 0.1f;
 /// still weak, which so take the side of the strong ones around them: of the points of a skull .3 %
 /// instead of .7 % are turned inward; over the family the error is the same to .3 %.
 inline constexpr int kVoteRounds = 2, kWeakVoteRounds = 62;
+/// Sine of the angle over a point's plane from which on a neighbour has no vote: it may stand on
+/// the other side of a thin sheet, and its normal the other way. Over the family's choosing half,
+/// clean and noisy, the error is .0493 and .0590 with it, .0500 and .0593 without (.0495 and .0591
+/// at .71); of a skull's points .13 % instead of .29 % are turned inward.
+inline constexpr float kSteepest = 0.5f;
 /// An outlier's r is above so many times the median of its neighbours'.
 inline constexpr float kOutlier = 4.0f;
 

@@ -1,8 +1,17 @@
 #include "surfels/refinement.h"
 
+#include <glm/geometric.hpp>
+
 #include <utility>
 
 namespace surfelao {
+
+glm::dvec3 middle_direction(const glm::dvec3& a, const glm::dvec3& b)
+{
+    const glm::dvec3 sum = a + b;
+    const double length = glm::length(sum);
+    return length > 0.0 ? sum * (0.5 * (glm::length(a) + glm::length(b)) / length) : a;
+}
 
 Scene plain_refined(const Scene& scene, const Refinement& refinement)
 {

@@ -15,9 +15,11 @@
 
 namespace surfelao {
 
-/// Invariants: a new vertex is the middle of two that come before it, in a triangle of both; all
-/// triangles at one edge, as the welded surface has it (Geometry::welded), are cut there alike, so
-/// that no corner of a piece lies within the edge of another.
+/// Invariants: a new vertex is the middle of two that come before it, in a triangle of both, or,
+/// where these are the same, a copy that some of its triangles have in its place; all triangles at
+/// one edge, as the welded surface has it (Geometry::welded), are cut there alike, so that no
+/// corner of a piece lies within the edge of another. A single piece has its corners in the
+/// triangle's order.
 struct Refinement {
     std::uint32_t old_vertices = 0;
     std::vector<glm::uvec2> parents;   ///< of each new vertex; their numbers follow the old ones'
@@ -34,6 +36,9 @@ struct Refinement {
     }
 };
 
+/// The mean of two directions, of the mean of their lengths; the first where they cancel.
+[[nodiscard]] glm::dvec3 middle_direction(const glm::dvec3& a, const glm::dvec3& b);
+
 /// Something that the corners of a triangle have, at all vertices of its pieces.
 template <class Value>
 class PieceValues {
@@ -44,6 +49,7 @@ public:
     PieceValues(const Refinement& refinement, std::size_t triangle, const glm::uvec3& corners,
                 const std::array<Value, 3>& values, const Middle& middle)
     {
+        vertices_.assign({corners.x, corners.y, corners.z});
         for (const glm::uvec3& piece : refinement.pieces_of(triangle))
             vertices_.insert(vertices_.end(), {piece.x, piece.y, piece.z});
         std::ranges::sort(vertices_);

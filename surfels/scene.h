@@ -70,6 +70,8 @@ struct CornerNormals {
     static constexpr std::uint32_t kNone = 0xffffffff;
 
     [[nodiscard]] bool empty() const { return values.empty(); }
+    /// Whether there is one for each vertex.
+    [[nodiscard]] bool of_vertices() const { return !values.empty() && corners.empty(); }
 };
 
 /// Where the corners of triangles lie in a map: u to the right, v down, the map from 0 to 1.

@@ -263,6 +263,31 @@ TEST(Points, AScanIsAsItsSurface)
     EXPECT_LE(judge(mesh, {.points = 6000, .has_normals = false}).turned, 0.005);
 }
 
+// A side of a plate that is nearly as closed as its inside, and the open side below it, so near
+// that they are neighbours.
+TEST(Points, TheOtherSideOfAThinSheetHasNoVote)
+{
+    PointCloud cloud;
+    cloud.positions = {{0, 0, 0}, {0.01f, 0, 0}, {0, 0, -0.01f}, {0.01f, 0, -0.01f}};
+    cloud.normals.assign(4, glm::vec3(0, 0, 1));
+    cloud.occluders = {0, 1, 2, 3};
+    cloud.is_unoriented = true;
+    cloud.neighbours.resize(4);
+    for (std::uint32_t i = 0; i < 4; ++i) {
+        cloud.neighbours[i].fill(PointCloud::kNobody);
+        std::size_t count = 0;
+        for (std::uint32_t other = 0; other < 4; ++other) {
+            if (other != i)
+                cloud.neighbours[i][count++] = other;
+        }
+    }
+    const std::vector<Occlusion> front{{0.9f, {}}, {0.9f, {}}, {1.0f, {}}, {1.0f, {}}};
+    const std::vector<Occlusion> back{{0.95f, {}}, {0.95f, {}}, {0.2f, {}}, {0.2f, {}}};
+    orient(cloud, front, back);
+    const std::vector<glm::vec3> right{{0, 0, 1}, {0, 0, 1}, {0, 0, -1}, {0, 0, -1}};
+    EXPECT_EQ(cloud.normals, right);
+}
+
 TEST(Points, NormalsAreTurnedAsToldTo)
 {
     const Scene floor = cloud_of(500, on_floor, up_at);

@@ -265,6 +265,8 @@ TEST(CutOut, PiecesHaveTheAreaThatThePictureLeaves)
 TEST(PartHints, NameWhatIsBetterLeftOut)
 {
     const Scene sky = scenes::flipped(scenes::sphere({0, 0, 0}, 50, 4));
+    const Scene half_sky = scenes::moved(
+        sky, [](glm::dvec3 p) { return glm::dvec3(p.x, p.y, std::max(p.z, 0.0) + 1e-9); });
     const Scene lid = lid_scene();
     const Scene aside = scenes::moved(lid, [](glm::dvec3 p) { return p + glm::dvec3(9, 0, 0); });
     const struct {
@@ -274,8 +276,10 @@ TEST(PartHints, NameWhatIsBetterLeftOut)
     } rows[] = {
         {{{"a", lid}, {"b", floor_scene()}}, {}, ""},
         {{{"a", lid}, {"my sky", sky}}, {}, "my sky"},
+        {{{"a", lid}, {"dome", half_sky}}, {}, "dome"},
+        {{{"a", lid}, {"b", aside}}, {}, ""},
         {{{"a", lid}, {"UCX_a", lid}, {"b_Collision", lid}},
-         {"2 parts are called like collision hulls (UCX_a, b_Collision): --exclude '*_Collision' "
+         {"2 parts are called like collision hulls (UCX_a, b_Collision): --exclude '*Collision' "
           "'UCX_*' leaves them out"},
          ""},
         {{{"a_LOD0", lid}, {"a_LOD1", lid}, {"a_LOD2", aside}},
@@ -294,6 +298,64 @@ TEST(PartHints, NameWhatIsBetterLeftOut)
         EXPECT_EQ(hints_by_name(mesh), row.hints);
         EXPECT_EQ(name_of_enclosing(mesh), row.enclosing);
     }
+}
+
+TEST(PartHints, KnowHowProgramsNameHulls)
+{
+    const std::pair<const char*, const char*> rows[] = {
+        {"COL_rock", "'COL_*'"},
+        {"MCDCX_rock_00", "'MCDCX_*'"},
+        {"rock-colonly.001", "'*-colonly.*'"},
+        {"rock$col", "'*$col'"},
+        {"rock_UCX", "'*_UCX'"},
+        {"RockCollider", "'*Collider'"},
+        {"rock collision", "'*collision'"},
+        {"rock_Collision_02", "'*Collision_*'"},
+        {"rock.hitbox", "'*hitbox'"},
+        {"col_01", nullptr},  // a column
+        {"protocol", nullptr},
+        {"collisional", nullptr},
+    };
+    for (const auto& [name, pattern] : rows) {
+        const Mesh mesh = mesh_of(named({{"rock", lid_scene()}, {name, lid_scene()}}), {});
+        std::vector<std::string> hints;
+        if (pattern != nullptr)
+            hints = {std::string("1 part is called like a collision hull (") + name +
+                     "): --exclude " + pattern + " leaves it out"};
+        EXPECT_EQ(hints_by_name(mesh), hints) << name;
+    }
+}
+
+TEST(PartHints, KnowHowProgramsNameLevels)
+{
+    const struct {
+        const char *fine, *coarse, *pattern;
+    } rows[] = {
+        {"LOD0", "LOD2", "'*LOD2'"},
+        {"rock_LOD0.001", "rock_LOD1.001", "'*LOD1.*'"},
+        {"LOD0_rock", "LOD1_rock", "'LOD1_*'"},
+        {"rock", "lod1-rock", "'lod1-*'"},
+        {"rock LOD 0", "rock LOD 1", "'*LOD 1'"},
+        {"rock_LOD0_mesh", "rock_LOD1_mesh", "'*LOD1_*'"},
+        {"rock_LOD0", "stone_LOD1", nullptr},  // two things
+        {"melody1", "melody2", nullptr},
+    };
+    for (const auto& row : rows) {
+        const Mesh mesh = mesh_of(named({{row.fine, lid_scene()}, {row.coarse, lid_scene()}}), {});
+        std::vector<std::string> hints;
+        if (row.pattern != nullptr)
+            hints = {std::string("levels of detail lie in each other (") + row.coarse +
+                     "): --exclude " + row.pattern + " leaves the coarse ones out"};
+        EXPECT_EQ(hints_by_name(mesh), hints) << row.coarse;
+    }
+}
+
+TEST(PartHints, KnowHowProgramsNameSkies)
+{
+    for (const char* name : {"Sky", "SkyDome", "BP_Sky_Sphere", "skybox.001"})
+        EXPECT_EQ(name_of_sky(mesh_of(named({{"a", lid_scene()}, {name, lid_scene()}}), {})), name);
+    for (const char* name : {"Skyscraper", "risky", "dome"})
+        EXPECT_EQ(name_of_sky(mesh_of(named({{"a", lid_scene()}, {name, lid_scene()}}), {})), "");
 }
 
 BakeSettings settings_for_parts(const TemporaryFolder& folder, const std::string& name)

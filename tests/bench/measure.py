@@ -355,7 +355,7 @@ def part_viewers(build):
     return {**provenance(build, "tests/bench/viewers/prove.py"), "before": old["before"], **shown}
 
 
-SUBDIVIDED = ("cornell_box", "gazebo", "boat", "data/room.obj")
+SUBDIVIDED = ("cornell_box", "gazebo", "boat", "data/room.obj", "data/blob.off")
 
 
 def part_subdivide(build):

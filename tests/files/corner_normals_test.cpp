@@ -2,8 +2,10 @@
 #include "files/obj_io.h"
 #include "files/off_io.h"
 #include "files/ply_io.h"
+#include "files/scene_io.h"
 #include "files/stl_io.h"
 #include "surfels/errors.h"
+#include "temporary_folder.h"
 
 #include <glm/geometric.hpp>
 
@@ -260,6 +262,27 @@ TEST(CornerNormalsOfPly, AreReadInBothByteOrdersAndSurviveTheWriting)
             read_ply("test.ply", ply_contents("x.ply", scene, open_answers(scene)).contents),
             scene);
     }
+}
+
+TEST(CornerNormals, OfVerticesGoIntoOtherFormats)
+{
+    const TemporaryFolder folder;
+    const Scene scene =
+        read_ply("test.ply", ascii_ply("property float nx\nproperty float ny\nproperty float nz\n",
+                                       {"1 0.5 2", "0 0 -1", "0 3 0"}));
+    Scene without = scene;
+    without.normals = {};
+    for (const char* name : {"a.obj", "a.off"}) {
+        write_scene(folder / name, scene, open_answers(scene));
+        EXPECT_EQ(read_scene(folder / name).normals.values, scene.normals.values) << name;
+        write_scene(folder / name, without, open_answers(scene));
+        EXPECT_TRUE(read_scene(folder / name).normals.empty()) << name;
+    }
+    const Scene off = read_scene(folder.file("b.off",
+                                             "NOFF 3 1 0\n0 0 0 1 0.5 2\n1 0 0 0 0 -1\n"
+                                             "0 1 0 0 3 0\n3 0 1 2\n"));
+    write_scene(folder / "a.ply", off, open_answers(off));
+    EXPECT_EQ(read_scene(folder / "a.ply").normals.values, scene.normals.values);
 }
 
 // ---- OFF and STL

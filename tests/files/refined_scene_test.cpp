@@ -12,6 +12,8 @@
 
 #include <glm/geometric.hpp>
 
+#include <array>
+
 namespace surfelao {
 namespace {
 
@@ -79,14 +81,69 @@ TEST(RefinedScene, KeepsTheRestOfTextFiles)
 {
     struct Case {
         const char *name, *text, *refined;
-        std::string (*refine)(const Scene&, const Refinement&);
+        std::string (*refine)(const Scene&, const Refinement&, std::span<const glm::vec3>);
     };
     const TemporaryFolder folder;
     for (const Case& c : {Case{"a.obj", kWholeObj, kCutObj, refined_obj},
                           Case{"a.off", kWholeOff, kCutOff, refined_off},
                           Case{"a.ply", kWholePly, kCutPly, refined_ply}}) {
         const Scene scene = read_scene(folder.file(c.name, c.text));
-        EXPECT_EQ(c.refine(scene, across(scene)), c.refined);
+        EXPECT_EQ(c.refine(scene, across(scene), {}), c.refined);
+    }
+}
+
+/// The third triangle has copies of the first two vertices; nothing is cut.
+Refinement with_copies(const Scene& scene)
+{
+    Refinement refinement;
+    refinement.old_vertices = static_cast<std::uint32_t>(scene.positions.size());
+    refinement.parents = {glm::uvec2(0), glm::uvec2(1)};
+    refinement.pieces = scene.triangles;
+    for (int k = 0; k < 3; ++k) {
+        if (refinement.pieces[2][k] < 2)
+            refinement.pieces[2][k] += refinement.old_vertices;
+    }
+    refinement.first = {0, 1, 2, 3};
+    return refinement;
+}
+
+constexpr const char* kCopiedObj =
+    "# c\no a\nv 0 0 0 1 0 0\nv 2 0 0 0 0 0\nv 2 2 0 1 0 0\nv 0 2 0 0 0 0\n"
+    "vt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 2\ng one\nusemtl red\n"
+    "v 5 0 0\nv 0 0 0 1 0 0\nv 2 0 0 0 0 0\nvn 0 0.5 5\nvn 0 0.5 6\nvn 0 0.5 4\n"
+    "f 1/1/1 2/2/1 3/3/1 4//1 # quad\no b\ns 1\nf 6//2 7//3 5//4\n";
+constexpr const char* kCopiedOff =
+    "# c\nCNOFF # d\n7 2 0\n0 0 0 0 0.5 0 255 0 0 255\n2 0 0 0 0.5 1 0 0 0 255\n"
+    "2 2 0 0 0.5 2 1 0 0 255\n0 2 0 0 0.5 3 0 0 0 255\n5 0 0 0 0.5 4 0 0 0 255\n"
+    "0 0 0 0 0.5 5 255 0 0 255\n2 0 0 0 0.5 6 0 0 0 255\n4 0 1 2 3 7 8 9 # quad\n3 5 6 4\n";
+constexpr const char* kBarePly =
+    "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+    "property float z\nproperty uchar red\nelement face 2\n"
+    "property list uchar char vertex_indices\nproperty short part\nend_header\n"
+    "0 0 0 10\n2 0 0 0\n2 2 0 20\n0 2 0 0\n5 0 0 0\n4 0 1 2 3 7\n3 0 1 4 9\n";
+constexpr const char* kCopiedPly =
+    "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\n"
+    "property float z\nproperty uchar red\nproperty float nx\nproperty float ny\n"
+    "property float nz\nelement face 2\n"
+    "property list uchar char vertex_indices\nproperty short part\nend_header\n"
+    "0 0 0 10 0 0.5 0\n2 0 0 0 0 0.5 1\n2 2 0 20 0 0.5 2\n0 2 0 0 0 0.5 3\n5 0 0 0 0 0.5 4\n"
+    "0 0 0 10 0 0.5 5\n2 0 0 0 0 0.5 6\n4 0 1 2 3 7\n3 5 6 4 9\n";
+
+TEST(RefinedScene, CopiesVerticesAndAddsNormals)
+{
+    struct Case {
+        const char *name, *text, *refined;
+        std::string (*refine)(const Scene&, const Refinement&, std::span<const glm::vec3>);
+    };
+    const TemporaryFolder folder;
+    std::vector<glm::vec3> normals;
+    for (int v = 0; v < 7; ++v)
+        normals.emplace_back(0.0f, 0.5f, static_cast<float>(v));
+    for (const Case& c : {Case{"a.obj", kWholeObj, kCopiedObj, refined_obj},
+                          Case{"a.off", kWholeOff, kCopiedOff, refined_off},
+                          Case{"a.ply", kBarePly, kCopiedPly, refined_ply}}) {
+        const Scene scene = read_scene(folder.file(c.name, c.text));
+        EXPECT_EQ(c.refine(scene, with_copies(scene), normals), c.refined);
     }
 }
 
@@ -173,6 +230,29 @@ TEST(RefinedScene, CutsEachUseOfAMeshInGltf)
     EXPECT_NEAR(normal.y, std::sqrt(0.5f), 0.01f);
     write_scene(folder / "b.glb", refined, std::vector<Occlusion>(refined.positions.size()));
     EXPECT_EQ(read_scene(folder / "b.glb").positions, refined.positions);
+}
+
+// One use is turned, stretched and mirrored.
+TEST(RefinedScene, GivesGltfNormalsOfTheWorld)
+{
+    GltfMaker maker = small_square();
+    maker.document["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
+    maker.document["nodes"][1]["scale"] = {-1, 2, 3};
+    maker.document["nodes"][1]["rotation"] = {0.6, 0, 0, 0.8};
+    const TemporaryFolder folder;
+    const Scene scene = read_scene(folder.file("a.glb", maker.glb()));
+    ASSERT_TRUE(scene.normals.empty());
+    std::vector<glm::vec3> normals;
+    for (int v = 0; v < 9; ++v)  // the last is new, of the first part
+        normals.push_back(glm::normalize(glm::vec3(1, v, 2)));
+    const Scene refined = refined_scene(scene, across(scene), normals);
+    ASSERT_TRUE(refined.normals.of_vertices());
+    ASSERT_EQ(refined.normals.values.size(), 9u);
+    const std::array<std::size_t, 9> number_of{0, 1, 2, 3, 5, 6, 7, 8, 4};
+    for (std::size_t v = 0; v < 9; ++v)
+        EXPECT_GT(glm::dot(glm::normalize(refined.normals.values[number_of[v]]), normals[v]),
+                  0.999999f)
+            << v;
 }
 
 TEST(RefinedScene, RefusesSkins)
