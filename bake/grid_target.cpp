@@ -414,6 +414,20 @@ std::string text_of(const GridSettings& settings)
     return text + (settings.depth == MapDepth::byte ? " depth=8" : " depth=16");
 }
 
+glm::dvec3 lift_of(const Box& object, const AoGrid& grid)
+{
+    const glm::dvec3 size = object.high - object.low;
+    const double longest = std::max({size.x, size.y, size.z});
+    glm::dvec3 lift(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double half_box = 0.5 * (grid.high[axis] - grid.low[axis]);
+        if (size[axis] < kLeastThickness * longest)
+            lift[axis] = half_box * double{grid.inner[axis] / grid.inner_share} *
+                         (grid.cells[axis] % 2 == 0 ? 1.0 : 2.0) / (grid.cells[axis] - 1);
+    }
+    return lift;
+}
+
 AoGrid empty_grid(const Box& object, const GridSettings& settings)
 {
     AoGrid grid;
@@ -492,7 +506,9 @@ GridBake bake_grid(const Geometry& object, const GridSettings& settings,
     };
     GridBake bake;
     bake.engine = engine;
-    bake.grid = empty_grid(box_of_triangles(object), settings);
+    const Box box = box_of_triangles(object);
+    bake.grid = empty_grid(box, settings);
+    bake.lift = lift_of(box, bake.grid);
     bake.grid.values.resize(bake.grid.cell_count() * channels_of(settings.store));
     enter("build");
     Stopwatch watch;

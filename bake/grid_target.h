@@ -71,6 +71,7 @@ struct GridBake {
     std::uint64_t surfels = 0;
     std::uint64_t receivers = 0;  ///< hemispheres that were asked, also between cells
     std::uint64_t inside = 0;     ///< cells that were moved out of the object
+    glm::dvec3 lift{0.0};         ///< lift_of() the object
     std::optional<double> residual;
     std::optional<StatedError> error;  ///< at random places of the box outside the object
     GridSeconds seconds;
@@ -78,6 +79,12 @@ struct GridBake {
 
 /// The grid round a box of the object, without values: cells, box, warp.
 [[nodiscard]] AoGrid empty_grid(const Box& object, const GridSettings& settings);
+
+/// How far along each axis a place on a sheet is to be moved along its normal before it is read, in
+/// the object's units: to the first layer of cells that sees its side alone where the object is
+/// thinner than its box allows for (kLeastThickness), else 0. The sheet lies in the middle of the
+/// box, between two layers, and half of what each sees hides half of all from both sides.
+[[nodiscard]] glm::dvec3 lift_of(const Box& object, const AoGrid& grid);
 
 /// The box of the triangles, in the file's units.
 [[nodiscard]] Box box_of_triangles(const Geometry& geometry);

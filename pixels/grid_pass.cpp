@@ -133,11 +133,16 @@ Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object,
         definitions.emplace_back("RESCALE");
     if (view.lens.orthographic)
         definitions.emplace_back("ORTHOGRAPHIC");
+    const bool is_lifted = object.lift != glm::dvec3(0.0);
+    if (is_lifted)
+        definitions.emplace_back("LIFT");
     Program& program = context_.program("grid_box.vert", fragment_file, definitions);
     const glm::dmat4 from_box = box_to_view(object, view);
     program.set("u_from_box", glm::mat4(from_box));
     set_rays(program, glm::inverse(from_box), view.lens, seen.width(), seen.height());
     program.set("u_to_grid", glm::mat3(glm::transpose(object.placement.rotation) * axes_of(view)));
+    if (is_lifted)
+        program.set("u_lift", glm::vec3(2.0 * object.lift / (grid.high - grid.low)));
     program.set("u_lens_low", view.lens.low);
     program.set("u_lens_high", view.lens.high);
     program.set("u_is_orthographic", view.lens.orthographic ? 1 : 0);

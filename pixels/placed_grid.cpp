@@ -17,11 +17,11 @@ double cap_share(const Cone& cone)
     return 0.5 * (1.0 - static_cast<double>(cone.cos_half));
 }
 
-/// What is read of the object, with its border, in its own directions.
-Harmonics values_at(const PlacedGrid& object, glm::vec3 position)
+/// What is read of the object, with its border, in its own directions; place: likewise.
+Harmonics values_at(const PlacedGrid& object, glm::dvec3 place)
 {
     Harmonics values{};
-    read_values_in_border(*object.grid, in_object(object, position), values.data());
+    read_values_in_border(*object.grid, place, values.data());
     return values;
 }
 
@@ -34,6 +34,12 @@ glm::vec4 moments_in_world(const PlacedGrid& object, const Harmonics& values)
 glm::vec3 normal_in_object(const PlacedGrid& object, glm::vec3 normal)
 {
     return glm::vec3(glm::dvec3(normal) * object.placement.rotation);
+}
+
+/// Of a receiver, lifted.
+glm::dvec3 lifted_in_object(const PlacedGrid& object, glm::vec3 position, glm::vec3 normal)
+{
+    return in_object(object, position) + object.lift * glm::dvec3(normal_in_object(object, normal));
 }
 
 }  // namespace
@@ -60,7 +66,7 @@ glm::dvec3 in_object(const PlacedGrid& object, glm::vec3 position)
 
 glm::vec4 moments_at(const PlacedGrid& object, glm::vec3 position)
 {
-    return moments_in_world(object, values_at(object, position));
+    return moments_in_world(object, values_at(object, in_object(object, position)));
 }
 
 glm::vec4 merged(const glm::vec4& a, const glm::vec4& b)
@@ -82,7 +88,7 @@ glm::vec4 merged(const glm::vec4& a, const glm::vec4& b)
 
 float occlusion_at(const PlacedGrid& object, glm::vec3 position, glm::vec3 normal)
 {
-    return occlusion_at(*object.grid, in_object(object, position),
+    return occlusion_at(*object.grid, lifted_in_object(object, position, normal),
                         normal_in_object(object, normal));
 }
 
@@ -92,7 +98,7 @@ std::vector<TakenLight> taken_at(std::span<const PlacedGrid> objects, GridMerge 
     std::vector<TakenLight> all;
     glm::vec4 joined(0.0f);
     for (const PlacedGrid& object : objects) {
-        const Harmonics values = values_at(object, position);
+        const Harmonics values = values_at(object, lifted_in_object(object, position, normal));
         const glm::vec4 moments = moments_in_world(object, values);
         if (moments.w < kNothingHidden)
             continue;

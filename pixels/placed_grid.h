@@ -35,7 +35,8 @@ enum class GridMerge { product, caps };
 
 struct PlacedGrid {
     std::shared_ptr<const AoGrid> grid;
-    Placement placement;  ///< from the object's own units to the unit frame
+    Placement placement;   ///< from the object's own units to the unit frame
+    glm::dvec3 lift{0.0};  ///< lift_of() the object (bake/grid_target.h)
 };
 
 /// Unit frame to the object's own units.

@@ -4,6 +4,7 @@
 // Host side  grid/ao_grid.h, pixels/grid_pass.cpp
 //   v_...      the uniforms of grid_box.vert
 //   u_border   RESCALE: V_M, 1 / (1 - V_M)
+//   u_lift     LIFT: PlacedGrid::lift in half boxes
 //   u_cells    RGBA16F, a texel a cell: m / (4 pi), alpha; SH: coefficients 0 to 3
 //   u_surface  as in g_buffer.glsl: normal in view space, distance forward
 // CPU twin   read_values(), border_weight() in grid/ao_grid.cpp
@@ -18,18 +19,25 @@ uniform sampler2D u_surface;
 #ifdef RESCALE
 uniform vec2 u_border;
 #endif
+#ifdef LIFT
+uniform vec3 u_lift;
+#endif
 
 const float kFade = 0.12;  // kGridFade
 
-// no cell where |x| > 1
-vec3 place_in_box(float distance)
+// no cell where |x| > 1; normal: in the grid's directions
+vec3 place_in_box(float distance, vec3 normal)
 {
     vec3 across = v_across * vec3(gl_FragCoord.xy, 1.0);
 #ifdef ORTHOGRAPHIC
-    return across + distance * v_rest;
+    vec3 place = across + distance * v_rest;
 #else
-    return distance * across + v_rest;
+    vec3 place = distance * across + v_rest;
 #endif
+#ifdef LIFT
+    place += u_lift * normal;
+#endif
+    return place;
 }
 
 float farthest_out(vec3 x)

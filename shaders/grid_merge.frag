@@ -5,7 +5,8 @@
 // grid_merge.frag: the cone of one more object, joined to that of those before it.
 //
 // Vertices   grid_box.vert
-// Definitions  SH RESCALE ORTHOGRAPHIC: GridStore::sh, GridBorder::rescale, Lens
+// Definitions  SH RESCALE ORTHOGRAPHIC LIFT: GridStore::sh, GridBorder::rescale, Lens,
+//            PlacedGrid::lift
 // Reads      grid_cell.glsl, grid_cap.glsl
 //            u_before  RGBA32F: m / (4 pi) in view space and alpha of the objects before
 // Writes     out_moments  the same with this one
@@ -56,7 +57,8 @@ vec4 merged(vec4 a, vec4 b)
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec3 x = place_in_box(texelFetch(u_surface, pixel, 0).w);
+    vec4 seen = texelFetch(u_surface, pixel, 0);
+    vec3 x = place_in_box(seen.w, v_to_grid * seen.xyz);
     vec4 before = texelFetch(u_before, pixel, 0);
     out_moments = before;
     if (!(farthest_out(x) <= 1.0))

@@ -4,7 +4,7 @@
 // grid_shade_sh.frag: what an object with an AO grid of harmonics leaves of the light at each pixel.
 //
 // Vertices   grid_box.vert; blended by multiplication
-// Definitions  RESCALE ORTHOGRAPHIC: GridBorder::rescale, Lens
+// Definitions  RESCALE ORTHOGRAPHIC LIFT: GridBorder::rescale, Lens, PlacedGrid::lift
 // Reads      grid_cell.glsl: u_cells has the coefficients 0 to 3
 //            u_cells_2 u_cells_3  RGBA16F, a texel a cell: 4 to 7, and 8
 // Writes     out_visibility  1 - occlusion
@@ -34,8 +34,9 @@ float occlusion_at(vec3 x, vec3 n)
 void main()
 {
     vec4 seen = texelFetch(u_surface, ivec2(gl_FragCoord.xy), 0);
-    vec3 x = place_in_box(seen.w);
+    vec3 normal = v_to_grid * seen.xyz;
+    vec3 x = place_in_box(seen.w, normal);
     if (!(farthest_out(x) <= 1.0))
         discard;
-    out_visibility = 1.0 - occlusion_at(x, v_to_grid * seen.xyz);
+    out_visibility = 1.0 - occlusion_at(x, normal);
 }

@@ -17,7 +17,7 @@ enum class Where {
     texels,
     pixels,
     cube_maps,  ///< texels of cube maps, which pixels read
-    grid,       ///< cells of an AO grid round the model, likewise
+    grid,       ///< cells of an AO grid round the model, or round each part that moves, likewise
 };
 
 struct Cell {

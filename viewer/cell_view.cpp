@@ -26,6 +26,8 @@ CellView::Changes CellView::update()
     const SessionState& state = session_.state();
     if (changes.model || changes.pose)
         take_model(changes);
+    if (!moved_)
+        posed_ = state.pose.bodies;
     if (changes.occlusion && !is_moved()) {
         renderer_.set_occlusion(session_.occlusion());
         take_map();
@@ -57,7 +59,7 @@ void CellView::take_model(const Session::Changes& changes)
     moved_.reset();
     forget_shot();
     cubes_.forget();
-    grid_.forget();
+    grid_.keep_of(state.pose.bodies ? state.pose.bodies->base : state.model);
     layout_.reset();
     drawn_ = state.model;
     shot_.set_model(drawn_);
@@ -85,6 +87,7 @@ void CellView::show_moved(const std::shared_ptr<const Model>& base,
         renderer_.forget_layout();
     layout_.reset();
     moved_ = frame;
+    posed_ = frame->bodies;
     moved_has_values_ = has_values;
     renderer_.set_shape(frame->shape);
     if (has_values)
@@ -173,11 +176,11 @@ bool CellView::look(const Cell& cell, const Camera& camera, PictureSize size, co
     if (where != Where::cube_maps)
         has_changed |= cubes_.forget_picture();
     if (where != Where::grid)
-        has_changed |= grid_.forget_picture();
+        has_changed |= grid_.leave();
     if (where == Where::cube_maps && !is_moved()) {
         has_changed |= cubes_.look(shot_, session_, cell, rests, view.colors == Colors::coverage);
-    } else if (where == Where::grid && !is_moved()) {
-        has_changed |= grid_.look(shot_, session_, cell);
+    } else if (where == Where::grid) {
+        has_changed |= grid_.look(shot_, session_, cell, posed_, is_moved());
     } else if (where == Where::pixels && cell.screen) {
         has_changed |= draw_screen(cell, shows_radius);
     } else if (where == Where::pixels && rests) {

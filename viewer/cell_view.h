@@ -40,7 +40,7 @@ struct PixelRays {
 
 /// In one thread, the context's. What is at pixels is of one camera: where the camera moves it is
 /// forgotten, and solved again once the camera rests for a frame. Methods that ask the picture
-/// alone are drawn in every frame.
+/// alone are drawn in every frame, and so is what grids tell.
 class CellView {
 public:
     explicit CellView(const GlContext& context);
@@ -57,7 +57,7 @@ public:
 
     /// From now on a model whose parts move is shown, until the session has another pose or model.
     /// base: that the frame is of. has_values: the frame's are this cell's. What pixels see by
-    /// themselves is asked again once it rests; methods of the picture follow each frame.
+    /// themselves is asked again once it rests; methods of the picture and grids follow each frame.
     void show_moved(const std::shared_ptr<const Model>& base,
                     const std::shared_ptr<const MovingFrame>& frame, bool has_values);
     bool is_moved() const { return moved_ != nullptr; }
@@ -147,8 +147,9 @@ private:
 
     std::shared_ptr<const MovingFrame> moved_;  ///< null: the session's model is shown
     bool moved_has_values_ = false;
-    std::shared_ptr<const Model> drawn_;  ///< that the renderer has
-    bool has_coarse_ = false;             ///< the renderer has its coarse triangles, too
+    std::shared_ptr<const PosedBodies> posed_;  ///< in the pose that is drawn; null: as it was read
+    std::shared_ptr<const Model> drawn_;        ///< that the renderer has
+    bool has_coarse_ = false;                   ///< the renderer has its coarse triangles, too
 
     Shot shot_;
     std::optional<ScreenSpace> screen_;

@@ -191,7 +191,8 @@ bool edit_grid(GridSettings& grid)
         grid.extent = double{extent};
         apply = true;
     }
-    tip("the box ends where the model hides about this share of the whole sphere: less is farther");
+    tip("the box ends where the model hides about this share of the whole sphere: less is farther; "
+        "many parts that move want .005, as each leaves out a little");
     apply |= choose_word("store", kStores, grid.store);
     tip("what a cell holds: a cone, or nine spherical harmonics, which tell more");
     apply |= choose_word("border", kBorders, grid.border);

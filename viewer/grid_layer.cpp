@@ -1,54 +1,145 @@
 #include "viewer/grid_layer.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace surfelao {
+namespace {
 
-void GridLayer::forget()
+/// From the file's units to the unit frame.
+Placement into_frame(const Frame& frame)
 {
-    session_.forget();
-    objects_.clear();
-    pass_.reset();
+    return {.scale = 1.0 / frame.diagonal, .translation = -frame.centre / frame.diagonal};
+}
+
+PlacedGrid placed_at(const std::shared_ptr<const GridBake>& bake, const Placement& placement)
+{
+    return {std::shared_ptr<const AoGrid>(bake, &bake->grid), placement, bake->lift};
+}
+
+/// Those that are there in the pose. objects: of its bodies.
+std::vector<PlacedGrid> placed_grids(const FoundGrids& found, const GridObjects& objects,
+                                     const PosedBodies& posed)
+{
+    const Placement at_rest = into_frame(posed.base->geometry().frame);
+    std::vector<bool> is_placed(found.bakes.size(), false);
+    std::vector<PlacedGrid> placed;
+    for (std::size_t b = 0; b < posed.poses.size(); ++b) {
+        const std::uint32_t object = objects.of_body[b];
+        if (object == GridObjects::kNone || posed.poses[b].state != BodyState::placed ||
+            is_placed[object])
+            continue;
+        is_placed[object] = true;  // what rests is several bodies
+        placed.push_back(placed_at(found.bakes[object], posed.poses[b].placement * at_rest));
+    }
+    return placed;
+}
+
+/// Empty where nothing is.
+std::string what_is_left_out(const PosedBodies& posed)
+{
+    const auto count = std::ranges::count(posed.poses, BodyState::deformed, &BodyPose::state);
+    if (count == 0)
+        return {};
+    return "what does not move as one piece has no AO grid: " + std::to_string(count) +
+           (count == 1 ? " part is" : " parts are") + " left out";
+}
+
+}  // namespace
+
+void GridLayer::keep_of(const std::shared_ptr<const Model>& model)
+{
     forget_picture();
+    if (session_.model() == model)
+        return;
+    session_.forget();
+    pass_.reset();
+    in_pass_.reset();
+    bodies_.reset();
+    objects_.reset();
+    left_out_.clear();
+}
+
+bool GridLayer::leave()
+{
+    left_out_.clear();
+    return forget_picture();
 }
 
 bool GridLayer::update()
 {
-    if (!session_.update())
-        return false;
-    objects_.clear();
-    pass_.reset();
-    return forget_picture();
+    return session_.update() && forget_picture();
 }
 
-bool GridLayer::look(Shot& shot, const Session& session, const Cell& cell)
+void GridLayer::find_objects(const PosedBodies* posed)
 {
+    if (!posed) {
+        bodies_.reset();
+        objects_.reset();
+        return;
+    }
+    std::vector<bool> rests = resting_bodies(*posed);
+    if (bodies_ == posed->bodies && rests_ == rests)
+        return;
+    bodies_ = posed->bodies;
+    rests_ = std::move(rests);
+    GridObjects objects = grid_objects_of(*posed->base, *bodies_, rests_);
+    // equal ones stay the same, so that their grids are shown while others are made of them
+    if (objects.triangles.empty())
+        objects_.reset();
+    else if (!objects_ || *objects_ != objects)
+        objects_ = std::make_shared<const GridObjects>(std::move(objects));
+}
+
+bool GridLayer::look(Shot& shot, const Session& session, const Cell& cell,
+                     const std::shared_ptr<const PosedBodies>& posed, bool is_moving)
+{
+    find_objects(posed.get());
+    const bool is_at_base = !posed || std::ranges::all_of(posed->poses, [](const BodyPose& pose) {
+        return pose == BodyPose{};
+    });
+    left_out_ = objects_ || (is_moving && !is_at_base) ? what_is_left_out(*posed) : std::string();
+    if (!objects_ && is_moving && !is_at_base)  // nothing moves as one piece
+        return forget_picture();
     EngineSettings engine = cell.settings.engine;
     engine.definition = session.definition();
-    session_.ask({shot.model(), *cell.grid, engine});
-    if (!session_.found())
+    session_.ask({objects_ ? posed->base : shot.model(), objects_, *cell.grid, engine});
+    const std::shared_ptr<const FoundGrids>& found = session_.found();
+    if (!found || found->question.model != session_.model() || found->question.objects != objects_)
         return forget_picture();
-    if (is_drawn_)
+    if (is_drawn_ && in_pass_ == found)
         return false;
-    if (objects_.empty()) {
-        const Frame& frame = shot.model()->geometry().frame;
-        objects_.push_back(
-            {std::shared_ptr<const AoGrid>(session_.found(), &session_.found()->grid),
-             {.scale = 1.0 / frame.diagonal, .translation = -frame.centre / frame.diagonal}});
-    }
+    if (in_pass_ != found)
+        pass_.reset();
+    in_pass_ = found;
+    if (objects_)
+        draw(shot, placed_grids(*found, *objects_, *posed));
+    else
+        draw(shot, {placed_at(found->bakes.front(), into_frame(shot.model()->geometry().frame))});
+    return true;
+}
+
+void GridLayer::draw(Shot& shot, const std::vector<PlacedGrid>& objects)
+{
     if (!pass_)
         pass_.emplace(context_);
     const GBuffer& seen = shot.drawn();
     if (!picture_ || picture_->width() != seen.width() || picture_->height() != seen.height())
         picture_.emplace(pass_->make_target(seen.width(), seen.height()));
-    pass_->draw(seen, objects_, GridMerge::product, *picture_);
+    pass_->draw(seen, objects, GridMerge::product, *picture_);
     is_drawn_ = true;
-    return true;
 }
 
 float GridLayer::told(glm::ivec2 pixel) const
 {
     return 1.0f - picture_->read_red({pixel.x, pixel.y, 1, 1}).front();
+}
+
+std::span<const std::shared_ptr<const GridBake>> GridLayer::grids() const
+{
+    if (!session_.found())
+        return {};
+    return session_.found()->bakes;
 }
 
 std::optional<double> GridLayer::progress() const

@@ -1,18 +1,62 @@
 #include "viewer/grid_session.h"
 
+#include <algorithm>
 #include <exception>
 #include <string_view>
 #include <utility>
 
 namespace surfelao {
+namespace {
+
+std::size_t object_count(const GridQuestion& question)
+{
+    return question.objects ? question.objects->triangles.size() : 1;
+}
+
+/// Whether objects have the same grids in both.
+bool have_same_settings(const GridQuestion& a, const GridQuestion& b)
+{
+    return a.model == b.model && a.grid == b.grid && a.engine == b.engine;
+}
+
+GridBake bake_object(const GridQuestion& question, std::size_t object,
+                     const StageProgress& progress)
+{
+    const Model& model = *question.model;
+    if (!question.objects)
+        return bake_grid(model.occluding(), question.grid, question.engine, 0, progress);
+    const Geometry alone = object_alone(model.mesh->scene, question.objects->triangles[object]);
+    EngineSettings engine = question.engine;
+    engine.definition.max_distance *=
+        static_cast<float>(model.geometry().frame.diagonal / alone.frame.diagonal);
+    return bake_grid(alone, question.grid, engine, 0, progress);
+}
+
+void bake_missing(FoundGrids& grids, const Progress& progress)
+{
+    const auto missing =
+        static_cast<double>(std::count(grids.bakes.begin(), grids.bakes.end(), nullptr));
+    double made = 0.0;
+    for (std::size_t object = 0; object < grids.bakes.size(); ++object) {
+        if (grids.bakes[object])
+            continue;
+        const auto in_stage = [&](std::string_view stage, double done) {
+            return progress((made + (stage == "repair" ? 1.0 : done)) / missing);  // it is short
+        };
+        grids.bakes[object] =
+            std::make_shared<const GridBake>(bake_object(grids.question, object, in_stage));
+        made += 1.0;
+    }
+}
+
+}  // namespace
 
 void GridSession::ask(GridQuestion question)
 {
     question.engine.definition.ground.reset();
-    if (is_asked_ && question == question_)
+    if (question == question_)
         return;
     question_ = std::move(question);
-    is_asked_ = true;
     start();
 }
 
@@ -28,18 +72,43 @@ void GridSession::ask_again()
         start();
 }
 
+std::shared_ptr<const GridBake> GridSession::known(std::size_t object) const
+{
+    for (const auto& grids : {found_, before_}) {
+        if (!grids || !have_same_settings(grids->question, question_))
+            continue;
+        const GridObjects* theirs = grids->question.objects.get();
+        if (!theirs && !question_.objects)
+            return grids->bakes.front();
+        if (!theirs || !question_.objects)
+            continue;
+        const auto same =
+            std::ranges::find(theirs->triangles, question_.objects->triangles[object]);
+        if (same != theirs->triangles.end())
+            return grids->bakes[static_cast<std::size_t>(same - theirs->triangles.begin())];
+    }
+    return nullptr;
+}
+
 void GridSession::start()
 {
     message_.clear();
     was_cancelled_ = false;
-    worker_.start([this, number = news_.ask(), question = question_](const Progress& progress) {
+    const std::uint64_t number = news_.ask();
+    auto grids = std::make_shared<FoundGrids>();
+    grids->question = question_;
+    for (std::size_t object = 0; object < object_count(question_); ++object)
+        grids->bakes.push_back(known(object));
+    if (std::count(grids->bakes.begin(), grids->bakes.end(), nullptr) == 0) {
+        worker_.cancel();
+        take(std::move(grids));
+        return;
+    }
+    worker_.start([this, number, grids](const Progress& progress) {
         News news;
         try {
-            const auto in_stage = [&](std::string_view stage, double done) {
-                return progress(stage == "repair" ? 1.0 : done);  // which is short
-            };
-            news.bake = std::make_shared<const GridBake>(bake_grid(
-                question.model->occluding(), question.grid, question.engine, 0, in_stage));
+            bake_missing(*grids, progress);
+            news.found = grids;
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& error) {
@@ -49,11 +118,20 @@ void GridSession::start()
     });
 }
 
+void GridSession::take(std::shared_ptr<const FoundGrids> found)
+{
+    before_ = std::exchange(found_, std::move(found));
+    if (before_ && !(found_ && have_same_settings(before_->question, found_->question)))
+        before_.reset();
+}
+
 void GridSession::forget()
 {
     news_.ask();
-    is_asked_ = was_cancelled_ = false;
+    question_ = {};
+    was_cancelled_ = false;
     found_.reset();
+    before_.reset();
     message_.clear();
     worker_.cancel();
 }
@@ -64,7 +142,7 @@ bool GridSession::update()
     if (!news)
         return false;
     message_ = news->failure;
-    found_ = news->bake;
+    take(news->found);
     return true;
 }
 

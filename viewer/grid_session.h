@@ -1,56 +1,73 @@
-/// grid_session.h: the AO grid round what occludes in a model, made in the background. Knows no
-/// window, and no device but that of the GPU's engines.
+/// grid_session.h: the AO grid round what occludes in a model, or one round each of its objects,
+/// made in the background. Knows no window, and no device but that of the GPU's engines.
 #pragma once
 
 #include "bake/grid_target.h"
 #include "engines/engine.h"
 #include "viewer/background_worker.h"
+#include "viewer/grid_objects.h"
 #include "viewer/mailbox.h"
 #include "viewer/model.h"
 
+#include <cstddef>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace surfelao {
 
 struct GridQuestion {
-    std::shared_ptr<const Model> model;  ///< a mesh's
+    std::shared_ptr<const Model> model;          ///< a mesh's
+    std::shared_ptr<const GridObjects> objects;  ///< of it; null: all that occludes is one
     GridSettings grid;
-    EngineSettings engine;  ///< with the definition, whose ground does not count
+    EngineSettings engine;  ///< with the model's definition, whose ground does not count
     bool operator==(const GridQuestion&) const = default;
 };
 
-/// For one thread; update() takes over what the background thread has finished.
+struct FoundGrids {
+    GridQuestion question;
+    /// One per object, in the file's units; without the statement of its error.
+    std::vector<std::shared_ptr<const GridBake>> bakes;
+};
+
+/// For one thread; update() takes over what the background thread has finished. Objects that are
+/// also of one of the last two questions that were answered, for the same model and settings, have
+/// their grids from there.
 class GridSession {
 public:
     /// Does nothing where it is the last question. Gives up what runs otherwise, and what was found
-    /// stays until there is another grid.
+    /// stays until there are other grids: found() at once where none needs to be made.
     void ask(GridQuestion question);
     void forget();
     /// Gives up what runs; what was found stays.
     void cancel();
     void ask_again();  ///< after cancel()
 
-    /// Whether there is another grid.
+    /// Whether there are other grids.
     [[nodiscard]] bool update();
 
-    /// Null until there is one; without the statement of its error.
-    const std::shared_ptr<const GridBake>& found() const { return found_; }
+    /// Null until there are some.
+    const std::shared_ptr<const FoundGrids>& found() const { return found_; }
+    /// Of the last question; null where there is none.
+    const std::shared_ptr<const Model>& model() const { return question_.model; }
     const std::string& message() const { return message_; }  ///< what went wrong; else empty
     bool was_cancelled() const { return was_cancelled_; }    ///< the last question, before its end
     bool solving() const { return worker_.busy() || news_.is_full(); }
-    double progress() const { return worker_.progress(); }
+    double progress() const { return worker_.progress(); }  ///< of all grids that are to be made
 
 private:
     void start();
-    GridQuestion question_;
-    bool is_asked_ = false, was_cancelled_ = false;
-    std::shared_ptr<const GridBake> found_;
+    void take(std::shared_ptr<const FoundGrids> found);
+    [[nodiscard]] std::shared_ptr<const GridBake> known(std::size_t object) const;
+
+    GridQuestion question_;  ///< without a model: none
+    bool was_cancelled_ = false;
+    std::shared_ptr<const FoundGrids> found_, before_;
     std::string message_;
 
     struct News {
-        std::shared_ptr<const GridBake> bake;
-        std::string failure;  ///< if not empty, there is no grid
+        std::shared_ptr<const FoundGrids> found;
+        std::string failure;  ///< if not empty, there are no grids
     };
     Mailbox<News> news_;
     BackgroundWorker worker_;  // last: its thread writes to the above

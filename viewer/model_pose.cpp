@@ -192,6 +192,8 @@ Bodies bodies_of(const Model& base, const Movables& movables, std::span<const st
             bodies.list.push_back(body);
         bodies.of_triangle.push_back(entry->second);
     }
+    for (const Body& body : bodies.list)
+        bodies.deforms.push_back(body.part != Body::kNone && motion->deforms()[body.part]);
     for (const Body& body : of_vertex) {
         const auto found = numbers.find(std::pair(body.part, body.movable));
         bodies.of_vertex.push_back(found == numbers.end() ? 0 : found->second);
@@ -211,6 +213,14 @@ Bodies bodies_of(const Model& base, const Movables& movables, std::span<const st
     if (motion)
         bodies.smooth_places = smooth_places_of(*base.mesh, bodies);
     return bodies;
+}
+
+PosedBodies bodies_at_rest(std::shared_ptr<const Model> base, std::shared_ptr<const Bodies> bodies)
+{
+    std::vector<BodyPose> poses;
+    for (const bool deforms : bodies->deforms)
+        poses.push_back({deforms ? BodyState::deformed : BodyState::placed});
+    return {std::move(base), std::move(bodies), std::move(poses)};
 }
 
 Placement placement_of(const PartMove& move, glm::dvec3 middle)

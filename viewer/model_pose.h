@@ -16,6 +16,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,7 @@ struct Body {
 
 struct Bodies {
     std::vector<Body> list;                  ///< the first one never moves
+    std::vector<bool> deforms;               ///< of each: by skins or morphs, never as one piece
     std::vector<std::uint32_t> of_vertex;    ///< of the scene; 0 also where nothing has triangles
     std::vector<std::uint32_t> of_triangle;  ///< of the geometry
     /// Per body but the first: vertices, and wedges of the surface.
@@ -65,6 +67,16 @@ struct BodyPose {
     Placement placement = {};  ///< of what is placed
     bool operator==(const BodyPose&) const = default;
 };
+
+/// A pose, for whoever keeps something of each body.
+struct PosedBodies {
+    std::shared_ptr<const Model> base;
+    std::shared_ptr<const Bodies> bodies;  ///< of it
+    std::vector<BodyPose> poses;           ///< one per Bodies::list
+};
+/// All in their places.
+[[nodiscard]] PosedBodies bodies_at_rest(std::shared_ptr<const Model> base,
+                                         std::shared_ptr<const Bodies> bodies);
 
 struct ModelPose {
     std::vector<BodyPose> bodies;  ///< one per Bodies::list

@@ -67,8 +67,8 @@ void Mover::load()
 {
     message_.clear();
     loader_.start([this, number = found_.ask(), base = base_, movables = movables_,
-                   animation = chosen_ && !motion_ ? std::optional(animation_name())
-                                                   : std::nullopt](const Progress&) {
+                   animation = chosen_ && !motion_ ? std::optional(animation_name()) : std::nullopt,
+                   begins = begin_.has_value()](const Progress&) {
         Found found;
         found.movables = movables;
         try {
@@ -76,6 +76,10 @@ void Mover::load()
                 found.movables = std::make_shared<const Movables>(movables_of(*base->mesh));
             if (animation)
                 found.motion = std::make_shared<const Motion>(base->mesh->scene, *animation);
+            if (found.motion && begins)
+                found.begun = std::make_shared<const PosedBodies>(
+                    bodies_at_rest(base, std::make_shared<const Bodies>(bodies_of(
+                                             *base, *found.movables, {}, found.motion.get()))));
         } catch (const std::exception& error) {
             found.failure = error.what();
         }
@@ -89,7 +93,7 @@ std::string Mover::animation_name() const
     return name.empty() ? std::to_string(*chosen_) : name;
 }
 
-void Mover::take_found()
+void Mover::take_found(Session& session)
 {
     const std::optional<Found> found = found_.take();
     if (!found)
@@ -105,6 +109,8 @@ void Mover::take_found()
     }
     if (selected_ && (!movables_ || *selected_ >= movables_->list.size()))
         selected_.reset();
+    if (found->begun && begin_)
+        session.take_bodies(found->begun);
     if (found->motion)
         take_motion(found->motion);
 }
@@ -269,7 +275,7 @@ bool Mover::update(Session& session, bool is_other_file, double now)
     if (!session.state().model)
         return false;
     take_base(session, is_other_file);
-    take_found();
+    take_found(session);
     player_.advance(elapsed);
     const bool was_moved = shown_ || !has_pose(taken_, {});
     if (!movables_ || session.making() || (!motion_ && touched_.empty() && !was_moved))
@@ -304,6 +310,7 @@ bool Mover::take_frame(Session& session, const MovingPose& pose, bool rests, dou
     }
     PoseName name;
     name.by_hand = is_moved();
+    name.bodies = frame->bodies;
     if (motion_)
         name.moment = Moment{pose.seconds, animation_name()};
     const FrameReport& report = frame->report;

@@ -94,6 +94,7 @@ private:
     struct Found {
         std::shared_ptr<const Movables> movables;
         std::shared_ptr<const Motion> motion;
+        std::shared_ptr<const PosedBodies> begun;  ///< where the file was read at a moment of it
         std::string failure;
     };
     /// A pose that the session's model is in.
@@ -104,7 +105,7 @@ private:
 
     void take_base(const Session& session, bool is_other_file);
     void load();
-    void take_found();
+    void take_found(Session& session);
     void take_motion(std::shared_ptr<const Motion> motion);
     [[nodiscard]] std::string animation_name() const;
     [[nodiscard]] MovingPose wanted_pose() const;

@@ -88,10 +88,11 @@ struct MovingSession::Built {
         : number(of),
           question(asked),
           base(*question.base),
-          bodies(bodies_of(base, *question.movables, question.moved, question.motion.get())),
-          scene(base.geometry(), bodies.of_triangle, choice_of(question.engine)),
+          bodies(std::make_shared<const Bodies>(
+              bodies_of(base, *question.movables, question.moved, question.motion.get()))),
+          scene(base.geometry(), bodies->of_triangle, choice_of(question.engine)),
           rough_target(base.mesh, at_points_of(base.settings)),
-          rough(scene, base, rough_target, bodies, draft_of(question.engine))
+          rough(scene, base, rough_target, *bodies, draft_of(question.engine))
     {
     }
 
@@ -108,7 +109,7 @@ struct MovingSession::Built {
         Stopwatch watch;
         const std::vector<PartPose> parts =
             question.motion ? question.motion->at(pose.seconds) : std::vector<PartPose>();
-        now = pose_of(base, bodies, *question.movables, question.moved, pose.moves, parts);
+        now = pose_of(base, *bodies, *question.movables, question.moved, pose.moves, parts);
         pose_s = watch.lap();
         for (std::uint32_t body = 1; body < now.bodies.size(); ++body) {
             const BodyPose& wanted = now.bodies[body];
@@ -147,6 +148,8 @@ struct MovingSession::Built {
         frame.report = solve_roughly(progress);
         frame.pose = *at;
         frame.shape = now.shape;
+        frame.bodies =
+            std::make_shared<const PosedBodies>(PosedBodies{question.base, bodies, now.bodies});
         frame.middles = now.middles;
         frame.pose_s = pose_s;
         frame.receivers = rough.count();
@@ -169,18 +172,18 @@ struct MovingSession::Built {
             return;
         }
         if (!question.solves_whole) {
-            frame.posed = std::make_shared<const Model>(posed_model(base, bodies, now));
+            frame.posed = std::make_shared<const Model>(posed_model(base, *bodies, now));
             return;
         }
         if (!whole)
-            whole.emplace(scene, base, *base.target, bodies, question.engine);
+            whole.emplace(scene, base, *base.target, *bodies, question.engine);
         whole->deform(now);
         frame.report = whole->solve(progress);
         frame.receivers = whole->count();
         frame.values = whole->values();
         keep_untouched(frame.values);
         remember(frame.values);
-        frame.posed = std::make_shared<const Model>(posed_model(base, bodies, now));
+        frame.posed = std::make_shared<const Model>(posed_model(base, *bodies, now));
         frame.at_points =
             scene.solve(frame.posed->point_receivers, question.engine, progress).occlusion;
         frame.is_whole = true;
@@ -205,7 +208,7 @@ struct MovingSession::Built {
     std::uint64_t number;
     const MovingQuestion question;
     const Model& base;
-    Bodies bodies;
+    std::shared_ptr<const Bodies> bodies;
     MovingScene scene;
     VertexTarget rough_target;
     Asked rough;

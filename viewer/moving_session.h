@@ -53,12 +53,13 @@ struct KnownAnswer {
 struct MovingFrame {
     MovingPose pose;
     ModelShape shape;
-    std::vector<glm::dvec3> middles;  ///< ModelPose::middles
-    std::vector<Occlusion> values;    ///< Model::answer_count() of the base
-    bool is_whole = false;            ///< values are of the question's settings, not rough
-    double pose_s = 0.0;              ///< of the shape
-    FrameReport report;               ///< of the rough answer, or of the whole one
-    std::size_t receivers = 0;        ///< that were asked
+    std::shared_ptr<const PosedBodies> bodies;  ///< whose pose it is
+    std::vector<glm::dvec3> middles;            ///< ModelPose::middles
+    std::vector<Occlusion> values;              ///< Model::answer_count() of the base
+    bool is_whole = false;      ///< values are of the question's settings, not rough
+    double pose_s = 0.0;        ///< of the shape
+    FrameReport report;         ///< of the rough answer, or of the whole one
+    std::size_t receivers = 0;  ///< that were asked
     /// Of a pose that rests: the model by itself, the base where nothing is off its place.
     std::shared_ptr<const Model> posed;
     std::vector<Occlusion> at_points;  ///< is_whole: one per posed->points

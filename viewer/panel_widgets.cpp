@@ -386,13 +386,20 @@ bool map_lines(const CellView& view)
 
 void grid_lines(const CellView& view)
 {
-    const GridBake* found = view.grid().grid();
-    if (!found)
+    const auto grids = view.grid().grids();
+    if (grids.empty())
         return;
-    const glm::ivec3 cells = found->grid.cells;
-    ImGui::Text("%d x %d x %d cells %.3f s", cells.x, cells.y, cells.z,
-                found->seconds.solve + found->seconds.repair);
-    tip("of the grid, and what it took to solve them; what the engine has built not counted");
+    const glm::ivec3 cells = grids.front()->grid.cells;
+    double seconds = 0.0;
+    for (const auto& found : grids)
+        seconds += found->seconds.solve + found->seconds.repair;
+    if (grids.size() == 1)
+        ImGui::Text("%d x %d x %d cells %.3f s", cells.x, cells.y, cells.z, seconds);
+    else
+        ImGui::Text("%zu grids of %d x %d x %d cells %.3f s", grids.size(), cells.x, cells.y,
+                    cells.z, seconds);
+    tip("of the grid, or of one for each part that moves and for the rest, and what it took to "
+        "solve all of them; what the engine has built not counted");
 }
 
 void pixel_lines(const CellView& view)

@@ -401,6 +401,12 @@ void Session::take_pose(std::shared_ptr<const Model> posed, const PoseName& name
         start_solve();
 }
 
+void Session::take_bodies(std::shared_ptr<const PosedBodies> bodies)
+{
+    state_.pose.bodies = std::move(bodies);
+    has_other_bodies_ = true;
+}
+
 void Session::solve_again()
 {
     if (state_.model && !making_)
@@ -429,6 +435,7 @@ Session::Changes Session::update()
     const Solved solved = solved_.take().value_or(Solved());
     Changes changes;
     changes.pose = changes.occlusion = std::exchange(has_other_pose_, false);
+    changes.bodies = std::exchange(has_other_bodies_, false);
     if (const Made* made = solved.made.get(); made && making_) {
         const Making making = *std::exchange(making_, std::nullopt);
         state_.message = made->failure;

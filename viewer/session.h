@@ -40,10 +40,13 @@ struct SessionSettings {
     bool operator==(const SessionSettings&) const = default;
 };
 
+struct PosedBodies;  // viewer/model_pose.h
+
 /// What has moved a model.
 struct PoseName {
     std::optional<Moment> moment = {};  ///< of an animation
     bool by_hand = false;
+    std::shared_ptr<const PosedBodies> bodies = {};  ///< null: as it was read
     [[nodiscard]] bool is_rest() const { return !moment && !by_hand; }
 };
 
@@ -121,6 +124,9 @@ public:
     void take_pose(std::shared_ptr<const Model> posed, const PoseName& name, ModelAnswer answer,
                    bool is_whole);
 
+    /// Of the model that is shown, which stays: what will move of it.
+    void take_bodies(std::shared_ptr<const PosedBodies> bodies);
+
     /// Stops what is solved and traced, and drops what it has found: another pose is on its way.
     void give_up();
 
@@ -132,9 +138,10 @@ public:
 
     /// What changed in state() since the last call.
     struct Changes {
-        bool file = false;   ///< the model is of another file
-        bool model = false;  ///< of another file, or made anew for other targets
-        bool pose = false;   ///< or the same in another pose
+        bool file = false;    ///< the model is of another file
+        bool model = false;   ///< of another file, or made anew for other targets
+        bool pose = false;    ///< or the same in another pose
+        bool bodies = false;  ///< or what will move of it is told: take_bodies()
         bool occlusion = false;
         bool reference = false;
     };
@@ -210,7 +217,8 @@ private:
     std::uint32_t reference_rays_ = 0;
     std::optional<Making> making_;
     bool was_cancelled_ = false;
-    bool has_other_pose_ = false;  ///< since the last update()
+    bool has_other_pose_ = false;    ///< since the last update()
+    bool has_other_bodies_ = false;  ///< likewise
     SessionState state_;
     std::shared_ptr<const Scene> scene_;  ///< of the file that is open, as it was read
     ModelTruth truth_;                    ///< but its reference, which is in state_

@@ -166,7 +166,7 @@ private:
                                    (state().path.filename().string() + " - surfelao").c_str());
                 frame_all();
             }
-            take_right(changes.model || changes.pose);
+            take_right(changes.model || changes.pose || changes.bodies);
             take_moved(changes.file);
             if (changes.model || changes.pose || changes.occlusion || changes.reference ||
                 changes.pixels)

@@ -88,6 +88,27 @@ TEST(GridTarget, ASheetHidesHalfOfAll)
     EXPECT_NEAR(occlusion_of(grid.store, grid_values_at(grid, above), {0, 0, 1}), 0.0f, 0.03f);
 }
 
+/// In the middle between two layers of cells, or in one.
+TEST(GridTarget, ASheetHidesNothingFromItsOwnSides)
+{
+    const Geometry sheet = make_geometry(scenes::sheet({-1, -1, 3}, {2, 0, 0}, {0, 2, 0}, 8));
+    for (const int cells : {12, 13}) {
+        const GridBake bake = bake_grid(sheet, grid_settings_for(GridStore::cone, cells), {}, 0);
+        EXPECT_EQ(glm::dvec2(bake.lift), glm::dvec2(0.0));
+        EXPECT_LT(bake.lift.z, 0.01);
+        for (const float side : {-1.0f, 1.0f}) {
+            const glm::vec3 normal(0, 0, side);
+            const glm::dvec3 read = glm::dvec3(0.1, 0.2, 3.0) + bake.lift * glm::dvec3(normal);
+            EXPECT_LT(occlusion_at(bake.grid, read, normal), 0.02f) << cells << ' ' << side;
+            EXPECT_GT(occlusion_at(bake.grid, read, -normal), 0.95f) << cells << ' ' << side;
+        }
+    }
+    EXPECT_EQ(bake_grid(make_geometry(scenes::box({0, 0, 0}, {1, 1, 0.1}, 2)),
+                        grid_settings_for(GridStore::cone, 8), {}, 0)
+                  .lift,
+              glm::dvec3(0.0));
+}
+
 TEST(GridTarget, TheBoxOfACubeReachesAsFarAsEpsSays)
 {
     GridSettings settings;

@@ -50,7 +50,7 @@ std::vector<PlacedGrid> three_balls(GridStore store, GridBorder border)
 {
     const auto grid = std::make_shared<const AoGrid>(sphere_grid(1.0, 3.0, 16, store, border));
     return {{grid, placed_at({0.1, 0.1, 0.12}, 0.1, 0.4)},
-            {grid, placed_at({-0.15, 0.0, 0.1}, 0.07, 1.3, true)},
+            {grid, placed_at({-0.15, 0.0, 0.1}, 0.07, 1.3, true), {0.0, 0.2, 0.4}},
             {grid, placed_at({0.0, -0.2, 0.15}, 0.12, 2.0)}};
 }
 

@@ -122,7 +122,7 @@ TEST_F(Layers, AGridIsThatOfABakeAndTellsWhatAPictureOfItShows)
     ASSERT_TRUE(look_until([&] { return view_.has_pixels(); }));
     const Geometry& object = view_.model()->occluding();
     const auto grid = std::make_shared<const AoGrid>(bake_grid(object, settings, {}, 0).grid);
-    EXPECT_EQ(view_.grid().grid()->grid.values, grid->values);
+    EXPECT_EQ(view_.grid().grids().front()->grid.values, grid->values);
     const double scale = 1.0 / object.frame.diagonal;
     const PlacedGrid placed{grid,
                             *placement_of(glm::scale(glm::dmat4(1.0), glm::dvec3(scale)) *
@@ -144,7 +144,8 @@ TEST_F(Layers, AGridIsThatOfABakeAndTellsWhatAPictureOfItShows)
     settings.store = GridStore::sh;
     set_where(cell_, Where::grid, {.texels = {}, .grid = settings});
     // the old grid is shown until the new one is there
-    ASSERT_TRUE(look_until([&] { return view_.grid().grid()->grid.store == GridStore::sh; }));
+    ASSERT_TRUE(
+        look_until([&] { return view_.grid().grids().front()->grid.store == GridStore::sh; }));
     set_where(cell_, Where::vertices, {});
     EXPECT_TRUE(view_.look(cell_, *camera_, kSmall, {}));
     EXPECT_FALSE(view_.has_pixels());
