@@ -120,9 +120,9 @@ void VertexTarget::make_receivers(bool folds)
     do {
         const std::size_t first = end;
         end = std::min(first + kFoldedAtOnce, count);
-        const std::vector<Receiver> some =
-            receivers_at(geometry, surface, points.subspan(first, end - first), offset);
-        receivers_.insert(receivers_.end(), some.begin(), some.end());
+        receivers_.resize(end);
+        receivers_at(geometry, surface, points.subspan(first, end - first), offset,
+                     std::span(receivers_).subspan(first));
         if (folds)
             fit_->fold(first, end);
     } while (end < count);

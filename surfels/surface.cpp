@@ -383,10 +383,10 @@ float offset_at(const Geometry& geometry, std::uint32_t triangle, const Offset& 
     return std::clamp(kOffsetShare * size, kLeastOffset, kMostOffset);
 }
 
-std::vector<Receiver> receivers_at(const Geometry& geometry, const Surface& surface,
-                                   std::span<const SurfacePoint> points, const Offset& offset)
+void receivers_at(const Geometry& geometry, const Surface& surface,
+                  std::span<const SurfacePoint> points, const Offset& offset,
+                  std::span<Receiver> receivers)
 {
-    std::vector<Receiver> receivers(points.size());
     const std::vector<glm::uvec3>& corners = surface.corners(geometry);
     const auto place = [&](const SurfacePoint& point) {
         const glm::uvec3 t = geometry.triangles[point.triangle];
@@ -403,6 +403,13 @@ std::vector<Receiver> receivers_at(const Geometry& geometry, const Surface& surf
         return Receiver{a + (point.at.x * b + point.at.y * c) + side * height * up, normal, height};
     };
     for_all(points.size(), [&](std::size_t i) { receivers[i] = place(points[i]); });
+}
+
+std::vector<Receiver> receivers_at(const Geometry& geometry, const Surface& surface,
+                                   std::span<const SurfacePoint> points, const Offset& offset)
+{
+    std::vector<Receiver> receivers(points.size());
+    receivers_at(geometry, surface, points, offset, receivers);
     return receivers;
 }
 

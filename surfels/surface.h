@@ -111,6 +111,10 @@ inline constexpr float kMostOffset = 1e-4f;
 [[nodiscard]] std::vector<Receiver> receivers_at(const Geometry& geometry, const Surface& surface,
                                                  std::span<const SurfacePoint> points,
                                                  const Offset& offset = {});
+/// The same, into memory for as many.
+void receivers_at(const Geometry& geometry, const Surface& surface,
+                  std::span<const SurfacePoint> points, const Offset& offset,
+                  std::span<Receiver> receivers);
 
 /// One receiver per wedge. A wedge that goes all round its vertex is asked there. One that ends at
 /// a hard edge or a border is asked just inside of its middle triangle, kInset offsets from the
