@@ -35,10 +35,10 @@ struct SubdivisionReport {
 /// settings. First its vertices part where their corners have different normals, and the file gets
 /// normals where it gives none, so that it holds the surface that is asked: copies come behind the
 /// file's vertices, before those of edges; a vertex itself has the normal of the first of its
-/// triangles. Files with one normal for each vertex stay as they are. Masks at kAskedQuality are asked, whoever bakes, so that all bake the same mesh and no
-/// noise of rays is taken for a bend; for a kernel that they do not know, the job's engine.
-/// occluders: in the mesh's frame. Says "subdivide" to progress. Throws as subdivide() and
-/// refined_scene().
+/// triangles. Files with one normal for each vertex stay as they are. Masks at kAskedQuality are
+/// asked, whoever bakes, so that all bake the same mesh and no noise of rays is taken for a bend;
+/// for a kernel that they do not know, the job's engine. occluders: in the mesh's frame. Says
+/// "subdivide" to progress. Throws as subdivide() and refined_scene().
 [[nodiscard]] Mesh subdivided(const Mesh& mesh, double tolerance, const TargetSettings& target,
                               const EngineSettings& engine, Occluders& occluders,
                               const StageProgress& progress, SubdivisionReport& report);
