@@ -77,16 +77,17 @@ constexpr const char* kCutPly =
     "3 0 1 5 7 6 0 0 1 0 0.5 0.5\n3 1 2 5 7 6 1 0 1 1 0.5 0.5\n"
     "3 0 5 3 7 6 0 0 0.5 0.5 0 1\n3 5 2 3 7 6 0.5 0.5 1 1 0 1\n3 0 1 4 9 0\n42\n";
 
+struct TextCase {
+    const char *name, *text, *refined;
+    std::string (*refine)(const Scene&, const Refinement&, std::span<const glm::vec3>);
+};
+
 TEST(RefinedScene, KeepsTheRestOfTextFiles)
 {
-    struct Case {
-        const char *name, *text, *refined;
-        std::string (*refine)(const Scene&, const Refinement&, std::span<const glm::vec3>);
-    };
     const TemporaryFolder folder;
-    for (const Case& c : {Case{"a.obj", kWholeObj, kCutObj, refined_obj},
-                          Case{"a.off", kWholeOff, kCutOff, refined_off},
-                          Case{"a.ply", kWholePly, kCutPly, refined_ply}}) {
+    for (const TextCase& c : {TextCase{"a.obj", kWholeObj, kCutObj, refined_obj},
+                              TextCase{"a.off", kWholeOff, kCutOff, refined_off},
+                              TextCase{"a.ply", kWholePly, kCutPly, refined_ply}}) {
         const Scene scene = read_scene(folder.file(c.name, c.text));
         EXPECT_EQ(c.refine(scene, across(scene), {}), c.refined);
     }
@@ -131,17 +132,13 @@ constexpr const char* kCopiedPly =
 
 TEST(RefinedScene, CopiesVerticesAndAddsNormals)
 {
-    struct Case {
-        const char *name, *text, *refined;
-        std::string (*refine)(const Scene&, const Refinement&, std::span<const glm::vec3>);
-    };
     const TemporaryFolder folder;
     std::vector<glm::vec3> normals;
     for (int v = 0; v < 7; ++v)
         normals.emplace_back(0.0f, 0.5f, static_cast<float>(v));
-    for (const Case& c : {Case{"a.obj", kWholeObj, kCopiedObj, refined_obj},
-                          Case{"a.off", kWholeOff, kCopiedOff, refined_off},
-                          Case{"a.ply", kBarePly, kCopiedPly, refined_ply}}) {
+    for (const TextCase& c : {TextCase{"a.obj", kWholeObj, kCopiedObj, refined_obj},
+                              TextCase{"a.off", kWholeOff, kCopiedOff, refined_off},
+                              TextCase{"a.ply", kBarePly, kCopiedPly, refined_ply}}) {
         const Scene scene = read_scene(folder.file(c.name, c.text));
         EXPECT_EQ(c.refine(scene, with_copies(scene), normals), c.refined);
     }
