@@ -1,7 +1,5 @@
 #include "viewer/grid_objects.h"
 
-#include <algorithm>
-
 namespace surfelao {
 
 std::vector<bool> resting_bodies(const PosedBodies& posed)
@@ -37,27 +35,6 @@ GridObjects grid_objects_of(const Model& base, const Bodies& bodies, const std::
         objects.triangles[object].push_back(static_cast<std::uint32_t>(geometry.scene_triangle(t)));
     }
     return objects;
-}
-
-Geometry object_alone(const Scene& scene, std::span<const std::uint32_t> triangles)
-{
-    std::vector<std::uint32_t> vertices;
-    for (const std::uint32_t t : triangles)
-        for (int corner = 0; corner < 3; ++corner)
-            vertices.push_back(scene.triangles[t][corner]);
-    std::ranges::sort(vertices);
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    std::vector<glm::dvec3> positions;
-    for (const std::uint32_t v : vertices)
-        positions.push_back(scene.positions[v]);
-    std::vector<glm::uvec3> own(triangles.size());
-    for (std::size_t i = 0; i < own.size(); ++i) {
-        for (int corner = 0; corner < 3; ++corner)
-            own[i][corner] = static_cast<std::uint32_t>(
-                std::ranges::lower_bound(vertices, scene.triangles[triangles[i]][corner]) -
-                vertices.begin());
-    }
-    return make_geometry(make_scene(positions, own));
 }
 
 }  // namespace surfelao

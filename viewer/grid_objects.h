@@ -5,12 +5,9 @@
 /// What bends (skins, morphs) is none.
 #pragma once
 
-#include "surfels/geometry.h"
-#include "surfels/scene.h"
 #include "viewer/model_pose.h"
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace surfelao {
@@ -32,8 +29,5 @@ struct GridObjects {
 /// then, as it stands. rests: resting_bodies(). O(n).
 [[nodiscard]] GridObjects grid_objects_of(const Model& base, const Bodies& bodies,
                                           const std::vector<bool>& rests);
-
-/// An object alone, in a frame of its own. O(k log k) of its triangles.
-[[nodiscard]] Geometry object_alone(const Scene& scene, std::span<const std::uint32_t> triangles);
 
 }  // namespace surfelao

@@ -1,9 +1,13 @@
 #include "viewer/grid_session.h"
 
+#include "surfels/geometry.h"
+
 #include <algorithm>
+#include <cstdint>
 #include <exception>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace surfelao {
 namespace {
@@ -25,7 +29,10 @@ GridBake bake_object(const GridQuestion& question, std::size_t object,
     const Model& model = *question.model;
     if (!question.objects)
         return bake_grid(model.occluding(), question.grid, question.engine, 0, progress);
-    const Geometry alone = object_alone(model.mesh->scene, question.objects->triangles[object]);
+    std::vector<bool> others(model.mesh->scene.triangles.size(), true);
+    for (const std::uint32_t triangle : question.objects->triangles[object])
+        others[triangle] = false;
+    const Geometry alone = make_geometry(model.mesh->scene, {.left_out = std::move(others)});
     EngineSettings engine = question.engine;
     engine.definition.max_distance *=
         static_cast<float>(model.geometry().frame.diagonal / alone.frame.diagonal);
