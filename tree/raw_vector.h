@@ -1,10 +1,11 @@
 /// raw_vector.h: a std::vector for large arrays that are about to be filled in by all threads.
 ///
 /// resize() leaves new elements unset instead of writing zeros first on one thread, which takes as
-/// long as the filling. Each must be written before it is read. Large arrays ask the system for
-/// large pages (2 MiB): where memory is fresh, a fault for every 4 KiB takes a quarter of the time
-/// of building a tree. For trivial types only.
+/// long as the filling. Each must be written before it is read. Large arrays lie in large pages
+/// (surfels/large_pages.h). For trivial types only.
 #pragma once
+
+#include "surfels/large_pages.h"
 
 #include <cstddef>
 #include <cstdlib>
@@ -13,10 +14,6 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
-
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
 
 namespace surfelao {
 
@@ -36,16 +33,11 @@ public:
     {
         if (count > static_cast<std::size_t>(-1) / 2 / sizeof(T))
             throw std::bad_array_new_length();
-        const bool large = count * sizeof(T) >= kPage / 2;
-        const std::size_t unit = large ? kPage : kLine;
-        const std::size_t bytes = (count * sizeof(T) + unit - 1) / unit * unit;
-        void* const memory = std::aligned_alloc(unit, bytes);
+        const std::size_t bytes = (count * sizeof(T) + kLine - 1) / kLine * kLine;
+        void* const memory = bytes >= kLargePage / 2 ? allocate_large_pages(bytes)
+                                                     : std::aligned_alloc(kLine, bytes);
         if (memory == nullptr)
             throw std::bad_alloc();
-#if defined(MADV_HUGEPAGE)
-        if (large)
-            static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));  // small pages do as well
-#endif
         return static_cast<T*>(memory);
     }
     void deallocate(T* memory, std::size_t)
@@ -68,7 +60,6 @@ public:
     }
 
 private:
-    static constexpr std::size_t kPage = std::size_t{2} << 20;
     static constexpr std::size_t kLine = 64;
     static_assert(alignof(T) <= kLine);
 };

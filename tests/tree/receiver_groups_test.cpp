@@ -185,7 +185,7 @@ TEST(ReceiverGroups, PartTheMostAlongTheLongestAxisToo)
 TEST(Discard, LeavesWhatIsOutsideOfTheRange)
 {
     RawVector<std::uint32_t> numbers;
-    numbers.resize(4 * kDiscardUnit / sizeof(std::uint32_t));
+    numbers.resize(4 * kLargePage / sizeof(std::uint32_t));
     std::iota(numbers.begin(), numbers.end(), 1u);
     const std::size_t begin = 12345, end = numbers.size() - 54321;
     discard(std::span(numbers).subspan(begin, end - begin));
