@@ -21,6 +21,18 @@ glm::vec3 face_of(const Geometry& geometry, std::uint32_t triangle)
     return glm::cross(geometry.positions[t.y] - a, geometry.positions[t.z] - a);
 }
 
+/// Whether a pixel's neighbours on all sides see its triangle: then this holds a square about the
+/// pixel's middle whose sides are .7 pixels away from it, and so no rim (kRimWidth) is as near.
+bool is_amid(std::span<const std::uint32_t> triangles, int width, int height, std::uint32_t pixel)
+{
+    const int x = static_cast<int>(pixel) % width, y = static_cast<int>(pixel) / width;
+    const auto row = static_cast<std::size_t>(width);
+    const std::uint32_t own = triangles[pixel];
+    return x > 0 && x + 1 < width && y > 0 && y + 1 < height && triangles[pixel - 1] == own &&
+           triangles[pixel + 1] == own && triangles[pixel - row] == own &&
+           triangles[pixel + row] == own;
+}
+
 }  // namespace
 
 View view_of(const Camera& camera, int width, int height)
@@ -111,10 +123,12 @@ SeenPixels seen_pixels(const Mesh& mesh, const Rims& rims, const View& view, int
     for_all(seen.pixels.size(), [&](std::size_t i) {
         const std::uint32_t pixel = seen.pixels[i];
         const glm::vec2 middle = glm::vec2(pixel % columns, pixel / columns) + 0.5f;
-        seen.points[i] = rims.nearer(
-            view, width, height,
+        const SurfacePoint point =
             point_on_ray(mesh.geometry, view, pixel_ray(view.lens, width, height, middle),
-                         triangles[pixel] - 1));
+                         triangles[pixel] - 1);
+        seen.points[i] = is_amid(triangles, width, height, pixel)
+                             ? point
+                             : rims.nearer(view, width, height, point);
     });
     seen.receivers = receivers_facing(mesh, view, seen.points, offset);
     return seen;
