@@ -9,8 +9,8 @@
 
 namespace {
 
-// An array of a page may take one more: a quarter at most of what it holds.
-constexpr std::size_t kLargeArray = 4 * surfelao::kLargePage;
+// In bytes. Smaller ones come again and again, from memory that is not fresh any more.
+constexpr std::size_t kLargeArray = 2 * surfelao::kLargePage;
 
 }  // namespace
 

@@ -123,9 +123,8 @@ SeenPixels seen_pixels(const Mesh& mesh, const Rims& rims, const View& view, int
     for_all(seen.pixels.size(), [&](std::size_t i) {
         const std::uint32_t pixel = seen.pixels[i];
         const glm::vec2 middle = glm::vec2(pixel % columns, pixel / columns) + 0.5f;
-        const SurfacePoint point =
-            point_on_ray(mesh.geometry, view, pixel_ray(view.lens, width, height, middle),
-                         triangles[pixel] - 1);
+        const SurfacePoint point = point_on_ray(
+            mesh.geometry, view, pixel_ray(view.lens, width, height, middle), triangles[pixel] - 1);
         seen.points[i] = is_amid(triangles, width, height, pixel)
                              ? point
                              : rims.nearer(view, width, height, point);

@@ -20,16 +20,14 @@ namespace surfelao {
 /// In bytes.
 inline constexpr std::size_t kLargePage = std::size_t{2} << 20;
 
-/// At the start of a page, in whole pages; std::free() takes it back. Null where there is no more.
+/// At the start of a page; std::free() takes it back. Null where there is no memory.
 [[nodiscard]] inline void* allocate_large_pages(std::size_t bytes)
 {
-    if (bytes > static_cast<std::size_t>(-1) / 2)
+    void* memory = nullptr;
+    if (posix_memalign(&memory, kLargePage, bytes) != 0)
         return nullptr;
-    bytes = (bytes + kLargePage - 1) / kLargePage * kLargePage;
-    void* const memory = std::aligned_alloc(kLargePage, bytes);
 #if defined(MADV_HUGEPAGE)
-    if (memory != nullptr)
-        static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));
+    static_cast<void>(madvise(memory, bytes / kLargePage * kLargePage, MADV_HUGEPAGE));
 #endif
     return memory;
 }

@@ -33,17 +33,15 @@ public:
     {
         if (count > static_cast<std::size_t>(-1) / 2 / sizeof(T))
             throw std::bad_array_new_length();
-        const std::size_t bytes = (count * sizeof(T) + kLine - 1) / kLine * kLine;
-        void* const memory = bytes >= kLargePage / 2 ? allocate_large_pages(bytes)
-                                                     : std::aligned_alloc(kLine, bytes);
+        const std::size_t bytes = count * sizeof(T);
+        void* const memory = bytes >= kLargePage / 2
+                                 ? allocate_large_pages(up_to(kLargePage, bytes))
+                                 : std::aligned_alloc(kLine, up_to(kLine, bytes));
         if (memory == nullptr)
             throw std::bad_alloc();
         return static_cast<T*>(memory);
     }
-    void deallocate(T* memory, std::size_t)
-    {
-        std::free(memory);
-    }
+    void deallocate(T* memory, std::size_t) { std::free(memory); }
 
     template <class U, class... Arguments>
     void construct(U* at, Arguments&&... arguments)
@@ -54,12 +52,14 @@ public:
             ::new (static_cast<void*>(at)) U;
     }
 
-    bool operator==(const RawAllocator&) const
-    {
-        return true;
-    }
+    bool operator==(const RawAllocator&) const { return true; }
 
 private:
+    static std::size_t up_to(std::size_t unit, std::size_t bytes)
+    {
+        return (bytes + unit - 1) / unit * unit;
+    }
+
     static constexpr std::size_t kLine = 64;
     static_assert(alignof(T) <= kLine);
 };
