@@ -16,6 +16,9 @@ namespace {
 constexpr std::string_view kMeasured[] = {"occlusion", "bent_nx", "bent_ny", "bent_nz"};
 constexpr std::string_view kColor[] = {"red", "green", "blue"};
 constexpr std::string_view kOwnColor[] = {"own_red", "own_green", "own_blue"};
+/// Room for what a bake adds to a row: occlusion, bent normal and colour, in ascii.
+constexpr std::size_t kAddedBytes = 64;
+
 constexpr std::string_view kPacked = "rgb", kOwnPacked = "own_rgb";
 
 /// Columns that another format gets of a cloud's own: ours have room beside them.
@@ -150,10 +153,11 @@ public:
         for_each_range(data, ranges, [&](Data& at, std::size_t i) {
             std::size_t end = ranges[i].offset;
             std::vector<std::string_view> old(properties_.size());
-            texts[i].reserve(kRangeBytes * 4);
+            const std::size_t next = i + 1 < ranges.size() ? ranges[i + 1].offset : rows.size();
+            const std::uint64_t count = ranges[i].end - ranges[i].first;
+            texts[i].reserve(next - end + count * kAddedBytes);
             for (std::uint64_t row = ranges[i].first; row < ranges[i].end; ++row)
                 end = append_row(texts[i], at, row, end, old);
-            const std::size_t next = i + 1 < ranges.size() ? ranges[i + 1].offset : rows.size();
             texts[i].append(rows.substr(end, next - end));
         });
         return joined(texts);
