@@ -31,6 +31,10 @@ constexpr double kLine = 1e-6;
 /// Neighbours, and the point, that tell noise from curvature beside all kNormalNeighbours.
 constexpr std::uint32_t kFewNeighbours = 9;
 
+/// Points whose noise is told, at most: the median of so many is that of all to .5 % (their spread
+/// over the root of their number).
+constexpr std::size_t kNoiseSamples = std::size_t{1} << 17;
+
 /// Half the side of a square of a disk's area, radius 1: sqrt(pi) / 2.
 const float kHalfSide = 0.5f * std::sqrt(std::numbers::pi_v<float>);
 
@@ -102,6 +106,8 @@ public:
     }
 
 private:
+    static constexpr float kNotAsked = -1.0f;
+
     /// What a point sees of the members around it.
     struct Around {
         std::array<std::uint32_t, kPlaneNeighbours + 1> points;  ///< of the scene, nearest first
@@ -295,7 +301,10 @@ private:
         nearest_.emplace(std::move(places));
         if (from_file_)
             file_normals_ = cloud_.normals;
-        noise2_.resize(count_);
+        noise2_.assign(count_, kNotAsked);
+        const std::size_t step = (members_.size() + kNoiseSamples - 1) / kNoiseSamples;
+        for (std::size_t m = 0; m < members_.size(); m += step)
+            noise2_[members_[m]] = 0.0f;
         for_each_point(count_, [&](std::size_t k) {
             const std::uint32_t i = cloud_.order[k];
             const Around seen = around(i, kNormalNeighbours + 1);
@@ -308,8 +317,12 @@ private:
             for (std::uint32_t s = 0, n = 0; s < seen.count && n < neighbours.size(); ++s)
                 if (seen.points[s] != i)
                     neighbours[n++] = seen.points[s];
+            const bool asks_noise = noise2_[i] != kNotAsked;
+            if (!asks_noise && cloud_.normals[i] != glm::vec3(0.0f))
+                return;
             const Plane plane = plane_through(seen, cloud_.positions[i], cloud_.positions);
-            noise2_[i] = noise2_of(seen, plane.scatter, i);
+            if (asks_noise)
+                noise2_[i] = noise2_of(seen, plane.scatter, i);
             if (cloud_.normals[i] == glm::vec3(0.0f))
                 cloud_.normals[i] = plane.normal;
         });
@@ -320,8 +333,10 @@ private:
     void flatten_noise()
     {
         std::vector<float> noise2;
-        for (const std::uint32_t member : members_)
-            noise2.push_back(noise2_[member]);
+        for (const std::uint32_t member : members_) {
+            if (noise2_[member] != kNotAsked)
+                noise2.push_back(noise2_[member]);
+        }
         const auto middle = noise2.begin() + static_cast<std::ptrdiff_t>(noise2.size() / 2);
         std::ranges::nth_element(noise2, middle);
         cloud_.noise = std::sqrt(*middle);
@@ -440,7 +455,7 @@ private:
     PointCloud cloud_;
     std::vector<std::uint32_t> members_;    ///< along the curve
     std::optional<NearestPoints> nearest_;  ///< of the members
-    std::vector<float> noise2_;             ///< per point (noise2_of)
+    std::vector<float> noise2_;             ///< per point (noise2_of), or kNotAsked
     std::vector<glm::vec3> file_normals_;   ///< empty where they do not count
     bool from_file_ = false;
 };
@@ -469,11 +484,16 @@ Geometry squares_of(const PointCloud& cloud)
     const std::size_t count = cloud.occluders.size();
     Geometry geometry;
     geometry.frame = cloud.frame;
-    geometry.positions.resize(4 * count);
-    geometry.normals.resize(4 * count);
-    geometry.triangles.resize(2 * count);
-    geometry.welded.resize(4 * count);
-    geometry.areas.resize(4 * count);
+    do_both(
+        [&] {
+            geometry.positions.resize(4 * count);
+            geometry.triangles.resize(2 * count);
+        },
+        [&] {
+            geometry.normals.resize(4 * count);
+            geometry.welded.resize(4 * count);
+            geometry.areas.resize(4 * count);
+        });
     for_each_point(count, [&](std::size_t k) {
         const std::uint32_t i = cloud.occluders[k];
         const glm::vec3 n = cloud.normals[i];
