@@ -155,7 +155,7 @@ private:
     static constexpr int kStays = -1, kGoes = -2;
 
     /// Enough that no thread waits long for the others.
-    static constexpr std::size_t kRangesPerThread = 8;
+    static constexpr std::size_t kRangesPerThread = 4;
 
     void append_range(std::string& text, const Data& data, std::span<const RowRange> ranges,
                       std::size_t i) const
