@@ -26,7 +26,7 @@ endfunction()
 # surfelao_fuzzed(target): counts what a fuzzer has reached in it. For what fuzzers look into alone:
 # the counters take Clang a quarter of its time, and tests run slower with them.
 function(surfelao_fuzzed target)
-    target_compile_options(${target} PRIVATE $<$<BOOL:${SURFELAO_FUZZ}>:-fsanitize=fuzzer-no-link>)
+    target_compile_options(${target} PRIVATE $<$<BOOL:${SURFELAO_FUZZ}>:-fsanitize=fuzzer-no-link;-O1>)
 endfunction()
 
 # surfelao_folder(name [UNITY] [FUZZED] SOURCES ... HEADERS ...): the static library of one folder.

@@ -139,7 +139,7 @@ WrittenFile pcd_contents(const Scene& scene, std::span<const Occlusion> occlusio
     if (const auto* source = dynamic_cast<const PcdSource*>(scene.asset.get())) {
         const VertexChanges changes = changes_of(*source, options, true, written.notes);
         text = changed_header(*source, changes, options.mark);
-        text += changed_rows(*source, occlusion, changes);
+        append_changed_rows(text, *source, occlusion, changes);
         if (source->kind != Kind::compressed) {
             const std::string_view data =
                 std::string_view(source->contents).substr(source->data_begin);

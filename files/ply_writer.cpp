@@ -242,20 +242,12 @@ WrittenFile spliced(const PlySource& source, const Scene& scene,
                     std::span<const Occlusion> occlusion, FaceChanges faces,
                     const WriteOptions& options, const std::filesystem::path& folder)
 {
-    struct Piece {
-        std::size_t begin, end;  ///< of the old data
-        std::string text;
-    };
     WrittenFile written;
     const VertexChanges changes = changes_of(source, options, !occlusion.empty(), written.notes);
-    std::vector<Piece> pieces{
-        {source.vertices_begin, source.vertices_end, changed_rows(source, occlusion, changes)}};
+    std::string face_rows;
     if (faces.uvs) {
         faces.new_properties = {kPlacesProperty};
-        pieces.push_back({source.faces_begin, source.faces_end,
-                          FaceRows<Data>(source, scene, *faces.uvs).write(faces)});
-        if (source.faces_begin < source.vertices_begin)
-            std::swap(pieces[0], pieces[1]);
+        face_rows = FaceRows<Data>(source, scene, *faces.uvs).write(faces);
     }
     HeaderWriter header(source, changes, faces, folder);
     written.contents = header.write(options.mark);
@@ -263,17 +255,32 @@ WrittenFile spliced(const PlySource& source, const Scene& scene,
     if (header.replaced > 0)
         written.notes.push_back("the map takes the place of " +
                                 count_text(header.replaced, "texture") + " that the file names");
-    std::size_t size = written.contents.size() + source.data().size();
-    for (const Piece& piece : pieces)
-        size += piece.text.size();
-    written.contents.reserve(size);
+    const std::string_view data = source.data();
     std::size_t copied = 0;
-    for (const Piece& piece : pieces) {
-        written.contents.append(source.data().substr(copied, piece.begin - copied))
-            .append(piece.text);
-        copied = piece.end;
+    const auto copy_to = [&](std::size_t end) {
+        written.contents.append(data.substr(copied, end - copied));
+        copied = end;
+    };
+    const auto write_vertices = [&] {
+        copy_to(source.vertices_begin);
+        copied = source.vertices_end;
+        append_changed_rows(written.contents, source, occlusion, changes,
+                            data.size() - copied + face_rows.size());
+    };
+    const auto write_faces = [&] {
+        copy_to(source.faces_begin);
+        copied = source.faces_end;
+        written.contents.append(face_rows);
+    };
+    if (faces.uvs && source.faces_begin < source.vertices_begin) {
+        write_faces();
+        write_vertices();
+    } else {
+        write_vertices();
+        if (faces.uvs)
+            write_faces();
     }
-    written.contents.append(source.data().substr(copied));
+    copy_to(data.size());
     return written;
 }
 

@@ -1,6 +1,7 @@
 #include "files/vertex_rows.h"
 
 #include "files/ply_io.h"
+#include "surfels/for_all.h"
 #include "surfels/number_text.h"
 
 #include <glm/common.hpp>
@@ -16,6 +17,9 @@ namespace {
 constexpr std::string_view kMeasured[] = {"occlusion", "bent_nx", "bent_ny", "bent_nz"};
 constexpr std::string_view kColor[] = {"red", "green", "blue"};
 constexpr std::string_view kOwnColor[] = {"own_red", "own_green", "own_blue"};
+/// Room for what a bake adds to a row: occlusion, bent normal and colour, in ascii.
+constexpr std::size_t kAddedBytes = 64;
+
 constexpr std::string_view kPacked = "rgb", kOwnPacked = "own_rgb";
 
 /// Columns that another format gets of a cloud's own: ours have room beside them.
@@ -107,19 +111,6 @@ std::string_view word_of(std::string_view property, Notation notation)
     return property;
 }
 
-/// One behind the other; each is gone as soon as it is copied.
-std::string joined(std::vector<std::string>& texts)
-{
-    std::size_t size = 0;
-    for (const std::string& text : texts)
-        size += text.size();
-    std::string all;
-    all.reserve(size);
-    for (std::string& text : texts)
-        all.append(std::exchange(text, {}));
-    return all;
-}
-
 /// Writes the rows of the vertices with what changes.
 template <class Data>
 class RowWriter {
@@ -139,28 +130,46 @@ public:
             fates_[(*changes.places.shown)[static_cast<std::size_t>(c)]] = c;
     }
 
-    /// All threads, each a range of rows.
-    [[nodiscard]] std::string write() const
+    /// Appends them. All threads, each a range of rows; what they write lies in between only until
+    /// so many of them are done.
+    void write(std::string& text, std::size_t rest) const
     {
         const std::string no_name;
         const std::string_view rows = source_.vertex_rows();
-        Data data(no_name, rows, source_.form());
+        const Data data(no_name, rows, source_.form());
         const std::vector<RowRange> ranges = data.ranges(source_.vertices());
-        std::vector<std::string> texts(ranges.size());
-        for_each_range(data, ranges, [&](Data& at, std::size_t i) {
-            std::size_t end = ranges[i].offset;
-            std::vector<std::string_view> old(properties_.size());
-            texts[i].reserve(kRangeBytes * 4);
-            for (std::uint64_t row = ranges[i].first; row < ranges[i].end; ++row)
-                end = append_row(texts[i], at, row, end, old);
-            const std::size_t next = i + 1 < ranges.size() ? ranges[i + 1].offset : rows.size();
-            texts[i].append(rows.substr(end, next - end));
-        });
-        return joined(texts);
+        text.reserve(text.size() + rows.size() + source_.vertices().count * kAddedBytes + rest);
+        std::vector<std::string> texts(std::min(ranges.size(), kRangesPerThread * loop_threads()));
+        for (std::size_t first = 0; first < ranges.size(); first += texts.size()) {
+            const std::size_t count = std::min(texts.size(), ranges.size() - first);
+            for_tasks(count, [&](std::size_t i) {
+                texts[i].clear();
+                append_range(texts[i], data, ranges, first + i);
+            });
+            for (std::size_t i = 0; i < count; ++i)
+                text.append(texts[i]);
+        }
     }
 
 private:
     static constexpr int kStays = -1, kGoes = -2;
+
+    /// Enough that no thread waits long for the others.
+    static constexpr std::size_t kRangesPerThread = 4;
+
+    void append_range(std::string& text, const Data& data, std::span<const RowRange> ranges,
+                      std::size_t i) const
+    {
+        const std::string_view rows = source_.vertex_rows();
+        Data at = data.at(ranges[i]);
+        std::size_t end = ranges[i].offset;
+        const std::size_t next = i + 1 < ranges.size() ? ranges[i + 1].offset : rows.size();
+        text.reserve(next - end + (ranges[i].end - ranges[i].first) * kAddedBytes);
+        std::vector<std::string_view> old(properties_.size());
+        for (std::uint64_t row = ranges[i].first; row < ranges[i].end; ++row)
+            end = append_row(text, at, row, end, old);
+        text.append(rows.substr(end, next - end));
+    }
 
     /// copied: where the row before ends. Returns where this one ends. old: room for its
     /// properties.
@@ -356,12 +365,14 @@ VertexChanges changes_of(const RowSource& source, const WriteOptions& options, b
     return changes;
 }
 
-std::string changed_rows(const RowSource& source, std::span<const Occlusion> occlusion,
-                         const VertexChanges& changes)
+void append_changed_rows(std::string& text, const RowSource& source,
+                         std::span<const Occlusion> occlusion, const VertexChanges& changes,
+                         std::size_t rest)
 {
-    return source.form().format == Format::ascii
-               ? RowWriter<AsciiData>(source, occlusion, changes).write()
-               : RowWriter<BinaryData>(source, occlusion, changes).write();
+    if (source.form().format == Format::ascii)
+        RowWriter<AsciiData>(source, occlusion, changes).write(text, rest);
+    else
+        RowWriter<BinaryData>(source, occlusion, changes).write(text, rest);
 }
 
 NewRows::NewRows(const Scene& scene, std::span<const Occlusion> occlusion,

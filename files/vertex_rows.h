@@ -80,10 +80,11 @@ struct VertexChanges {
 [[nodiscard]] VertexChanges changes_of(const RowSource& source, const WriteOptions& options,
                                        bool is_measured, std::vector<std::string>& notes);
 
-/// The source's rows with what changes. occlusion: one for each row, or empty.
-[[nodiscard]] std::string changed_rows(const RowSource& source,
-                                       std::span<const Occlusion> occlusion,
-                                       const VertexChanges& changes);
+/// Appends the source's rows with what changes. occlusion: one for each row, or empty. rest: bytes
+/// that will come behind them, so that the text need not move for these.
+void append_changed_rows(std::string& text, const RowSource& source,
+                         std::span<const Occlusion> occlusion, const VertexChanges& changes,
+                         std::size_t rest = 0);
 
 /// Rows for a scene whose file is of another format: behind x y z its normals, where each vertex
 /// has one, its colours, in a cloud other columns too, and the result.

@@ -87,7 +87,7 @@ std::string changed_text(const XyzSource& source, std::span<const Occlusion> occ
         text.append(old.substr(0, begin)).append(new_header(source, changes));
         text.append(old.substr(end, source.rows_begin - end));
     }
-    text += changed_rows(source, occlusion, changes);
+    append_changed_rows(text, source, occlusion, changes);
     if (text.back() != '\n' && text.back() != '\r')
         text += line_end;
     if (!has_names || !source.header_says_all) {

@@ -31,6 +31,10 @@ constexpr double kLine = 1e-6;
 /// Neighbours, and the point, that tell noise from curvature beside all kNormalNeighbours.
 constexpr std::uint32_t kFewNeighbours = 9;
 
+/// Points whose noise is told, at most: the median of so many is that of all to .5 % (their spread
+/// over the root of their number).
+constexpr std::size_t kNoiseSamples = std::size_t{1} << 17;
+
 /// Half the side of a square of a disk's area, radius 1: sqrt(pi) / 2.
 const float kHalfSide = 0.5f * std::sqrt(std::numbers::pi_v<float>);
 
@@ -102,6 +106,8 @@ public:
     }
 
 private:
+    static constexpr float kNotAsked = -1.0f;
+
     /// What a point sees of the members around it.
     struct Around {
         std::array<std::uint32_t, kPlaneNeighbours + 1> points;  ///< of the scene, nearest first
@@ -295,7 +301,10 @@ private:
         nearest_.emplace(std::move(places));
         if (from_file_)
             file_normals_ = cloud_.normals;
-        noise2_.resize(count_);
+        noise2_.assign(count_, kNotAsked);
+        const std::size_t step = (members_.size() + kNoiseSamples - 1) / kNoiseSamples;
+        for (std::size_t m = 0; m < members_.size(); m += step)
+            noise2_[members_[m]] = 0.0f;
         for_each_point(count_, [&](std::size_t k) {
             const std::uint32_t i = cloud_.order[k];
             const Around seen = around(i, kNormalNeighbours + 1);
@@ -308,8 +317,12 @@ private:
             for (std::uint32_t s = 0, n = 0; s < seen.count && n < neighbours.size(); ++s)
                 if (seen.points[s] != i)
                     neighbours[n++] = seen.points[s];
+            const bool asks_noise = noise2_[i] != kNotAsked;
+            if (!asks_noise && cloud_.normals[i] != glm::vec3(0.0f))
+                return;
             const Plane plane = plane_through(seen, cloud_.positions[i], cloud_.positions);
-            noise2_[i] = noise2_of(seen, plane.scatter, i);
+            if (asks_noise)
+                noise2_[i] = noise2_of(seen, plane.scatter, i);
             if (cloud_.normals[i] == glm::vec3(0.0f))
                 cloud_.normals[i] = plane.normal;
         });
@@ -320,8 +333,10 @@ private:
     void flatten_noise()
     {
         std::vector<float> noise2;
-        for (const std::uint32_t member : members_)
-            noise2.push_back(noise2_[member]);
+        for (const std::uint32_t member : members_) {
+            if (noise2_[member] != kNotAsked)
+                noise2.push_back(noise2_[member]);
+        }
         const auto middle = noise2.begin() + static_cast<std::ptrdiff_t>(noise2.size() / 2);
         std::ranges::nth_element(noise2, middle);
         cloud_.noise = std::sqrt(*middle);
@@ -440,7 +455,7 @@ private:
     PointCloud cloud_;
     std::vector<std::uint32_t> members_;    ///< along the curve
     std::optional<NearestPoints> nearest_;  ///< of the members
-    std::vector<float> noise2_;             ///< per point (noise2_of)
+    std::vector<float> noise2_;             ///< per point (noise2_of), or kNotAsked
     std::vector<glm::vec3> file_normals_;   ///< empty where they do not count
     bool from_file_ = false;
 };
@@ -469,11 +484,16 @@ Geometry squares_of(const PointCloud& cloud)
     const std::size_t count = cloud.occluders.size();
     Geometry geometry;
     geometry.frame = cloud.frame;
-    geometry.positions.resize(4 * count);
-    geometry.normals.resize(4 * count);
-    geometry.triangles.resize(2 * count);
-    geometry.welded.resize(4 * count);
-    geometry.areas.resize(4 * count);
+    do_both(
+        [&] {
+            geometry.positions.resize(4 * count);
+            geometry.triangles.resize(2 * count);
+        },
+        [&] {
+            geometry.normals.resize(4 * count);
+            geometry.welded.resize(4 * count);
+            geometry.areas.resize(4 * count);
+        });
     for_each_point(count, [&](std::size_t k) {
         const std::uint32_t i = cloud.occluders[k];
         const glm::vec3 n = cloud.normals[i];
@@ -528,65 +548,6 @@ Receiver turned_round(const Receiver& receiver)
 {
     return {receiver.position - 2.0f * receiver.offset * receiver.normal, -receiver.normal,
             receiver.offset};
-}
-
-namespace {
-
-/// 1 where the way from one point to another lies in the planes of both, 0 where it is as steep
-/// over one of them as kSteepest.
-float nearness_to_planes(glm::vec3 way, glm::vec3 a, glm::vec3 b)
-{
-    const float steep = std::max(std::abs(glm::dot(way, a)), std::abs(glm::dot(way, b)));
-    const float most2 = kSteepest * kSteepest * glm::dot(way, way);
-    return most2 > 0.0f ? std::max(0.0f, 1.0f - steep * steep / most2) : 1.0f;
-}
-
-}  // namespace
-
-void orient(PointCloud& cloud, std::span<const Occlusion> front, std::span<const Occlusion> back)
-{
-    const std::size_t count = cloud.occluders.size();
-    SURFELAO_CHECK(cloud.is_unoriented && front.size() == count && back.size() == count);
-    // positive: the normal faces the more open side
-    std::vector<float> votes(cloud.positions.size(), 0.0f), next(votes.size());
-    for (std::size_t k = 0; k < count; ++k)
-        votes[cloud.occluders[k]] = back[k].occlusion - front[k].occlusion;
-    const auto voted = [&](std::size_t i) {
-        float sum = votes[i], weights = 1.0f;
-        for (const std::uint32_t other : cloud.neighbours[i]) {
-            if (other == kNobody)
-                continue;
-            const float cosine = glm::dot(cloud.normals[i], cloud.normals[other]);
-            // not across edges, nor from the other side of a thin sheet
-            const float weight = cosine * cosine * cosine * cosine *
-                                 nearness_to_planes(cloud.positions[other] - cloud.positions[i],
-                                                    cloud.normals[i], cloud.normals[other]);
-            sum += std::copysign(weight, cosine) * votes[other];
-            weights += weight;
-        }
-        return sum / weights;
-    };
-    for (int round = 0; round < kVoteRounds; ++round) {
-        for_each_point(votes.size(), [&](std::size_t i) { next[i] = voted(i); });
-        votes.swap(next);
-    }
-    std::vector<std::uint32_t> weak;
-    for (std::uint32_t i = 0; i < votes.size(); ++i) {
-        if (std::abs(votes[i]) < kWeakVote)
-            weak.push_back(i);
-    }
-    for (int round = 0; round < kWeakVoteRounds; ++round) {
-        for_each_point(weak.size(), [&](std::size_t k) { next[k] = voted(weak[k]); });
-        for (std::size_t k = 0; k < weak.size(); ++k)
-            votes[weak[k]] = next[k];
-    }
-    for (std::size_t i = 0; i < votes.size(); ++i) {
-        if (votes[i] < 0.0f)
-            cloud.normals[i] = -cloud.normals[i];
-        cloud.counts.weak += std::abs(votes[i]) < kWeakVote;
-    }
-    cloud.is_unoriented = false;
-    cloud.neighbours = {};
 }
 
 }  // namespace surfelao

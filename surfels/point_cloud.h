@@ -109,7 +109,8 @@ struct PointCloud {
     double spacing = 0.0;  ///< between occluders, in the scene's units: the root of the median area
     std::optional<double> thinned_to;  ///< the size of the cubes, where there are any
     PointCounts counts;
-    float noise = 0.0f;          ///< median standard deviation about the surface, in r
+    float noise = 0.0f;          ///< median standard deviation about the surface, in r; where
+                                 ///< there are many points, of each n-th
     bool is_flattened = false;   ///< moved onto planes, since that is above kScatter
     bool is_unoriented = false;  ///< the normals' signs are arbitrary
     /// While it is unoriented, of each point: its nearest points, kNobody where there are fewer.

@@ -263,6 +263,18 @@ TEST(Points, AScanIsAsItsSurface)
     EXPECT_LE(judge(mesh, {.points = 6000, .has_normals = false}).turned, 0.005);
 }
 
+// So many that only some of them are asked.
+TEST(Points, NoiseOfManyIsThatOfFew)
+{
+    const Mesh mesh = blob();
+    const auto cloud_with = [&](std::uint32_t points) {
+        return make_point_cloud(scenes::sampled(mesh, {.points = points, .noise = 0.3}).cloud);
+    };
+    const PointCloud many = cloud_with(140'000), few = cloud_with(20'000);
+    EXPECT_TRUE(many.is_flattened);
+    EXPECT_NEAR(many.noise, few.noise, 0.05f * few.noise);
+}
+
 // A side of a plate that is nearly as closed as its inside, and the open side below it, so near
 // that they are neighbours.
 TEST(Points, TheOtherSideOfAThinSheetHasNoVote)

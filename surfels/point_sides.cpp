@@ -1,0 +1,75 @@
+#include "surfels/errors.h"
+#include "surfels/for_all.h"
+#include "surfels/point_cloud.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace surfelao {
+namespace {
+
+/// Points whose votes are worth a thread's start.
+constexpr std::size_t kVoteGrain = 1024;
+
+/// 1 where the way from one point to another lies in the planes of both, 0 where it is as steep
+/// over one of them as kSteepest.
+float nearness_to_planes(glm::vec3 way, glm::vec3 a, glm::vec3 b)
+{
+    const float steep = std::max(std::abs(glm::dot(way, a)), std::abs(glm::dot(way, b)));
+    const float most2 = kSteepest * kSteepest * glm::dot(way, way);
+    return most2 > 0.0f ? std::max(0.0f, 1.0f - steep * steep / most2) : 1.0f;
+}
+
+}  // namespace
+
+void orient(PointCloud& cloud, std::span<const Occlusion> front, std::span<const Occlusion> back)
+{
+    const std::size_t count = cloud.occluders.size();
+    SURFELAO_CHECK(cloud.is_unoriented && front.size() == count && back.size() == count);
+    // positive: the normal faces the more open side
+    std::vector<float> votes(cloud.positions.size(), 0.0f), next(votes.size());
+    for (std::size_t k = 0; k < count; ++k)
+        votes[cloud.occluders[k]] = back[k].occlusion - front[k].occlusion;
+    const auto voted = [&](std::size_t i) {
+        float sum = votes[i], weights = 1.0f;
+        for (const std::uint32_t other : cloud.neighbours[i]) {
+            if (other == PointCloud::kNobody)
+                continue;
+            const float cosine = glm::dot(cloud.normals[i], cloud.normals[other]);
+            // not across edges, nor from the other side of a thin sheet
+            const float weight = cosine * cosine * cosine * cosine *
+                                 nearness_to_planes(cloud.positions[other] - cloud.positions[i],
+                                                    cloud.normals[i], cloud.normals[other]);
+            sum += std::copysign(weight, cosine) * votes[other];
+            weights += weight;
+        }
+        return sum / weights;
+    };
+    for (int round = 0; round < kVoteRounds; ++round) {
+        for_all(votes.size(), kVoteGrain, [&](std::size_t i) { next[i] = voted(i); });
+        votes.swap(next);
+    }
+    std::vector<std::uint32_t> weak;
+    for (std::uint32_t i = 0; i < votes.size(); ++i) {
+        if (std::abs(votes[i]) < kWeakVote)
+            weak.push_back(i);
+    }
+    for (int round = 0; round < kWeakVoteRounds; ++round) {
+        for_all(weak.size(), kVoteGrain, [&](std::size_t k) { next[k] = voted(weak[k]); });
+        for (std::size_t k = 0; k < weak.size(); ++k)
+            votes[weak[k]] = next[k];
+    }
+    for (std::size_t i = 0; i < votes.size(); ++i) {
+        if (votes[i] < 0.0f)
+            cloud.normals[i] = -cloud.normals[i];
+        cloud.counts.weak += std::abs(votes[i]) < kWeakVote;
+    }
+    cloud.is_unoriented = false;
+    cloud.neighbours = {};
+}
+
+}  // namespace surfelao
