@@ -50,16 +50,36 @@ glm::dvec2 corner_of(const Mesh& mesh, const Facets& facets, const Chart& chart,
     return {place.x, -place.y};
 }
 
-ChartShape shape_of(const Mesh& mesh, const Facets& facets, const Chart& chart, std::uint32_t page)
+/// chart_of: of the triangles on the page; `own` is this one.
+ChartShape shape_of(const Mesh& mesh, const Facets& facets, const Chart& chart,
+                    std::span<const std::uint32_t> chart_of, std::uint32_t own)
 {
     ChartShape shape;
-    shape.page = page;
     shape.triangles.reserve(chart.triangles.size());
-    for (const std::uint32_t t : chart.triangles)
-        shape.triangles.push_back({corner_of(mesh, facets, chart, t, 0),
-                                   corner_of(mesh, facets, chart, t, 1),
-                                   corner_of(mesh, facets, chart, t, 2)});
+    double outline = 0.0;
+    for (const std::uint32_t t : chart.triangles) {
+        const auto& p = shape.triangles.emplace_back(
+            std::array{corner_of(mesh, facets, chart, t, 0), corner_of(mesh, facets, chart, t, 1),
+                       corner_of(mesh, facets, chart, t, 2)});
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t other = facets.neighbours[t][k];
+            if (other == kNoTriangle || chart_of[other] != own)
+                outline += glm::distance(p[k], p[(k + 1) % 3]);
+        }
+    }
+    if (outline > 0.0)  // a chart is scaled to the area of its surface
+        shape.width = 2.0 * chart.area / outline;
     return shape;
+}
+
+/// Of each triangle its chart; kNoChart where it has none.
+std::vector<std::uint32_t> charts_of_triangles(std::size_t count, std::span<const Chart> charts)
+{
+    std::vector<std::uint32_t> chart_of(count, kNoChart);
+    for (std::uint32_t c = 0; c < charts.size(); ++c)
+        for (const std::uint32_t t : charts[c].triangles)
+            chart_of[t] = c;
+    return chart_of;
 }
 
 /// A page's set: a value for each place in each chart.
@@ -132,9 +152,14 @@ std::vector<ChartShape> shapes_of(const Mesh& mesh, const Facets& facets,
                                   std::span<const std::vector<Chart>> pages)
 {
     std::vector<ChartShape> shapes;
-    for (std::uint32_t page = 0; page < pages.size(); ++page)
-        for (const Chart& chart : pages[page])
-            shapes.push_back(shape_of(mesh, facets, chart, page));
+    for (std::uint32_t page = 0; page < pages.size(); ++page) {
+        const std::vector<std::uint32_t> chart_of =
+            charts_of_triangles(facets.areas.size(), pages[page]);
+        for (std::uint32_t c = 0; c < pages[page].size(); ++c) {
+            shapes.push_back(shape_of(mesh, facets, pages[page][c], chart_of, c));
+            shapes.back().page = page;
+        }
+    }
     return shapes;
 }
 
@@ -246,10 +271,10 @@ Atlas make_atlas(const Mesh& mesh, const AtlasSettings& settings, const Progress
         const std::span<const ChartPlacement> placements =
             std::span(packing.placements).subspan(atlas.chart_count, charts.size());
         atlas.layout.pages.push_back(uvs_of(mesh, facets, charts, placements, packing.size));
-        std::vector<std::uint32_t>& chart_of = atlas.chart_of.emplace_back(count, kNoChart);
-        for (std::uint32_t c = 0; c < charts.size(); ++c)
-            for (const std::uint32_t t : charts[c].triangles)
-                chart_of[t] = atlas.chart_count + c;
+        std::vector<std::uint32_t>& chart_of =
+            atlas.chart_of.emplace_back(charts_of_triangles(count, charts));
+        for (std::uint32_t& chart : chart_of)
+            chart += chart == kNoChart ? 0 : atlas.chart_count;
         atlas.chart_count += static_cast<std::uint32_t>(charts.size());
         seams += length_of_seams(mesh, facets, chart_of);
     }

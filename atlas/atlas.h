@@ -15,7 +15,8 @@ struct AtlasSettings {
     std::uint32_t size = 1024;                   ///< texels of a page's side, 1 to kMostTexels
     std::optional<double> texels_per_unit = {};  ///< instead: texels per unit of the file's length,
                                                  ///< > 0; the smallest size that holds all follows
-    std::uint32_t padding = 4;                   ///< texels around each chart, 0 to kMostPadding
+    std::uint32_t padding = 4;                   ///< texels around each chart, 0 to kMostPadding;
+                                                 ///< around narrow ones fewer (packing.h)
     bool blended = false;                        ///< three pages, faded into each other (layout.h)
 };
 

@@ -330,8 +330,7 @@ public:
         for_tasks(shapes_.size(), [&](std::size_t i) {
             const BitMask own = drawn(i, scale);
             covered[i] = own.count();
-            const bool is_speck = std::max(own.width(), own.height()) <= kSpeckTexels;
-            masks[i] = own.dilated(is_speck ? 1 : padding_);
+            masks[i] = own.dilated(padding_of(i, scale));
         });
         std::vector<std::uint64_t> needed(pages_, 0);
         for (std::size_t i = 0; i < shapes_.size(); ++i)
@@ -363,6 +362,12 @@ private:
         for (const auto& t : shapes_[i].triangles)
             draw({place.at(t[0]), place.at(t[1]), place.at(t[2])}, mask);
         return mask;
+    }
+
+    [[nodiscard]] std::uint32_t padding_of(std::size_t i, double scale) const
+    {
+        const double enough = std::round(kPaddingOfWidth * scale * shapes_[i].width);
+        return static_cast<std::uint32_t>(std::clamp(enough, 1.0, static_cast<double>(padding_)));
     }
 
     /// From the shape's plane to its mask.

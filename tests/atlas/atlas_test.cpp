@@ -48,45 +48,59 @@ double doubled_in_map(const Mesh& mesh, const Atlas& atlas, std::size_t page, st
     return -(b.x * c.y - b.y * c.x) * static_cast<double>(atlas.layout.size.count());
 }
 
-/// Charts whose texels are nearer to each other, or to the rim, than their paddings allow. Specks
-/// (packing.h) have a padding of 1.
-std::uint64_t crowded_texels(const Drawn& drawn, std::uint32_t chart_count, int padding)
+/// Of each chart of a page how much padding it is due (packing.h): as much as asked, but no more
+/// than a quarter of its width.
+std::vector<int> paddings_of(const Mesh& mesh, const Atlas& atlas, std::size_t page, int asked)
 {
-    struct Box {
-        int low_x = 1 << 20, low_y = 1 << 20, high_x = -1, high_y = -1;
-    };
-    const int side = static_cast<int>(drawn.side);
-    std::vector<Box> boxes(chart_count);
-    const auto at = [&](int x, int y) {
-        return drawn.chart[static_cast<std::size_t>(y) * drawn.side + static_cast<std::size_t>(x)];
-    };
-    for (int y = 0; y < side; ++y) {
-        for (int x = 0; x < side; ++x) {
-            if (at(x, y) == kNoChart)
-                continue;
-            Box& box = boxes[at(x, y)];
-            box = {std::min(box.low_x, x), std::min(box.low_y, y), std::max(box.high_x, x),
-                   std::max(box.high_y, y)};
+    const UvSet& uvs = atlas.layout.pages[page];
+    std::vector<double> areas(atlas.chart_count, 0.0), outlines(atlas.chart_count, 0.0);
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<int, std::uint32_t>> edges;
+    for (std::uint32_t t = 0; t < mesh.geometry.triangles.size(); ++t) {
+        const std::uint32_t chart = atlas.chart_of[page][t];
+        if (chart == kNoChart)
+            continue;
+        areas[chart] += doubled_in_map(mesh, atlas, page, t) / 2.0;
+        const glm::uvec3 corners = uvs.corners[mesh.geometry.scene_triangle(t)];
+        for (int k = 0; k < 3; ++k) {
+            auto& edge = edges[std::minmax(corners[k], corners[(k + 1) % 3])];
+            edge = {edge.first + 1, chart};
         }
     }
-    const auto padding_of = [&](std::uint32_t chart) {
-        const Box& box = boxes[chart];
-        return std::max(box.high_x - box.low_x, box.high_y - box.low_y) < 4 ? 1
-                                                                            : std::max(1, padding);
+    for (const auto& [ends, edge] : edges)
+        if (edge.first == 1)
+            outlines[edge.second] +=
+                glm::distance(uvs.values[ends.first], uvs.values[ends.second]) *
+                atlas.layout.size.width;
+    std::vector<int> paddings;
+    for (std::uint32_t c = 0; c < atlas.chart_count; ++c) {
+        const double width = outlines[c] > 0.0 ? 2.0 * areas[c] / outlines[c] : 0.0;
+        // a thousandth less: no difference of rounding makes a texel
+        paddings.push_back(
+            std::clamp(static_cast<int>(std::round(0.25 * width - 1e-3)), 1, std::max(1, asked)));
+    }
+    return paddings;
+}
+
+/// Charts whose texels are nearer to each other, or to the rim, than their paddings allow.
+std::uint64_t crowded_texels(const Drawn& drawn, const std::vector<int>& paddings)
+{
+    const int side = static_cast<int>(drawn.side), most = std::ranges::max(paddings);
+    const auto at = [&](int x, int y) {
+        return drawn.chart[static_cast<std::size_t>(y) * drawn.side + static_cast<std::size_t>(x)];
     };
     std::uint64_t crowded = 0;
     for (int y = 0; y < side; ++y) {
         for (int x = 0; x < side; ++x) {
             if (at(x, y) == kNoChart)
                 continue;
-            const int own = padding_of(at(x, y));
+            const int own = paddings[at(x, y)];
             crowded += std::min({x, y, side - 1 - x, side - 1 - y}) < own ? 1 : 0;
-            const int reach = own + std::max(1, padding);
+            const int reach = own + most;
             for (int j = std::max(0, y - reach); j <= std::min(side - 1, y + reach); ++j) {
                 for (int i = std::max(0, x - reach); i <= std::min(side - 1, x + reach); ++i) {
                     const int away = std::max(std::abs(i - x), std::abs(j - y));
                     crowded += at(i, j) != kNoChart && at(i, j) != at(x, y) &&
-                                       away <= own + padding_of(at(i, j))
+                                       away <= own + paddings[at(i, j)]
                                    ? 1
                                    : 0;
                 }
@@ -121,9 +135,9 @@ void expect_sound(const Mesh& mesh, const AtlasSettings& settings, const std::st
         EXPECT_EQ(wrong, 0u);
         EXPECT_LE(doubled / 2.0, static_cast<double>(atlas.layout.size.count()));
         EXPECT_EQ(Drawn(mesh, atlas, page, 4).twice, 0u);
-        EXPECT_EQ(crowded_texels(Drawn(mesh, atlas, page), atlas.chart_count,
-                                 static_cast<int>(settings.padding)),
-                  0u);
+        const std::vector<int> paddings =
+            paddings_of(mesh, atlas, page, static_cast<int>(settings.padding));
+        EXPECT_EQ(crowded_texels(Drawn(mesh, atlas, page), paddings), 0u);
     }
     EXPECT_GE(std::ranges::min(places), 1);
     EXPECT_LE(std::ranges::max(places), settings.blended ? 3 : 1);
