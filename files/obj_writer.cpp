@@ -130,7 +130,7 @@ public:
             }
         }
         copy_to(old.size());
-        if (plan_.replaces())
+        if (plan_.what != VertexColors::keep)
             own_.colors.append_comments(text_);
         return std::move(text_);
     }
@@ -338,8 +338,10 @@ std::string new_obj(const Scene& scene, std::span<const Occlusion> occlusion, co
 ObjSource::Own ObjSource::own() const
 {
     Own own{text, {}};
-    if (!has_colors)
+    if (!has_colors) {
+        own.colors.deny_comments(own.text, vertex_count);
         return own;
+    }
     own.text = own.colors.take_comments(text, vertex_count);
     std::string_view marked = text;
     marked.remove_prefix(marked.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);

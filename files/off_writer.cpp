@@ -149,8 +149,10 @@ OffSource::Own OffSource::own() const
 {
     const MarkLine mark = off_mark(text);
     Own own{std::string_view(text).substr(0, text.size() - mark.line.size()), {}};
-    if (!header.has_colors)
+    if (!header.has_colors) {
+        own.colors.deny_comments(own.text, header.vertices);
         return own;
+    }
     own.text = own.colors.take_comments(own.text, header.vertices);
     if (own.colors.size() > 0 || colors_are_baked(mark.mark))
         return own;
@@ -172,7 +174,7 @@ WrittenFile off_contents(const Scene& scene, std::span<const Occlusion> occlusio
         const OffSource::Own own = source->own();
         const ColorPlan plan = plan_of(own.colors.linear());
         text = with_new_colors(*source, own, occlusion, plan);
-        if (plan.replaces())
+        if (plan.what != VertexColors::keep)
             own.colors.append_comments(text);
     } else {
         const ColorPlan plan = plan_of(own_colors_of(scene));

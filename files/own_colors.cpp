@@ -226,6 +226,12 @@ std::string_view ColorWords::take_comments(std::string_view text, std::size_t ve
     return is_closed ? before : without_line_end(before);
 }
 
+void ColorWords::deny_comments(std::string_view text, std::size_t vertices)
+{
+    if (ColorWords().take_comments(text, vertices).size() < text.size())
+        ends_.resize(vertices, words_.size());
+}
+
 std::string_view line_end_of(std::string_view text)
 {
     const std::size_t at = text.find_first_of(kLineEnd);

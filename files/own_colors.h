@@ -88,6 +88,10 @@ public:
     /// text before them, which append_comments() makes the same again; else all of it.
     std::string_view take_comments(std::string_view text, std::size_t vertices);
 
+    /// For a text without colours: if it ends with such comments all the same, adds that no vertex
+    /// has any, so that those who read a result do not take them for its own.
+    void deny_comments(std::string_view text, std::size_t vertices);
+
 private:
     std::string words_;
     std::vector<std::size_t> ends_;

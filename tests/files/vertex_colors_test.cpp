@@ -214,6 +214,13 @@ TEST_F(VertexColorsTest, ABakeOfABakeIsABakeOfTheOriginal)
     std::vector<SourceFile> files = plain_files();
     for (const SourceFile& file : coloured_files())
         files.push_back(file);
+    // ends as a result would that keeps colours, twice over, but has none
+    files.push_back({"lookalike.obj",
+                     "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n# own 1 0 0\n# own 1 0 0\n"
+                     "# own 1 0 0\n# own 1 0 0\n# own 1 0 0\n# own 1 0 0\n"});
+    files.push_back(
+        {"lookalike.off",
+         "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n# own 1 2 3\n# own 1 2 3\n# own 1 2 3"});
     for (const SourceFile& file : files) {
         std::map<VertexColors, std::string> of_original;
         for (const VertexColors colors : kAll)
