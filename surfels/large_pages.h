@@ -1,9 +1,10 @@
 /// large_pages.h: memory for large arrays, in the system's large pages.
 ///
 /// Fresh memory is given by the page, on the first touch: with pages of 4 KiB that takes a quarter
-/// of the time of building a tree, and a sixth of a bake from file to file of ten million
-/// triangles. Pages of 2 MiB are asked for where the system leaves that to programs (Linux,
-/// transparent_hugepage/enabled = madvise, the usual setting); elsewhere small ones do as well.
+/// of the time of building a tree, and a tenth of the processor's of a bake from file to file of
+/// ten million triangles. Pages of 2 MiB are asked for where the system leaves that to programs
+/// (Linux, transparent_hugepage/enabled = madvise, the usual setting); elsewhere small ones do as
+/// well.
 ///
 /// Internal: for the folders' own sources.
 #pragma once
