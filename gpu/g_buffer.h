@@ -85,7 +85,7 @@ public:
 
     /// Both passes. Earlier pictures are forgotten. cull: those triangles are not there.
     void draw(const DrawnMesh& mesh, const View& view, Cull cull = Cull::none);
-    /// The first one alone: for samples inside pixels.
+    /// The first one alone: who is seen, not how it is shaded.
     void draw_triangles(const DrawnMesh& mesh, const View& view, Cull cull = Cull::none);
 
     int width() const { return triangles_.width(); }

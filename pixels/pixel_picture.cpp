@@ -1,5 +1,7 @@
 #include "pixels/pixel_picture.h"
 
+#include "pixels/edge_pixels.h"
+#include "pixels/sampled_triangles.h"
 #include "surfels/errors.h"
 #include "surfels/for_all.h"
 #include "surfels/stopwatch.h"
@@ -7,6 +9,8 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -105,6 +109,7 @@ public:
           progress_(progress),
           rims_(mesh.geometry),
           parts_(parts_of(mesh)),
+          edges_(mesh, parts_),
           screen_(context)
     {
     }
@@ -268,44 +273,69 @@ private:
         return answers;
     }
 
+    /// Those where samples may see something else than the middle does.
+    [[nodiscard]] std::vector<std::uint32_t> pixels_with_samples(const Projected& projected,
+                                                                 const SeenPixels& seen) const
+    {
+        if (settings_.samples == 1)
+            return {};
+        if (!paint_.base)
+            return edges_.find(projected, seen);
+        std::vector<std::uint32_t> all(static_cast<std::size_t>(seen.width) *
+                                       static_cast<std::size_t>(seen.height));
+        std::iota(all.begin(), all.end(), 0u);  // base colours change everywhere
+        return all;
+    }
+
     void make_band(const Band& band)
     {
         const PictureSize size{band.rect.width, band.rect.height};
         GBuffer drawing(context_, size.width + 2 * settings_.guard,
                         size.height + 2 * settings_.guard);
-        const auto see = [&](const View& view, bool with_surface) {
+        const auto draw = [&](const View& view, bool with_surface) {
             const View wide = widened(view, size, settings_.guard);
             if (with_surface)
                 drawing.draw(drawn_, wide);
             else
                 drawing.draw_triangles(drawn_, wide);
-            return inner(drawing.read_triangles(), size, settings_.guard);
         };
         Stopwatch watch;
-        const SeenPixels seen = seen_pixels(
-            mesh_, rims_, band.view, size.width, size.height,
-            see(band.view, on_screen() || with_grids() || settings_.cube_maps), settings_.offset);
+        draw(band.view, on_screen() || with_grids() || settings_.cube_maps);
+        const Projected projected(mesh_.geometry, band.view, size.width, size.height);
+        const SeenPixels seen =
+            seen_pixels(mesh_, rims_, projected,
+                        inner(drawing.read_triangles(), size, settings_.guard), settings_.offset);
         picture_.middles += seen.pixels.size();
         picture_.see_s += watch.lap();
 
         Answers middles = answers_at(drawing, size, seen);
         watch.lap();
 
-        PixelSamples samples(mesh_, rims_, parts_, seen, paint_.base);
         Answers extras;
+        const std::vector<std::uint32_t> pixels = pixels_with_samples(projected, seen);
+        PixelSamples samples(mesh_, parts_, seen, pixels, settings_.samples, paint_.base);
         ProgressMeter meter(stage("edges"), static_cast<std::uint64_t>(settings_.samples) - 1);
-        for (int i = 1; i < settings_.samples; ++i) {
+        const int at_once = on_screen() ? 1 : static_cast<int>(kSamplesAtOnce);
+        for (int first = 1; first < settings_.samples && !pixels.empty(); first += at_once) {
+            std::vector<glm::vec2> shifts;
+            for (int i = first; i < std::min(first + at_once, settings_.samples); ++i)
+                shifts.push_back(sample_shift(i));
+            const auto triangles = sampled_triangles(projected, pixels, shifts);
             View view = band.view;
-            view.lens = shifted(view.lens, size.width, size.height, sample_shift(i));
-            const std::size_t added = samples.add(view, see(view, on_screen()));
-            const std::size_t before = extras.values.size();
-            extras.values.resize(before + added);
-            if (on_screen())
+            for (std::size_t s = 0; s < shifts.size(); ++s) {
+                view.lens = shifted(band.view.lens, size.width, size.height, shifts[s]);
+                samples.add(view, triangles[s]);
+            }
+            if (on_screen()) {
+                draw(view, true);
+                const std::size_t before = extras.values.size();
+                extras.values.resize(samples.extras().size());
                 put_screen(
                     drawing, size,
                     [&](std::size_t k) { return samples.extras()[before + k].pixel; },
                     std::span(extras.values).subspan(before));
-            meter.add(1);
+            }
+            meter.add(shifts.size());
         }
         const std::vector<Receiver> extra_receivers =
             receivers_facing(mesh_, band.view, samples.extra_points(), settings_.offset);
@@ -348,6 +378,7 @@ private:
     const StageProgress& progress_;
     Rims rims_;
     std::vector<std::uint32_t> parts_;
+    EdgeFinder edges_;
     ScreenSpace screen_;
     std::optional<GridPass> grid_pass_;
     PixelPicture picture_;

@@ -1,5 +1,6 @@
 #include "pixels/pixel_samples.h"
 
+#include "surfels/errors.h"
 #include "surfels/for_all.h"
 
 #include <glm/geometric.hpp>
@@ -17,31 +18,38 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 /// Pixels of one task: a constant, so that what is added comes in the same order whoever works.
 constexpr std::size_t kChunk = 8192;
 
-/// How large a pixel is on a plane that faces the eye at this place.
-float footprint_at(const View& view, int height, glm::vec3 position)
-{
-    const float pixel = (view.lens.high.y - view.lens.low.y) / static_cast<float>(height);
-    return view.lens.orthographic ? pixel : pixel * glm::dot(position - view.eye, view.forward);
-}
-
 }  // namespace
 
-PixelSamples::PixelSamples(const Mesh& mesh, const Rims& rims, std::span<const std::uint32_t> parts,
-                           const SeenPixels& middles, const BaseColorAt& base)
+PixelSamples::PixelSamples(const Mesh& mesh, std::span<const std::uint32_t> parts,
+                           const SeenPixels& middles, std::span<const std::uint32_t> pixels,
+                           int samples, const BaseColorAt& base)
     : mesh_(mesh),
-      rims_(rims),
       parts_(parts),
       seen_(middles),
+      pixels_(pixels),
       base_(base),
+      chosen_(kPlaces * pixels.size(), kNone),
       middle_shares_(middles.pixels.size())
 {
-    for_all(middles.pixels.size(), kChunk, [&](std::size_t i) {
-        middle_shares_[i] = {middles.pixels[i], 1,
-                             base_ ? base_(middles.points[i]) : glm::vec3(1.0f)};
+    for_ranges(0, middles.pixels.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+        auto next = std::ranges::lower_bound(pixels, middles.pixels[begin]);
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t pixel = middles.pixels[i];
+            while (next != pixels.end() && *next < pixel)
+                ++next;
+            const bool is_listed = next != pixels.end() && *next == pixel;
+            if (is_listed)
+                chosen_[kPlaces * static_cast<std::size_t>(next - pixels.begin())] =
+                    static_cast<std::uint32_t>(i);
+            const std::uint32_t count = is_listed ? 1 : static_cast<std::uint32_t>(samples);
+            middle_shares_[i] = {
+                pixel, count,
+                static_cast<float>(count) * (base_ ? base_(middles.points[i]) : glm::vec3(1.0f))};
+        }
     });
 }
 
-PixelSamples::Place PixelSamples::place_of(const View& view, const SurfacePoint& point) const
+Place PixelSamples::place_of(const View& view, const SurfacePoint& point) const
 {
     const Geometry& geometry = mesh_.geometry;
     const glm::uvec3 t = geometry.triangles[point.triangle];
@@ -76,20 +84,18 @@ std::uint32_t PixelSamples::find(const View& view, std::span<const std::uint32_t
                                  const SurfacePoint& point) const
 {
     const Place own = place_of(view, point);
-    const float near = kLikePlane * footprint_at(view, seen_.height, own.position);
+    const float footprint = footprint_at(view, seen_.height, own.position);
     float least = std::numeric_limits<float>::infinity();
     std::uint32_t nearest = kNone;
     for (const std::uint32_t one : chosen) {
         if (one == kNone)
             return kNone;
         const Place other = place_of(view, point_of(one));
-        const float off = std::abs(glm::dot(own.position - other.position, other.normal));
-        if (own.part == other.part && off <= near &&
-            glm::dot(own.normal, other.normal) >= kLikeNormals)
+        if (are_like(own, other, footprint))
             return one;
         // of those that are unlike, the one that bends least away: a cosine off counts as a pixel
-        const float unlike =
-            off / near + (1.0f - glm::dot(own.normal, other.normal)) / (1.0f - kLikeNormals);
+        const float unlike = off_plane(own, other) / (kLikePlane * footprint) +
+                             (1.0f - glm::dot(own.normal, other.normal)) / (1.0f - kLikeNormals);
         if (unlike < least) {
             least = unlike;
             nearest = one;
@@ -103,17 +109,14 @@ std::size_t PixelSamples::add(const View& view, std::span<const std::uint32_t> t
     struct Extra {
         Share share;
         SurfacePoint point;
+        std::size_t place;  // of its pixel in pixels_
     };
-    if (chosen_.empty()) {
-        chosen_.assign(kPlaces * triangles.size(), kNone);
-        for (std::size_t i = 0; i < seen_.pixels.size(); ++i)
-            chosen_[kPlaces * seen_.pixels[i]] = static_cast<std::uint32_t>(i);
-    }
+    SURFELAO_CHECK(triangles.size() == pixels_.size());
     const auto columns = static_cast<std::size_t>(seen_.width);
     std::vector<std::vector<Extra>> added((triangles.size() + kChunk - 1) / kChunk);
-    const auto add_pixel = [&](std::size_t pixel, std::vector<Extra>& extras) {
-        const std::uint32_t triangle = triangles[pixel] - 1;
-        const std::span<std::uint32_t> chosen(&chosen_[kPlaces * pixel], kPlaces);
+    const auto add_pixel = [&](std::size_t place, std::vector<Extra>& extras) {
+        const std::uint32_t triangle = triangles[place] - 1, pixel = pixels_[place];
+        const std::span<std::uint32_t> chosen(&chosen_[kPlaces * place], kPlaces);
         // nearly always: what the middle sees
         auto like = std::ranges::find_if(chosen, [&](std::uint32_t one) {
             return one == kNone || point_of(one).triangle == triangle;
@@ -126,15 +129,14 @@ std::size_t PixelSamples::add(const View& view, std::span<const std::uint32_t> t
             return;
         }
         const glm::vec2 middle = glm::vec2(pixel % columns, pixel / columns) + 0.5f;
-        const SurfacePoint point = rims_.nearer(
-            view, seen_.width, seen_.height,
+        const SurfacePoint point =
             point_on_ray(mesh_.geometry, view,
-                         pixel_ray(view.lens, seen_.width, seen_.height, middle), triangle));
+                         pixel_ray(view.lens, seen_.width, seen_.height, middle), triangle);
         if (found == kNone)
             found = find(view, chosen, point);
         const glm::vec3 base = base_ ? base_(point) : glm::vec3(1.0f);
         if (found == kNone) {
-            extras.push_back({{static_cast<std::uint32_t>(pixel), 1, base}, point});
+            extras.push_back({{pixel, 1, base}, point, place});
             return;
         }
         Share& share = share_of(found);
@@ -143,16 +145,16 @@ std::size_t PixelSamples::add(const View& view, std::span<const std::uint32_t> t
     };
     for_tasks(added.size(), [&](std::size_t chunk) {
         const std::size_t end = std::min(triangles.size(), (chunk + 1) * kChunk);
-        for (std::size_t pixel = chunk * kChunk; pixel < end; ++pixel) {
-            if (triangles[pixel] != 0)
-                add_pixel(pixel, added[chunk]);
+        for (std::size_t place = chunk * kChunk; place < end; ++place) {
+            if (triangles[place] != 0)
+                add_pixel(place, added[chunk]);
         }
     });
 
     const std::size_t before = extra_shares_.size();
     for (const std::vector<Extra>& extras : added) {
         for (const Extra& extra : extras) {
-            const std::span<std::uint32_t> chosen(&chosen_[kPlaces * extra.share.pixel], kPlaces);
+            const std::span<std::uint32_t> chosen(&chosen_[kPlaces * extra.place], kPlaces);
             *std::ranges::find(chosen, kNone) =
                 static_cast<std::uint32_t>(middle_shares_.size() + extra_shares_.size());
             extra_shares_.push_back(extra.share);
@@ -165,11 +167,9 @@ std::size_t PixelSamples::add(const View& view, std::span<const std::uint32_t> t
 std::uint64_t PixelSamples::edge_pixels() const
 {
     std::uint64_t count = 0;
-    for (std::size_t i = 0; i < extra_shares_.size(); ++i) {
-        const std::uint32_t first = chosen_[kPlaces * extra_shares_[i].pixel];
-        const std::uint32_t own = static_cast<std::uint32_t>(middle_shares_.size() + i);
-        const std::uint32_t second = chosen_[kPlaces * extra_shares_[i].pixel + 1];
-        count += first == own || (second == own && first < middle_shares_.size()) ? 1 : 0;
+    for (std::size_t place = 0; place < pixels_.size(); ++place) {
+        const std::uint32_t first = chosen_[kPlaces * place], second = chosen_[kPlaces * place + 1];
+        count += second != kNone || (first != kNone && first >= middle_shares_.size()) ? 1 : 0;
     }
     return count;
 }

@@ -2,7 +2,7 @@
 ///
 /// Asking at every sample inside of every pixel would cost as many times as much as there are
 /// samples. But most samples see what the pixel's middle sees. So each pixel keeps a few receivers,
-/// the first of them its middle's; every further sample
+/// the first of them its middle's; every further sample of an edge pixel (edge_pixels.h)
 ///
 ///     sees what one of them sees       counts for that one
 ///     sees something else              is kept itself, up to kMostExtra a pixel
@@ -10,6 +10,7 @@
 ///
 /// and the pixel's value is the mean of its receivers' values, weighted by their samples. A
 /// receiver is always the place of one sample, never a mean of places: those lie on no surface.
+/// In all other pixels the samples see what the middle sees.
 ///
 ///     ┌─────────┐
 ///     │ .   . ╱#│   the middle sees the wall: it stands for 7 samples of 10,
@@ -18,6 +19,7 @@
 ///     └─────────┘
 #pragma once
 
+#include "pixels/place.h"
 #include "pixels/seen.h"
 
 #include <glm/vec3.hpp>
@@ -33,13 +35,6 @@ namespace surfelao {
 /// is a small share of it.
 inline constexpr int kMostExtra = 4;
 
-/// Two places of a pixel see the same where they lie on one triangle; or on one part, with
-/// normals that agree to this cosine, and the one at most so many pixels off the plane of the
-/// other. Steps smaller than that are no edges to an eye; what is seen at a grazing angle lies in
-/// one plane however long the pixel is there.
-inline constexpr float kLikeNormals = 0.95f;
-inline constexpr float kLikePlane = 0.25f;
-
 /// The colour of a place, taken at every sample: a texture, which may change within a pixel.
 using BaseColorAt = std::function<glm::vec3(const SurfacePoint&)>;
 
@@ -52,13 +47,14 @@ public:
         glm::vec3 base{0.0f};  ///< sum of their base colours; samples * 1 where there are none
     };
 
-    /// middles: what the pixels' middles see, the first sample; it must outlive this, as mesh and
-    /// rims. parts: parts_of(mesh). base: may be empty; called from many threads.
-    PixelSamples(const Mesh& mesh, const Rims& rims, std::span<const std::uint32_t> parts,
-                 const SeenPixels& middles, const BaseColorAt& base = {});
+    /// middles: what the pixels' middles see, the first sample. pixels: rising, those that add()
+    /// tells of; the others' middles stand for all the `samples`. All must outlive this, as the
+    /// mesh. parts: parts_of(mesh). base: may be empty; called from many threads.
+    PixelSamples(const Mesh& mesh, std::span<const std::uint32_t> parts, const SeenPixels& middles,
+                 std::span<const std::uint32_t> pixels, int samples, const BaseColorAt& base = {});
 
-    /// One sample of every pixel. view: with the lens of the sample. triangles: as of
-    /// seen_pixels(). Returns the number of receivers that it added. O(pixels).
+    /// A sample of each of the pixels. view: with the lens of the sample. triangles: one a pixel,
+    /// as of seen_pixels(). Returns the number of receivers that it added. O(pixels).
     std::size_t add(const View& view, std::span<const std::uint32_t> triangles);
 
     /// Pixels with a receiver beside their middle's, or with one where the middle sees nothing.
@@ -71,11 +67,6 @@ public:
     const std::vector<SurfacePoint>& extra_points() const { return extra_points_; }
 
 private:
-    /// Of a surface, as a sample sees it.
-    struct Place {
-        glm::vec3 position, normal;
-        std::uint32_t part;
-    };
     [[nodiscard]] Place place_of(const View& view, const SurfacePoint& point) const;
     [[nodiscard]] const SurfacePoint& point_of(std::uint32_t chosen) const;
     [[nodiscard]] Share& share_of(std::uint32_t chosen);
@@ -84,12 +75,12 @@ private:
                                      const SurfacePoint& point) const;
 
     const Mesh& mesh_;
-    const Rims& rims_;
     std::span<const std::uint32_t> parts_;
     const SeenPixels& seen_;
+    std::span<const std::uint32_t> pixels_;
     BaseColorAt base_;
-    /// Those of a pixel: kMostExtra + 1 numbers each, of the middles first, then the extras, kNone
-    /// behind the last. Empty before the first add().
+    /// Those of one of the pixels: kMostExtra + 1 numbers each, of the middles first, then the
+    /// extras, kNone behind the last.
     std::vector<std::uint32_t> chosen_;
     std::vector<Share> middle_shares_, extra_shares_;
     std::vector<SurfacePoint> extra_points_;

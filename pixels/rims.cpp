@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <optional>
 
 namespace surfelao {
 namespace {
@@ -41,14 +40,12 @@ bool is_before(const Geometry& geometry, const View& view, std::uint32_t triangl
     return (glm::dot(place - a, face) > 0.0) == (glm::dot(to_eye, face) > 0.0);
 }
 
-/// In pixels; none behind the eye.
-std::optional<glm::vec2> place_in(const View& view, glm::vec2 size, glm::vec3 position)
+/// Whether a line passes as near to a place as a rim is wide, in pixels.
+bool is_near(const glm::vec2& place, const glm::vec2& a, const glm::vec2& b)
 {
-    const glm::vec3 p = to_view(view, position);
-    if (!view.lens.orthographic && p.z <= 0.0f)
-        return {};
-    const glm::vec2 q = view.lens.orthographic ? glm::vec2(p) : glm::vec2(p) / p.z;
-    return (q - view.lens.low) / (view.lens.high - view.lens.low) * size;
+    const glm::vec2 line = b - a, off = place - a;
+    const float area = line.x * off.y - line.y * off.x;
+    return area * area <= kRimWidth * kRimWidth * glm::dot(line, line);
 }
 
 }  // namespace
@@ -62,11 +59,11 @@ const Buckets<std::uint32_t>& Rims::corners() const
     return *corners_;
 }
 
-SurfacePoint Rims::nearer(const View& view, int width, int height, const SurfacePoint& point) const
+SurfacePoint Rims::nearer(const Projected& projected, const SurfacePoint& point) const
 {
     SurfacePoint nearest = point;
     for (int i = 0; i < kMostSteps; ++i) {
-        const SurfacePoint next = step(view, width, height, nearest);
+        const SurfacePoint next = step(projected, nearest);
         if (next.triangle == nearest.triangle)
             break;
         nearest = next;
@@ -80,35 +77,36 @@ bool Rims::is_in_front(const View& view, std::uint32_t other, std::uint32_t tria
            !is_before(geometry_, view, other, middle_of(geometry_, triangle));
 }
 
-SurfacePoint Rims::step(const View& view, int width, int height, const SurfacePoint& point) const
+SurfacePoint Rims::step(const Projected& projected, const SurfacePoint& point) const
 {
-    const glm::vec2 size(width, height);
-    const auto corner = [&](std::uint32_t triangle, int i) {
-        return corner_of(geometry_, triangle, i);
-    };
-    const glm::vec3 position = (1.0f - point.at.x - point.at.y) * corner(point.triangle, 0) +
-                               point.at.x * corner(point.triangle, 1) +
-                               point.at.y * corner(point.triangle, 2);
-    const auto place = place_in(view, size, position);
+    const glm::uvec3 own = geometry_.triangles[point.triangle];
+    const glm::vec3 position = (1.0f - point.at.x - point.at.y) * projected.place(own.x) +
+                               point.at.x * projected.place(own.y) +
+                               point.at.y * projected.place(own.z);
+    if (Projected::is_before_eye(position))
+        return point;
+    const glm::vec2 place = projected.in_picture(position);
     // triangles seen edge-on may lie between the point's and the nearer one
     std::array<std::uint32_t, kMostBetween> reached{point.triangle};
     std::size_t count = 1;
-    for (std::size_t n = 0; place && n < count; ++n) {
+    for (std::size_t n = 0; n < count; ++n) {
+        const glm::uvec3 triangle = geometry_.triangles[reached[n]];
         std::array<glm::vec2, 3> corners_at;
         for (int i = 0; i < 3; ++i) {
-            const auto corner_at = place_in(view, size, corner(reached[n], i));
-            if (!corner_at)
+            if (Projected::is_before_eye(projected.place(triangle[i])))
                 return point;
-            corners_at[i] = *corner_at;
+            corners_at[i] = projected.pixel(triangle[i]);
         }
         for (int i = 0; i < 3; ++i) {
             const int next = (i + 1) % 3;
             const glm::vec2 a = corners_at[i], b = corners_at[next];
+            if (!is_near(place, a, b))
+                continue;
             const float length2 = glm::dot(b - a, b - a);
             const float along = length2 > 0.0f
-                                    ? glm::clamp(glm::dot(*place - a, b - a) / length2, 0.0f, 1.0f)
+                                    ? glm::clamp(glm::dot(place - a, b - a) / length2, 0.0f, 1.0f)
                                     : 0.0f;
-            if (glm::distance(*place, glm::mix(a, b, along)) > kRimWidth)
+            if (glm::distance(place, glm::mix(a, b, along)) > kRimWidth)
                 continue;
             const std::uint32_t from = welded(reached[n], i), to = welded(reached[n], next);
             for (const std::uint32_t other_corner : corners()[from]) {
@@ -119,7 +117,7 @@ SurfacePoint Rims::step(const View& view, int width, int height, const SurfacePo
                 const auto known = reached.begin() + static_cast<std::ptrdiff_t>(count);
                 if (end == 3 || std::find(reached.begin(), known, other) != known)
                     continue;
-                if (is_in_front(view, other, point.triangle)) {
+                if (is_in_front(projected.view(), other, point.triangle)) {
                     float weights[3] = {};
                     weights[other_corner % 3] += 1.0f - along;
                     weights[end] += along;

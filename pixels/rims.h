@@ -11,7 +11,7 @@
 ///
 #pragma once
 
-#include "gpu/g_buffer.h"
+#include "pixels/projected.h"
 #include "surfels/edges.h"
 #include "surfels/geometry.h"
 #include "surfels/surface.h"
@@ -30,9 +30,8 @@ public:
     /// geometry must outlive it.
     explicit Rims(const Geometry& geometry) : geometry_(geometry) {}
 
-    /// The point, or that of the nearer triangle. width, height: of the view's picture.
-    [[nodiscard]] SurfacePoint nearer(const View& view, int width, int height,
-                                      const SurfacePoint& point) const;
+    /// The point, or that of the nearer triangle. projected: of the geometry.
+    [[nodiscard]] SurfacePoint nearer(const Projected& projected, const SurfacePoint& point) const;
 
 private:
     [[nodiscard]] const Buckets<std::uint32_t>& corners() const;
@@ -41,8 +40,7 @@ private:
         return geometry_.welded[geometry_.triangles[triangle][corner]];
     }
     /// A point on a triangle in front of this one, or the point itself.
-    [[nodiscard]] SurfacePoint step(const View& view, int width, int height,
-                                    const SurfacePoint& point) const;
+    [[nodiscard]] SurfacePoint step(const Projected& projected, const SurfacePoint& point) const;
     /// Of two that meet: whether the other one hides this one where both are seen.
     [[nodiscard]] bool is_in_front(const View& view, std::uint32_t other,
                                    std::uint32_t triangle) const;

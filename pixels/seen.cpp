@@ -101,12 +101,15 @@ std::vector<Receiver> receivers_facing(const Mesh& mesh, const View& view,
 SeenPixels seen_pixels(const Mesh& mesh, const View& view, int width, int height,
                        std::span<const std::uint32_t> triangles, const Offset& offset)
 {
-    return seen_pixels(mesh, Rims(mesh.geometry), view, width, height, triangles, offset);
+    return seen_pixels(mesh, Rims(mesh.geometry), Projected(mesh.geometry, view, width, height),
+                       triangles, offset);
 }
 
-SeenPixels seen_pixels(const Mesh& mesh, const Rims& rims, const View& view, int width, int height,
+SeenPixels seen_pixels(const Mesh& mesh, const Rims& rims, const Projected& projected,
                        std::span<const std::uint32_t> triangles, const Offset& offset)
 {
+    const View& view = projected.view();
+    const int width = projected.size().x, height = projected.size().y;
     SeenPixels seen;
     seen.width = width;
     seen.height = height;
@@ -125,9 +128,8 @@ SeenPixels seen_pixels(const Mesh& mesh, const Rims& rims, const View& view, int
         const glm::vec2 middle = glm::vec2(pixel % columns, pixel / columns) + 0.5f;
         const SurfacePoint point = point_on_ray(
             mesh.geometry, view, pixel_ray(view.lens, width, height, middle), triangles[pixel] - 1);
-        seen.points[i] = is_amid(triangles, width, height, pixel)
-                             ? point
-                             : rims.nearer(view, width, height, point);
+        seen.points[i] =
+            is_amid(triangles, width, height, pixel) ? point : rims.nearer(projected, point);
     });
     seen.receivers = receivers_facing(mesh, view, seen.points, offset);
     return seen;

@@ -7,6 +7,7 @@
 
 #include "gpu/g_buffer.h"
 #include "pixels/camera.h"
+#include "pixels/projected.h"
 #include "pixels/rims.h"
 #include "surfels/receiver.h"
 #include "surfels/surface.h"
@@ -42,9 +43,8 @@ struct SeenPixels {
                                      std::span<const std::uint32_t> triangles,
                                      const Offset& offset = {});
 
-/// The same, for several views. rims: of mesh.geometry.
-[[nodiscard]] SeenPixels seen_pixels(const Mesh& mesh, const Rims& rims, const View& view,
-                                     int width, int height,
+/// The same, for several views. rims and projected: of mesh.geometry.
+[[nodiscard]] SeenPixels seen_pixels(const Mesh& mesh, const Rims& rims, const Projected& projected,
                                      std::span<const std::uint32_t> triangles,
                                      const Offset& offset = {});
 
