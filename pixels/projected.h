@@ -24,7 +24,7 @@ struct PixelBox {
 /// A picture of width x height pixels has row 0 at the bottom, a pixel's middle at + 1/2.
 class Projected {
 public:
-    /// geometry and view must outlive it. O(vertices): 20 bytes each.
+    /// geometry must outlive it. O(vertices): 20 bytes each.
     Projected(const Geometry& geometry, const View& view, int width, int height);
 
     [[nodiscard]] const Geometry& geometry() const { return geometry_; }
@@ -56,7 +56,7 @@ public:
 
 private:
     const Geometry& geometry_;
-    const View& view_;
+    View view_;
     glm::ivec2 size_;
     std::vector<glm::vec3> places_;
     std::vector<glm::vec2> pixels_;  // of what is not before the eye
