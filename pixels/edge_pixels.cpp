@@ -26,6 +26,8 @@ constexpr float kSlack = 1e-3f;
 /// Facings of the triangles around a position.
 constexpr std::uint8_t kTowards = 1, kAway = 2;
 
+constexpr std::size_t kVertexGrain = 4096;  // vertices of one task
+
 /// What several threads may write at once; read after them.
 class Flags {
 public:
@@ -227,41 +229,42 @@ private:
 
 }  // namespace
 
-const std::vector<std::uint8_t>& EdgeFinder::ends() const
+EdgeFinder::EdgeFinder(const Mesh& mesh, std::span<const std::uint32_t> parts) : parts_(parts)
 {
-    std::call_once(once_, [&] {
-        const Geometry& geometry = mesh_.geometry;
-        Flags ends(geometry.positions.size());
-        Edges(geometry).for_each([&](std::uint32_t lower, std::span<const EdgeSide> sides) {
-            if (sides.size() == 2 && sides[0].rises() != sides[1].rises())
-                return;
-            ends.add(lower, 1);
-            ends.add(sides[0].upper, 1);
-        });
-        constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-        const std::vector<glm::uvec3>& corners = mesh_.surface.corners(geometry);
-        std::vector<std::uint32_t> first_wedges(geometry.positions.size(), kNone);
-        for (std::size_t t = 0; t < corners.size(); ++t) {
-            for (int corner = 0; corner < 3; ++corner) {
-                const std::uint32_t position = geometry.welded[geometry.triangles[t][corner]];
-                const std::uint32_t wedge = corners[t][corner];
-                std::uint32_t& first = first_wedges[position];
-                if (first == kNone)
-                    first = wedge;
-                else if (first != wedge && glm::dot(mesh_.surface.normals[first],
-                                                    mesh_.surface.normals[wedge]) < kLikeNormals)
-                    ends.add(position, 1);
-            }
-        }
-        ends_ = ends.take();
+    const Geometry& geometry = mesh.geometry;
+    Flags ends(geometry.positions.size());
+    const Edges edges(geometry);
+    for_ranges(0, ends.size(), kVertexGrain, [&](std::size_t begin, std::size_t end) {
+        edges.for_each_from(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end),
+                            [&](std::uint32_t lower, std::span<const EdgeSide> sides) {
+                                if (sides.size() == 2 && sides[0].rises() != sides[1].rises())
+                                    return;
+                                ends.add(lower, 1);
+                                ends.add(sides[0].upper, 1);
+                            });
     });
-    return ends_;
+    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+    const std::vector<glm::uvec3>& corners = mesh.surface.corners(geometry);
+    std::vector<std::uint32_t> first_wedges(geometry.positions.size(), kNone);
+    for (std::size_t t = 0; t < corners.size(); ++t) {
+        for (int corner = 0; corner < 3; ++corner) {
+            const std::uint32_t position = geometry.welded[geometry.triangles[t][corner]];
+            const std::uint32_t wedge = corners[t][corner];
+            std::uint32_t& first = first_wedges[position];
+            if (first == kNone)
+                first = wedge;
+            else if (first != wedge && glm::dot(mesh.surface.normals[first],
+                                                mesh.surface.normals[wedge]) < kLikeNormals)
+                ends.add(position, 1);
+        }
+    }
+    ends_ = ends.take();
 }
 
 std::vector<std::uint32_t> EdgeFinder::find(const Projected& projected,
                                             const SeenPixels& middles) const
 {
-    return Finder(projected, parts_, ends(), middles).find();
+    return Finder(projected, parts_, ends_, middles).find();
 }
 
 }  // namespace surfelao

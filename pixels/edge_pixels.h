@@ -17,19 +17,16 @@
 #include "pixels/seen.h"
 
 #include <cstdint>
-#include <mutex>
 #include <span>
 #include <vector>
 
 namespace surfelao {
 
-/// Any number of threads at once.
+/// Of a mesh, for any view. Any number of threads at once.
 class EdgeFinder {
 public:
-    /// mesh and parts, parts_of(mesh), must outlive it.
-    EdgeFinder(const Mesh& mesh, std::span<const std::uint32_t> parts) : mesh_(mesh), parts_(parts)
-    {
-    }
+    /// mesh and parts, parts_of(mesh), must outlive it. O(vertices + triangles).
+    EdgeFinder(const Mesh& mesh, std::span<const std::uint32_t> parts);
 
     /// Rising: column + width * row, row 0 at the bottom. middles: what the pixels see at their
     /// middles. O(triangles + pixels), and the length of all outlines in pixels.
@@ -37,13 +34,9 @@ public:
                                                   const SeenPixels& middles) const;
 
 private:
-    /// Per position: whether a surface ends there or its normal jumps, from wherever it is seen.
-    [[nodiscard]] const std::vector<std::uint8_t>& ends() const;
-
-    const Mesh& mesh_;
     std::span<const std::uint32_t> parts_;
-    mutable std::once_flag once_;
-    mutable std::vector<std::uint8_t> ends_;
+    /// Per position: whether a surface ends there or its normal jumps, from wherever it is seen.
+    std::vector<std::uint8_t> ends_;
 };
 
 }  // namespace surfelao

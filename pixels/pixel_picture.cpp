@@ -107,9 +107,7 @@ public:
           settings_(settings),
           paint_(paint),
           progress_(progress),
-          rims_(mesh.geometry),
           parts_(parts_of(mesh)),
-          edges_(mesh, parts_),
           screen_(context)
     {
     }
@@ -153,12 +151,15 @@ private:
     void prepare()
     {
         Stopwatch watch;
-        if (!settings_.engine)
-            return;
-        if (const auto* engine = std::get_if<EngineSettings>(&*settings_.engine))
-            static_cast<void>(occluders_.prepared_for(here(*engine)));
-        else if (const GridPixels* grids = with_grids())
-            grids->world->prepare_rest(grids->rest);
+        rims_.emplace(mesh_.geometry);
+        if (settings_.samples > 1 && !paint_.base)
+            edges_.emplace(mesh_, parts_);
+        if (settings_.engine) {
+            if (const auto* engine = std::get_if<EngineSettings>(&*settings_.engine))
+                static_cast<void>(occluders_.prepared_for(here(*engine)));
+            else if (const GridPixels* grids = with_grids())
+                grids->world->prepare_rest(grids->rest);
+        }
         picture_.prepare_s = watch.lap();
     }
 
@@ -279,8 +280,8 @@ private:
     {
         if (settings_.samples == 1)
             return {};
-        if (!paint_.base)
-            return edges_.find(projected, seen);
+        if (edges_)
+            return edges_->find(projected, seen);
         std::vector<std::uint32_t> all(static_cast<std::size_t>(seen.width) *
                                        static_cast<std::size_t>(seen.height));
         std::iota(all.begin(), all.end(), 0u);  // base colours change everywhere
@@ -303,7 +304,7 @@ private:
         draw(band.view, on_screen() || with_grids() || settings_.cube_maps);
         const Projected projected(mesh_.geometry, band.view, size.width, size.height);
         const SeenPixels seen =
-            seen_pixels(mesh_, rims_, projected,
+            seen_pixels(mesh_, *rims_, projected,
                         inner(drawing.read_triangles(), size, settings_.guard), settings_.offset);
         picture_.middles += seen.pixels.size();
         picture_.see_s += watch.lap();
@@ -376,9 +377,9 @@ private:
     const PixelPictureSettings& settings_;
     const PixelPaint& paint_;
     const StageProgress& progress_;
-    Rims rims_;
     std::vector<std::uint32_t> parts_;
-    EdgeFinder edges_;
+    std::optional<Rims> rims_;
+    std::optional<EdgeFinder> edges_;  ///< where samples are looked at, and not everywhere
     ScreenSpace screen_;
     std::optional<GridPass> grid_pass_;
     PixelPicture picture_;

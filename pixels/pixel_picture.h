@@ -66,7 +66,7 @@ struct PixelPicture {
     std::uint64_t holes = 0;        ///< middles that no cube map answered
     std::uint64_t faded = 0;        ///< middles that only fading cube maps answered
     int bands = 1;
-    double prepare_s = 0.0;    ///< the engine's tree
+    double prepare_s = 0.0;    ///< the engine's tree, and which triangles meet at edges
     double see_s = 0.0;        ///< drawing the middles, and their receivers
     double project_s = 0.0;    ///< cube maps at the middles
     double solve_s = 0.0;      ///< at the middles, or at the holes among them

@@ -50,15 +50,6 @@ bool is_near(const glm::vec2& place, const glm::vec2& a, const glm::vec2& b)
 
 }  // namespace
 
-const Buckets<std::uint32_t>& Rims::corners() const
-{
-    std::call_once(once_, [&] {
-        corners_ = std::make_unique<const Buckets<std::uint32_t>>(
-            corners_around(geometry_.triangles, geometry_.welded));
-    });
-    return *corners_;
-}
-
 SurfacePoint Rims::nearer(const Projected& projected, const SurfacePoint& point) const
 {
     SurfacePoint nearest = point;
@@ -109,7 +100,7 @@ SurfacePoint Rims::step(const Projected& projected, const SurfacePoint& point) c
             if (glm::distance(place, glm::mix(a, b, along)) > kRimWidth)
                 continue;
             const std::uint32_t from = welded(reached[n], i), to = welded(reached[n], next);
-            for (const std::uint32_t other_corner : corners()[from]) {
+            for (const std::uint32_t other_corner : corners_[from]) {
                 const std::uint32_t other = other_corner / 3;
                 int end = 0;
                 while (end < 3 && welded(other, end) != to)

@@ -16,25 +16,26 @@
 #include "surfels/geometry.h"
 #include "surfels/surface.h"
 
-#include <memory>
-#include <mutex>
+#include <cstdint>
 
 namespace surfelao {
 
 /// In pixels: twice the rounding of a corner, once for each of the two that an edge has.
 inline constexpr float kRimWidth = 1.0f / 64.0f;
 
-/// Any number of threads at once. The first place that lies near an edge costs O(triangles).
+/// Any number of threads at once.
 class Rims {
 public:
-    /// geometry must outlive it.
-    explicit Rims(const Geometry& geometry) : geometry_(geometry) {}
+    /// geometry must outlive it. O(triangles).
+    explicit Rims(const Geometry& geometry)
+        : geometry_(geometry), corners_(corners_around(geometry.triangles, geometry.welded))
+    {
+    }
 
     /// The point, or that of the nearer triangle. projected: of the geometry.
     [[nodiscard]] SurfacePoint nearer(const Projected& projected, const SurfacePoint& point) const;
 
 private:
-    [[nodiscard]] const Buckets<std::uint32_t>& corners() const;
     [[nodiscard]] std::uint32_t welded(std::uint32_t triangle, int corner) const
     {
         return geometry_.welded[geometry_.triangles[triangle][corner]];
@@ -46,8 +47,7 @@ private:
                                    std::uint32_t triangle) const;
 
     const Geometry& geometry_;
-    mutable std::once_flag once_;
-    mutable std::unique_ptr<const Buckets<std::uint32_t>> corners_;
+    Buckets<std::uint32_t> corners_;
 };
 
 }  // namespace surfelao

@@ -43,11 +43,18 @@ public:
     template <class Visit>
     void for_each(const Visit& visit) const
     {
+        for_each_from(0, static_cast<std::uint32_t>(sides_.owner_count()), visit);
+    }
+
+    /// The same, for edges whose lower vertex is from `begin` to before `end`: a thread's share.
+    template <class Visit>
+    void for_each_from(std::uint32_t begin, std::uint32_t end, const Visit& visit) const
+    {
         std::vector<EdgeSide> sorted;
         const auto key = [](const EdgeSide& side) {
             return std::uint64_t{side.upper} << 32 | side.side_and_way;
         };
-        for (std::uint32_t lower = 0; lower < sides_.owner_count(); ++lower) {
+        for (std::uint32_t lower = begin; lower < end; ++lower) {
             const std::span<const EdgeSide> own = sides_[lower];
             sorted.assign(own.begin(), own.end());
             std::sort(sorted.begin(), sorted.end(),

@@ -161,9 +161,9 @@ double median_of(std::vector<double> values)
     return quantile(std::move(values), 0.5);
 }
 
-/// Seconds of a picture, the median of several.
+/// Seconds of a picture whose engine is prepared, the median of several.
 struct PictureSeconds {
-    double see = 0.0, solve = 0.0, edges = 0.0;
+    double prepare = 0.0, see = 0.0, solve = 0.0, edges = 0.0;
     std::uint64_t extras = 0;
 };
 
@@ -172,17 +172,19 @@ PictureSeconds time_picture(const ExactWorld& world, const Sight& sight,
 {
     const PixelPaint paint{
         [](const AnsweredPixel& pixel) { return glm::vec3(1.0f - pixel.value.occlusion); }};
-    std::vector<double> see, solve, edges;
+    std::vector<double> prepare, see, solve, edges;
     PictureSeconds seconds;
     for (int round = 0; round < kRounds; ++round) {
         const PixelPicture picture = pixel_picture(
             world.context, world.mesh, world.drawn, world.occluders, sight.view,
             {.size = world.size, .engine = engine, .definition = engine.definition}, paint);
+        prepare.push_back(picture.prepare_s);
         see.push_back(picture.see_s);
         solve.push_back(picture.solve_s);
         edges.push_back(picture.edges_s);
         seconds.extras = picture.extras;
     }
+    seconds.prepare = median_of(prepare);
     seconds.see = median_of(see);
     seconds.solve = median_of(solve);
     seconds.edges = median_of(edges);
@@ -232,12 +234,12 @@ void print_row(const ExactWorld& world, const Sight& sight, const Sight& other,
     const double apart = between(world, sight, answers, other, engine);
     const PictureSeconds seconds = time_picture(world, sight, engine);
     std::printf(
-        ", \"pixels\": %zu, %s, \"tree_s\": %.4f, \"see_s\": %.4f, \"solve_s\": %.4f, "
-        "\"edges_s\": %.4f, \"extras\": %llu}",
+        ", \"pixels\": %zu, %s, \"tree_s\": %.4f, \"outlines_s\": %.4f, \"see_s\": %.4f, "
+        "\"solve_s\": %.4f, \"edges_s\": %.4f, \"extras\": %llu}",
         sight.seen.pixels.size(),
         errors_text(error_against(truth, judged), truth.ill_defined, apart).c_str(),
-        prepared.seconds().surfels + prepared.seconds().tree, seconds.see, seconds.solve,
-        seconds.edges, static_cast<unsigned long long>(seconds.extras));
+        prepared.seconds().surfels + prepared.seconds().tree, seconds.prepare, seconds.see,
+        seconds.solve, seconds.edges, static_cast<unsigned long long>(seconds.extras));
     std::fflush(stdout);
     pool.answers.insert(pool.answers.end(), judged.begin(), judged.end());
     pool.reference.insert(pool.reference.end(), truth.reference.begin(), truth.reference.end());
