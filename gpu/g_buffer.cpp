@@ -114,15 +114,21 @@ GBuffer::GBuffer(const GlContext& context, int width, int height)
 {
 }
 
-void GBuffer::draw_triangles(const DrawnMesh& mesh, const View& view, Cull cull)
+void GBuffer::draw(const DrawnMesh& mesh, const View& view, Cull cull)
 {
     view_ = view;
+    draw_triangles(mesh, cull);
+    find_surface(mesh);
+}
+
+void GBuffer::draw_triangles(const DrawnMesh& mesh, Cull cull)
+{
     Program& program = context_.program("g_triangles.vert", "g_triangles.frag");
-    set_view(program, view);
-    const float distance = glm::length(view.eye);
+    set_view(program, view_);
+    const float distance = glm::length(view_.eye);
     const float far = 1.01f * (distance + mesh.radius_);
     // along the view, not to the ball's nearest point: it may lie aside
-    const float forward = -glm::dot(view.eye, view.forward);
+    const float forward = -glm::dot(view_.eye, view_.forward);
     program.set("u_near", std::max(0.99f * (forward - mesh.radius_), kNearest * far));
     program.set("u_far", far);
     program.set("u_positions", mesh.positions_);
@@ -133,11 +139,10 @@ void GBuffer::draw_triangles(const DrawnMesh& mesh, const View& view, Cull cull)
                    {.depth = DepthTest::less, .cull = cull});
 }
 
-void GBuffer::draw(const DrawnMesh& mesh, const View& view, Cull cull)
+void GBuffer::find_surface(const DrawnMesh& mesh)
 {
-    draw_triangles(mesh, view, cull);
     Program& program = context_.program("fullscreen.vert", "g_surface.frag");
-    set_view(program, view);
+    set_view(program, view_);
     program.set("u_size", glm::ivec2(width(), height()));
     program.set("u_seen", triangles_.color());
     program.set("u_positions", mesh.positions_);

@@ -85,8 +85,6 @@ public:
 
     /// Both passes. Earlier pictures are forgotten. cull: those triangles are not there.
     void draw(const DrawnMesh& mesh, const View& view, Cull cull = Cull::none);
-    /// The first one alone: who is seen, not how it is shaded.
-    void draw_triangles(const DrawnMesh& mesh, const View& view, Cull cull = Cull::none);
 
     int width() const { return triangles_.width(); }
     int height() const { return triangles_.height(); }
@@ -104,6 +102,9 @@ public:
     [[nodiscard]] std::vector<glm::vec4> read_surface() const;
 
 private:
+    void draw_triangles(const DrawnMesh& mesh, Cull cull);
+    void find_surface(const DrawnMesh& mesh);
+
     const GlContext& context_;
     Framebuffer triangles_, surface_;
     VertexArray nothing_;

@@ -151,7 +151,8 @@ private:
     void prepare()
     {
         Stopwatch watch;
-        rims_.emplace(mesh_.geometry);
+        if (is_drawn())
+            rims_.emplace(mesh_.geometry);
         if (settings_.samples > 1 && !paint_.base)
             edges_.emplace(mesh_, parts_);
         if (settings_.engine) {
@@ -191,6 +192,12 @@ private:
         return settings_.engine ? std::get_if<ScreenSettings>(&*settings_.engine) : nullptr;
     }
 
+    /// Whether somebody answers on the device, for what it has drawn.
+    [[nodiscard]] bool is_drawn() const
+    {
+        return on_screen() != nullptr || with_grids() != nullptr || settings_.cube_maps != nullptr;
+    }
+
     [[nodiscard]] const GridPixels* with_grids() const
     {
         return settings_.engine ? std::get_if<GridPixels>(&*settings_.engine) : nullptr;
@@ -224,30 +231,31 @@ private:
             values[i].occlusion = occlusion[pixels(i)];
     }
 
-    /// Who answers the middles: cube maps before the engine, which then answers the rest.
-    Answers answers_at(const GBuffer& drawing, PictureSize size, const SeenPixels& seen)
+    /// Who answers the middles: cube maps before the engine, which then answers the rest. drawing:
+    /// null where the picture is not drawn.
+    Answers answers_at(const GBuffer* drawing, PictureSize size, const SeenPixels& seen)
     {
         Stopwatch watch;
         const auto pixels = [&](std::size_t i) { return seen.pixels[i]; };
         Answers answers;
         if (settings_.cube_maps == nullptr) {
-            answers.values = with_grids() != nullptr ? solved_by_pass(drawing, seen)
+            answers.values = with_grids() != nullptr ? solved_by_pass(*drawing, seen)
                                                      : solved(seen.receivers, stage("solve"));
             if (on_screen())
-                put_screen(drawing, size, pixels, answers.values);
+                put_screen(*drawing, size, pixels, answers.values);
             picture_.solve_s += watch.lap();
             return answers;
         }
         answers.values.resize(seen.pixels.size());
         const Framebuffer target =
-            settings_.cube_maps->make_target(drawing.width(), drawing.height());
-        settings_.cube_maps->project(drawing, target);
+            settings_.cube_maps->make_target(drawing->width(), drawing->height());
+        settings_.cube_maps->project(*drawing, target);
         const std::vector<glm::vec4> told =
             inner(target.read_color(target.rect()), size, settings_.guard);
         picture_.project_s += watch.lap();
 
         if (on_screen() && !settings_.white_holes)
-            put_screen(drawing, size, pixels, answers.values);
+            put_screen(*drawing, size, pixels, answers.values);
         std::vector<std::size_t> open;
         std::vector<Receiver> asked;
         for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
@@ -291,25 +299,23 @@ private:
     void make_band(const Band& band)
     {
         const PictureSize size{band.rect.width, band.rect.height};
-        GBuffer drawing(context_, size.width + 2 * settings_.guard,
-                        size.height + 2 * settings_.guard);
-        const auto draw = [&](const View& view, bool with_surface) {
-            const View wide = widened(view, size, settings_.guard);
-            if (with_surface)
-                drawing.draw(drawn_, wide);
-            else
-                drawing.draw_triangles(drawn_, wide);
-        };
         Stopwatch watch;
-        draw(band.view, on_screen() || with_grids() || settings_.cube_maps);
+        std::optional<GBuffer> drawing;
+        if (is_drawn()) {
+            drawing.emplace(context_, size.width + 2 * settings_.guard,
+                            size.height + 2 * settings_.guard);
+            drawing->draw(drawn_, widened(band.view, size, settings_.guard));
+        }
         const Projected projected(mesh_.geometry, band.view, size.width, size.height);
         const SeenPixels seen =
-            seen_pixels(mesh_, *rims_, projected,
-                        inner(drawing.read_triangles(), size, settings_.guard), settings_.offset);
+            drawing ? seen_pixels(mesh_, *rims_, projected,
+                                  inner(drawing->read_triangles(), size, settings_.guard),
+                                  settings_.offset)
+                    : seen_pixels(mesh_, projected, settings_.offset);
         picture_.middles += seen.pixels.size();
         picture_.see_s += watch.lap();
 
-        Answers middles = answers_at(drawing, size, seen);
+        Answers middles = answers_at(drawing ? &*drawing : nullptr, size, seen);
         watch.lap();
 
         Answers extras;
@@ -328,11 +334,11 @@ private:
                 samples.add(view, triangles[s]);
             }
             if (on_screen()) {
-                draw(view, true);
+                drawing->draw(drawn_, widened(view, size, settings_.guard));
                 const std::size_t before = extras.values.size();
                 extras.values.resize(samples.extras().size());
                 put_screen(
-                    drawing, size,
+                    *drawing, size,
                     [&](std::size_t k) { return samples.extras()[before + k].pixel; },
                     std::span(extras.values).subspan(before));
             }

@@ -12,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 namespace surfelao {
@@ -263,6 +264,36 @@ std::vector<std::vector<std::uint32_t>> sampled_triangles(const Projected& proje
                                                           std::span<const glm::vec2> shifts)
 {
     return Sampler(projected, pixels, shifts).sample();
+}
+
+// The picture in blocks: a middle of a pixel is a sample of its block.
+std::vector<std::uint32_t> middle_triangles(const Projected& projected)
+{
+    constexpr int kSide = 4;
+    static_assert(kSide * kSide == kSamplesAtOnce);
+    const glm::ivec2 size = projected.size(), blocks = (size + kSide - 1) / kSide;
+    View view = projected.view();
+    view.lens = part_of(view.lens, size.x, size.y, {0, 0, kSide * blocks.x, kSide * blocks.y});
+    std::array<glm::vec2, kSamplesAtOnce> middles;
+    for (int i = 0; i < kSide * kSide; ++i)
+        middles[static_cast<std::size_t>(i)] =
+            (glm::vec2(i % kSide, i / kSide) + 0.5f) / static_cast<float>(kSide) - 0.5f;
+    std::vector<std::uint32_t> all(static_cast<std::size_t>(blocks.x) *
+                                   static_cast<std::size_t>(blocks.y));
+    std::iota(all.begin(), all.end(), 0u);
+    const auto of_blocks =
+        sampled_triangles(Projected(projected.geometry(), view, blocks.x, blocks.y), all, middles);
+
+    std::vector<std::uint32_t> triangles(static_cast<std::size_t>(size.x) *
+                                         static_cast<std::size_t>(size.y));
+    const auto rows = static_cast<std::size_t>(size.y), columns = static_cast<std::size_t>(size.x);
+    for_all(rows, 8, [&](std::size_t y) {
+        for (std::size_t x = 0; x < columns; ++x)
+            triangles[y * columns + x] =
+                of_blocks[y % kSide * kSide + x % kSide]
+                         [y / kSide * static_cast<std::size_t>(blocks.x) + x / kSide];
+    });
+    return triangles;
 }
 
 }  // namespace surfelao

@@ -1,5 +1,6 @@
 #include "pixels/seen.h"
 
+#include "pixels/sampled_triangles.h"
 #include "surfels/errors.h"
 #include "surfels/for_all.h"
 
@@ -31,6 +32,38 @@ bool is_amid(std::span<const std::uint32_t> triangles, int width, int height, st
     return x > 0 && x + 1 < width && y > 0 && y + 1 < height && triangles[pixel - 1] == own &&
            triangles[pixel + 1] == own && triangles[pixel - row] == own &&
            triangles[pixel + row] == own;
+}
+
+/// point_of(pixel, point): what counts there, of a point of the triangle that is seen.
+template <class PointOf>
+SeenPixels seen_where(const Mesh& mesh, const Projected& projected,
+                      std::span<const std::uint32_t> triangles, const Offset& offset,
+                      const PointOf& point_of)
+{
+    const View& view = projected.view();
+    const int width = projected.size().x, height = projected.size().y;
+    SeenPixels seen;
+    seen.width = width;
+    seen.height = height;
+    SURFELAO_CHECK(triangles.size() ==
+                   static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    seen.pixels.reserve(triangles.size() -
+                        static_cast<std::size_t>(std::ranges::count(triangles, 0u)));
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        if (triangles[i] != 0)
+            seen.pixels.push_back(static_cast<std::uint32_t>(i));
+    }
+    seen.points.resize(seen.pixels.size());
+    const auto columns = static_cast<std::uint32_t>(width);
+    for_all(seen.pixels.size(), [&](std::size_t i) {
+        const std::uint32_t pixel = seen.pixels[i];
+        const glm::vec2 middle = glm::vec2(pixel % columns, pixel / columns) + 0.5f;
+        seen.points[i] = point_of(
+            pixel, point_on_ray(mesh.geometry, view, pixel_ray(view.lens, width, height, middle),
+                                triangles[pixel] - 1));
+    });
+    seen.receivers = receivers_facing(mesh, view, seen.points, offset);
+    return seen;
 }
 
 }  // namespace
@@ -108,31 +141,17 @@ SeenPixels seen_pixels(const Mesh& mesh, const View& view, int width, int height
 SeenPixels seen_pixels(const Mesh& mesh, const Rims& rims, const Projected& projected,
                        std::span<const std::uint32_t> triangles, const Offset& offset)
 {
-    const View& view = projected.view();
     const int width = projected.size().x, height = projected.size().y;
-    SeenPixels seen;
-    seen.width = width;
-    seen.height = height;
-    SURFELAO_CHECK(triangles.size() ==
-                   static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    seen.pixels.reserve(triangles.size() -
-                        static_cast<std::size_t>(std::ranges::count(triangles, 0u)));
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        if (triangles[i] != 0)
-            seen.pixels.push_back(static_cast<std::uint32_t>(i));
-    }
-    seen.points.resize(seen.pixels.size());
-    const auto columns = static_cast<std::uint32_t>(width);
-    for_all(seen.pixels.size(), [&](std::size_t i) {
-        const std::uint32_t pixel = seen.pixels[i];
-        const glm::vec2 middle = glm::vec2(pixel % columns, pixel / columns) + 0.5f;
-        const SurfacePoint point = point_on_ray(
-            mesh.geometry, view, pixel_ray(view.lens, width, height, middle), triangles[pixel] - 1);
-        seen.points[i] =
-            is_amid(triangles, width, height, pixel) ? point : rims.nearer(projected, point);
-    });
-    seen.receivers = receivers_facing(mesh, view, seen.points, offset);
-    return seen;
+    return seen_where(
+        mesh, projected, triangles, offset, [&](std::uint32_t pixel, const SurfacePoint& point) {
+            return is_amid(triangles, width, height, pixel) ? point : rims.nearer(projected, point);
+        });
+}
+
+SeenPixels seen_pixels(const Mesh& mesh, const Projected& projected, const Offset& offset)
+{
+    return seen_where(mesh, projected, middle_triangles(projected), offset,
+                      [](std::uint32_t, const SurfacePoint& point) { return point; });
 }
 
 std::vector<std::uint32_t> parts_of(const Mesh& mesh)

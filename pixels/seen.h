@@ -37,8 +37,13 @@ struct SeenPixels {
     std::vector<Receiver> receivers;   ///< likewise
 };
 
-/// triangles: GBuffer::read_triangles() of the mesh's geometry. O(pixels). At rims the nearer
-/// triangle counts (rims.h).
+/// What the middles of a picture see, found on the CPU. projected: of mesh.geometry. O(triangles),
+/// and the pixels that they cover.
+[[nodiscard]] SeenPixels seen_pixels(const Mesh& mesh, const Projected& projected,
+                                     const Offset& offset = {});
+
+/// What a device has drawn. triangles: GBuffer::read_triangles() of the mesh's geometry. O(pixels).
+/// At rims the nearer triangle counts (rims.h).
 [[nodiscard]] SeenPixels seen_pixels(const Mesh& mesh, const View& view, int width, int height,
                                      std::span<const std::uint32_t> triangles,
                                      const Offset& offset = {});

@@ -63,7 +63,6 @@ struct Pool {
 /// What one camera sees.
 struct Sight {
     View view;
-    std::vector<std::uint32_t> triangles;
     SeenPixels seen;
 };
 
@@ -76,11 +75,8 @@ Sight sight_of(const ExactWorld& world, const Standpoint& standpoint)
         frame_points(framed_points(world.mesh.geometry), UpAxis::y, aspect, standpoint.direction);
     zoom(camera, standpoint.distance);
     sight.view = view_of(camera, world.size.width, world.size.height);
-    GBuffer buffer(world.context, world.size.width, world.size.height);
-    buffer.draw_triangles(world.drawn, sight.view);
-    sight.triangles = buffer.read_triangles();
-    sight.seen =
-        seen_pixels(world.mesh, sight.view, world.size.width, world.size.height, sight.triangles);
+    sight.seen = seen_pixels(world.mesh, Projected(world.mesh.geometry, sight.view,
+                                                   world.size.width, world.size.height));
     return sight;
 }
 
@@ -113,7 +109,9 @@ double between(const ExactWorld& world, const Sight& sight, const std::vector<Oc
                const Sight& other, const EngineSettings& engine)
 {
     std::vector<Receiver> asked = other.seen.receivers;
-    std::vector<std::size_t> places(other.triangles.size(), asked.size());
+    std::vector<std::size_t> places(
+        static_cast<std::size_t>(world.size.width) * static_cast<std::size_t>(world.size.height),
+        asked.size());
     for (std::size_t i = 0; i < asked.size(); ++i)
         places[other.seen.pixels[i]] = i;
     std::vector<std::pair<std::size_t, std::size_t>> shared;  // place in `asked`, in `answers`
@@ -131,7 +129,8 @@ double between(const ExactWorld& world, const Sight& sight, const std::vector<Oc
         const std::size_t at =
             static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(world.size.width) +
             static_cast<std::size_t>(pixel.x);
-        if (other.triangles[at] != sight.seen.points[i].triangle + 1)
+        if (places[at] == other.seen.points.size() ||
+            other.seen.points[places[at]].triangle != sight.seen.points[i].triangle)
             continue;
         const std::vector<Receiver> turned =
             receivers_facing(world.mesh, other.view, std::span(sight.seen.points).subspan(i, 1));

@@ -73,8 +73,8 @@ TEST(PixelPicture, ItsValuesAreThoseOfTheSameReceivers)
 {
     const PictureSize size{60, 40};
     const View view = framed(bumpy(), size);
-    const Look look(bumpy(), view, size);
-    const SeenPixels& seen = look.pixels.seen();
+    const SeenPixels seen =
+        seen_pixels(bumpy(), Projected(bumpy().geometry, view, size.width, size.height));
     const EngineSettings masks;
     const std::vector<Occlusion> answers =
         solve(prepare(bumpy().geometry), seen.receivers, masks).occlusion;

@@ -136,6 +136,20 @@ TEST(SampledTriangles, AreThoseThatRaysMeet)
     }
 }
 
+// In blocks of pixels, the last of them beyond the picture on both sides.
+TEST(SampledTriangles, OfMiddlesAreThoseOfEachPixelAlone)
+{
+    const Mesh mesh = make_mesh(scenes::bumpy_sphere(12));
+    for (const View& view : {outside(mesh.geometry), without_perspective()}) {
+        const Projected projected(mesh.geometry, view, kPicture.width - 1, kPicture.height - 3);
+        std::vector<std::uint32_t> pixels(
+            static_cast<std::size_t>((kPicture.width - 1) * (kPicture.height - 3)));
+        std::iota(pixels.begin(), pixels.end(), 0u);
+        const std::vector<glm::vec2> middle{glm::vec2(0.0f)};
+        EXPECT_EQ(middle_triangles(projected), sampled_triangles(projected, pixels, middle)[0]);
+    }
+}
+
 // Triangles that share a side leave no gap: a body seen from within hides all that is behind.
 TEST(SampledTriangles, LeaveNoGapBetweenThem)
 {
