@@ -21,6 +21,7 @@
 #include "files/scene_io.h"
 #include "grid/grid_file.h"
 #include "surfels/errors.h"
+#include "surfels/freed_pages.h"
 #include "surfels/progress.h"
 
 #include <CLI/CLI.hpp>
@@ -305,8 +306,19 @@ void finish(const BakeOptions& options, std::span<const BatchEntry> entries,
                   << (options.frames.frames ? " frames failed\n" : " files failed\n");
 }
 
+/// Whether memory counts more than pages that come ready: from some 5 million triangles on.
+bool is_large(const Job& job)
+{
+    constexpr std::uintmax_t kLarge = 100'000'000;  // bytes
+    std::error_code unreadable;                     // which reading will tell
+    const std::uintmax_t bytes = fs::file_size(job.input, unreadable);
+    return !unreadable && bytes >= kLarge;
+}
+
 int run(const BakeOptions& options, const std::vector<Job>& jobs)
 {
+    if (std::ranges::any_of(jobs, is_large))
+        keep_freed_pages(false);
     OutputFolders folders;
     folders.make_for_report(options.json);
     if (is_folder(options))
