@@ -2,6 +2,7 @@
 
 #include "bake/hidden_texels.h"
 #include "bake/high_to_low.h"
+#include "bake/texel_fit.h"
 #include "bake/vertex_fit.h"
 #include "surfels/errors.h"
 #include "surfels/for_all.h"
@@ -154,8 +155,13 @@ public:
 
         enter("fill");
         Stopwatch watch;
-        leave_out_hidden(engine.definition, bake, known);
-        fill_pages(bake, known);
+        const Known hidden = leave_out_hidden(engine.definition, bake, known);
+        const Seams seams = fill_pages(bake, known);
+        seconds_.fill += watch.lap();
+        for (std::size_t page = 0; page < layout_.pages.size(); ++page)
+            fit_steps(prepared, engine, page, known[page], hidden[page], bake);
+        watch.lap();
+        bake.jump = seam_jump(seams, bake.visibility);
         for (Map& map : bake.bent)
             encode_directions(map);
         for (std::vector<Map>* maps : {&bake.visibility, &bake.bent})
@@ -225,20 +231,19 @@ private:
         bake.flat_triangles = static_cast<std::uint64_t>(std::ranges::count(shown, 0));
     }
 
-    /// Texels that nobody sees are no longer known.
-    void leave_out_hidden(const Definition& definition, MapBake& bake, Known& known) const
+    /// Texels that nobody sees are no longer known; they themselves, or nothing where a page has
+    /// none.
+    Known leave_out_hidden(const Definition& definition, MapBake& bake, Known& known)
     {
-        std::optional<RayScene> scene;
+        Known of_pages(known.size());
         for (std::size_t page = 0; page < known.size(); ++page) {
-            std::vector<std::uint8_t> hidden =
-                texels_maybe_hidden(bake.visibility[page], known[page]);
+            std::vector<std::uint8_t>& hidden = of_pages[page];
+            hidden = texels_maybe_hidden(bake.visibility[page], known[page]);
             if (hidden.empty())
                 continue;
             const std::vector<Texel> texels = marked_texels(page, hidden);
-            if (!scene)
-                scene.emplace(occluding(), RayScene::Build::quick);
             const std::vector<std::uint8_t> inside = inside_bodies(
-                occluding(), *scene, receivers_of(points_of(texels)), definition.max_distance);
+                occluding(), ray_scene(), receivers_of(points_of(texels)), definition.max_distance);
             for (std::size_t i = 0; i < texels.size(); ++i)
                 if (inside[i] == 0)  // one sheet of a texel that is seen is enough
                     hidden[index_of(texels[i])] = 0;
@@ -247,6 +252,102 @@ private:
                 known[page][i] &= hidden[i] == 0;
             }
         }
+        return of_pages;
+    }
+
+    /// As many rows of the map as fill a band with samples.
+    [[nodiscard]] std::uint32_t rows_of_samples(const std::vector<std::uint8_t>& marked,
+                                                std::uint32_t first) const
+    {
+        const std::size_t width = layout_.size.width;
+        std::uint64_t count = 0;
+        std::uint32_t row = first;
+        while (row < layout_.size.height && (row == first || count < kBandTexels)) {
+            const auto begin = marked.begin() + static_cast<std::ptrdiff_t>(row * width);
+            count += kFitSide * kFitSide *
+                     static_cast<std::uint64_t>(
+                         std::count(begin, begin + static_cast<std::ptrdiff_t>(width), 1));
+            ++row;
+        }
+        return row - first;
+    }
+
+    /// Nonzero for closed samples beside hidden texels that are hidden as these are; or nothing.
+    std::vector<std::uint8_t> samples_inside(std::span<const Texel> texels,
+                                             std::span<const Receiver> receivers,
+                                             std::span<const Occlusion> answers,
+                                             const std::vector<std::uint8_t>& hidden,
+                                             const Definition& definition)
+    {
+        if (hidden.empty())
+            return {};
+        std::vector<std::size_t> asked;
+        std::vector<Receiver> there;
+        const Map grid(layout_.size.width, layout_.size.height, 0);
+        for (std::size_t i = 0; i < texels.size(); ++i) {
+            if (1.0f - answers[i].occlusion > kHiddenVisibility)
+                continue;
+            bool is_beside = false;
+            const std::size_t texel =
+                std::size_t{texels[i].y / kFitSide} * grid.width + texels[i].x / kFitSide;
+            for_each_around(grid, texel,
+                            [&](std::size_t other) { is_beside |= hidden[other] != 0; });
+            if (!is_beside)
+                continue;
+            asked.push_back(i);
+            there.push_back(receivers[i]);
+        }
+        if (asked.empty())
+            return {};
+        const std::vector<std::uint8_t> found =
+            inside_bodies(occluding(), ray_scene(), there, definition.max_distance);
+        std::vector<std::uint8_t> inside(texels.size(), 0);
+        for (std::size_t k = 0; k < asked.size(); ++k)
+            inside[asked[k]] = found[k];
+        return inside;
+    }
+
+    const RayScene& ray_scene()
+    {
+        if (!rays_)
+            rays_.emplace(occluding(), RayScene::Build::quick);
+        return *rays_;
+    }
+
+    /// Gives texels of a page beside steps values that show these best. hidden: or nothing.
+    void fit_steps(const Prepared& prepared, const EngineSettings& engine, std::size_t page,
+                   const std::vector<std::uint8_t>& known, const std::vector<std::uint8_t>& hidden,
+                   MapBake& bake)
+    {
+        Stopwatch watch;
+        const auto [width, height] = layout_.size;
+        Map& visibility = bake.visibility[page];
+        const std::vector<std::uint8_t> marked = texels_with_steps(visibility, known);
+        if (marked.empty() || std::max(width, height) > kMostTexels / kFitSide)
+            return;
+        const MapRaster raster(mesh_.geometry, layout_.pages[page],
+                               {kFitSide * width, kFitSide * height});
+        std::vector<TexelSample> samples;
+        for (std::uint32_t first = 0, rows = 0; first < height; first += rows) {
+            rows = rows_of_samples(marked, first);
+            const std::vector<Texel> texels =
+                raster.texels(kFitSide * first, kFitSide * rows, {marked, kFitSide});
+            const std::vector<Receiver> receivers = receivers_of(points_of(texels), &bake.misses);
+            seconds_.raster += watch.lap();
+            const std::vector<Occlusion> answers =
+                solve(prepared, receivers, engine, progress_in("fit")).occlusion;
+            seconds_.solve += watch.lap();
+            bake.receivers += texels.size();
+            const std::vector<std::uint8_t> inside =
+                samples_inside(texels, receivers, answers, hidden, engine.definition);
+            for (std::size_t i = 0; i < texels.size(); ++i)
+                if (inside.empty() || inside[i] == 0)
+                    samples.push_back({*uv_at(mesh_.geometry, layout_.pages[page], texels[i].point),
+                                       1.0f - answers[i].occlusion, texels[i].share});
+            seconds_.fill += watch.lap();
+        }
+        fit_texels(visibility, known, marked, samples);
+        seconds_.fill += watch.lap();
     }
 
     [[nodiscard]] std::size_t index_of(const Texel& texel) const
@@ -274,9 +375,9 @@ private:
     }
 
     /// What has no value gets one, and smooth seams show the same on both sides.
-    void fill_pages(MapBake& bake, const Known& known) const
+    Seams fill_pages(MapBake& bake, const Known& known) const
     {
-        const Seams seams = seams_of(mesh_, layout_);
+        Seams seams = seams_of(mesh_, layout_);
         const std::uint32_t rings =
             bake.hidden == 0 ? settings_.padding : std::max(settings_.padding, kHiddenRings / 2);
         const auto fill = [&](std::vector<Map>& maps, bool joins) {
@@ -293,7 +394,7 @@ private:
             fill(bake.bent, settings_.joins_bent);
         bake.seams = seams.list.size();
         bake.smooth_seams = seams.smooth_count();
-        bake.jump = seam_jump(seams, bake.visibility);
+        return seams;
     }
 
     StatedError error_of(const MapBake& bake)
@@ -321,6 +422,7 @@ private:
     const MapSettings& settings_;
     const Offset& offset_;
     const HighDetail* high_;
+    std::optional<RayScene> rays_;  ///< where there are hidden texels
     MapSeconds seconds_;
 };
 

@@ -4,8 +4,10 @@
 /// band, not the map, and the bytes do not depend on it. Where sheets lie on each other a texel
 /// holds their mean, and how far they differ is told. Texels that nothing covers, or what nobody
 /// sees (hidden_texels.h), take what lies beyond the seam (atlas/seams.h) or surrounds them
-/// (image/map.h), so that filters and mip levels fetch no emptiness. At last both sides of smooth
-/// seams are made to show the same.
+/// (image/map.h), so that filters and mip levels fetch no emptiness. Then both sides of smooth
+/// seams are made to show the same. At last, where the answer steps from a texel to the next, the
+/// surface is asked more closely and texels get the values that show it best (texel_fit.h); bent
+/// normals, and maps more than kMostTexels / kFitSide wide, stay as they are.
 #pragma once
 
 #include "atlas/layout.h"
@@ -44,11 +46,11 @@ struct MapSettings {
 inline constexpr std::uint64_t kBandTexels = std::uint64_t{1} << 17;
 
 struct MapSeconds {
-    double raster = 0.0;  ///< which texels, and where each is asked
+    double raster = 0.0;  ///< which texels and samples, and where each is asked
     double surfels = 0.0;
     double tree = 0.0;
     double solve = 0.0;
-    double fill = 0.0;  ///< hidden texels, seams, and what nothing covers
+    double fill = 0.0;  ///< hidden texels, seams, what nothing covers, and steps
     double check = 0.0;
 };
 

@@ -161,8 +161,13 @@ std::optional<glm::dvec2> uv_at(const Geometry& geometry, const UvSet& uvs,
 /// A few rows of the map, filled by one thread.
 class MapRaster::Strip {
 public:
-    Strip(const MapRaster& raster, std::uint32_t first, std::uint32_t rows)
-        : raster_(raster), first_(first), rows_(rows), best_(std::size_t{rows} * raster.size_.width)
+    Strip(const MapRaster& raster, const WantedTexels& wanted, std::uint32_t first,
+          std::uint32_t rows)
+        : raster_(raster),
+          wanted_(wanted),
+          first_(first),
+          rows_(rows),
+          best_(std::size_t{rows} * raster.size_.width)
     {
     }
 
@@ -221,6 +226,16 @@ private:
         }
     }
 
+    /// The flags of a row's blocks; empty where all is wanted.
+    [[nodiscard]] std::span<const std::uint8_t> wanted_of_row(std::size_t first_place) const
+    {
+        if (wanted_.blocks.empty())
+            return {};
+        const std::size_t columns = raster_.size_.width / wanted_.side;
+        const std::size_t y = first_ + first_place / raster_.size_.width;
+        return wanted_.blocks.subspan(y / wanted_.side * columns, columns);
+    }
+
     /// The columns in which the triangle meets low <= y <= high.
     static Span columns_in(const Placed& placed, double low, double high)
     {
@@ -243,11 +258,14 @@ private:
     {
         const double row = static_cast<double>(y) + 0.5;
         const Span columns = columns_in(placed, row, row);
+        const std::span<const std::uint8_t> wanted = wanted_of_row(first_place);
         for (std::int64_t x = columns.begin; x < columns.end; ++x) {
             const glm::dvec2 centre(static_cast<double>(x) + 0.5, row);
-            if (!contains(placed.corners, centre))
+            const std::uint32_t column = folded(x, raster_.size_.width);
+            if ((!wanted.empty() && wanted[column / wanted_.side] == 0) ||
+                !contains(placed.corners, centre))
                 continue;
-            const std::size_t place = first_place + folded(x, raster_.size_.width);
+            const std::size_t place = first_place + column;
             best_[place].is_centre = true;
             best_[place].has_inside |= !placed.is_outside;
             sheets_.push_back(
@@ -259,10 +277,13 @@ private:
     {
         const double low = static_cast<double>(y);
         const Span columns = columns_in(placed, low, low + 1.0);
+        const std::span<const std::uint8_t> wanted = wanted_of_row(first_place);
         const bool has_large_part = std::abs(twice_area(placed.corners)) > 2.0 * kHasLargePart;
         for (std::int64_t x = columns.begin; x < columns.end; ++x) {
-            Best& best = best_[first_place + folded(x, raster_.size_.width)];
-            if (best.is_centre || (placed.is_outside && best.has_inside))
+            const std::uint32_t column = folded(x, raster_.size_.width);
+            Best& best = best_[first_place + column];
+            if ((!wanted.empty() && wanted[column / wanted_.side] == 0) || best.is_centre ||
+                (placed.is_outside && best.has_inside))
                 continue;
             const PartOfTexel part = part_in_texel(placed.corners, {static_cast<double>(x), low});
             if (!(part.area > 0.0) || (part.area < kLeastPart && has_large_part))
@@ -277,6 +298,7 @@ private:
     }
 
     const MapRaster& raster_;
+    const WantedTexels& wanted_;
     std::uint32_t first_, rows_;
     std::vector<Best> best_;
     std::vector<Sheet> sheets_;
@@ -342,8 +364,22 @@ void MapRaster::mark_shown(std::span<std::uint8_t> triangles) const
         triangles[placed.triangle] = 1;
 }
 
-std::vector<Texel> MapRaster::texels(std::uint32_t first, std::uint32_t rows) const
+bool MapRaster::has_wanted(const WantedTexels& wanted, std::uint32_t first,
+                           std::uint32_t rows) const
 {
+    if (wanted.blocks.empty())
+        return true;
+    const std::size_t columns = size_.width / wanted.side;
+    const std::size_t begin = first / wanted.side, end = (first + rows - 1) / wanted.side + 1;
+    const auto flags = wanted.blocks.subspan(begin * columns, (end - begin) * columns);
+    return std::ranges::find_if(flags, [](std::uint8_t flag) { return flag != 0; }) != flags.end();
+}
+
+std::vector<Texel> MapRaster::texels(std::uint32_t first, std::uint32_t rows,
+                                     const WantedTexels& wanted) const
+{
+    SURFELAO_CHECK(wanted.blocks.empty() ||
+                   wanted.blocks.size() * wanted.side * wanted.side == size_.count());
     const std::uint32_t end = std::min(size_.height, first + rows);
     if (first >= end)
         return {};
@@ -353,7 +389,10 @@ std::vector<Texel> MapRaster::texels(std::uint32_t first, std::uint32_t rows) co
     for_tasks(strips, [&](std::size_t s) {
         const auto number = first_strip + static_cast<std::uint32_t>(s);
         const std::uint32_t begin = std::max(first, number * kStripRows);
-        Strip strip(*this, begin, std::min(end, (number + 1) * kStripRows) - begin);
+        const std::uint32_t strip_rows = std::min(end, (number + 1) * kStripRows) - begin;
+        if (!has_wanted(wanted, begin, strip_rows))
+            return;
+        Strip strip(*this, wanted, begin, strip_rows);
         const std::span<const std::uint32_t> list = (*of_strip_)[number];
         const auto for_each = [&](const auto& add) {
             for (std::size_t k = 0; k < list.size(); ++k)

@@ -52,6 +52,13 @@ struct Texel {
                          ///< covered
 };
 
+/// Where texels are wanted: those of a map, in blocks of `side` * `side`, one flag per block, row
+/// by row. Without flags everywhere.
+struct WantedTexels {
+    std::span<const std::uint8_t> blocks = {};
+    std::uint32_t side = 1;  ///< divides the map's width and height
+};
+
 /// Triangles that span more tiles than this in either direction show nothing that is to be seen.
 inline constexpr double kMostTiles = 64.0;
 
@@ -81,8 +88,10 @@ public:
 
     /// Of the rows first <= y < first + rows: by row, then column; several for one texel where
     /// sheets lie on each other, by triangle. However a map is cut into ranges of rows, the texels
-    /// are the same. O(texels and triangles of the rows), all cores.
-    [[nodiscard]] std::vector<Texel> texels(std::uint32_t first, std::uint32_t rows) const;
+    /// are the same. O(texels and triangles of the rows), all cores; where few are wanted, a small
+    /// part of it.
+    [[nodiscard]] std::vector<Texel> texels(std::uint32_t first, std::uint32_t rows,
+                                            const WantedTexels& wanted = {}) const;
 
 private:
     struct Placed {
@@ -91,6 +100,8 @@ private:
         bool is_outside = false;
     };
     class Strip;
+    [[nodiscard]] bool has_wanted(const WantedTexels& wanted, std::uint32_t first,
+                                  std::uint32_t rows) const;
     /// Rows that one thread takes at a time.
     static constexpr std::uint32_t kStripRows = 4;
 

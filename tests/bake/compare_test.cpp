@@ -3,6 +3,7 @@
 #include "bake/frontier.h"
 #include "files/scene_io.h"
 #include "scenes.h"
+#include "surfels/texels.h"
 #include "temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -221,7 +222,11 @@ TEST_F(Compare, OfMapsJudgesWhatABakeWouldShow)
     const MapLayout layout = layout_for(*c.mesh, *settings.texels).layout;
     const MapBake bake = bake_map(*c.mesh, layout, {.depth = MapDepth::whole, .check = 1000},
                                   c.rows[0].settings, {});
-    EXPECT_EQ(c.receivers, bake.receivers);
+    std::size_t texels = 0;
+    for (const UvSet& page : layout.pages)
+        texels += MapRaster(c.mesh->geometry, page, layout.size).texels(0, 64).size();
+    EXPECT_EQ(c.receivers, texels);
+    EXPECT_GT(bake.receivers, texels);  // and samples beside steps
     ASSERT_EQ(c.rows[0].errors.size(), 64u * 64u);
     ASSERT_EQ(c.reference.size(), 64u * 64u);
     for (std::size_t i = 0; i < c.reference.size(); ++i)
@@ -237,7 +242,8 @@ TEST_F(Compare, OfMapsJudgesWhatABakeWouldShow)
     }
     for (const CompareRow& row : c.rows) {
         EXPECT_EQ(row.seen.count, c.points);
-        EXPECT_NEAR(std::hypot(c.floor.rmse, row.beyond), row.seen.rmse, 0.05 * row.seen.rmse);
+        // of 4 rays the noise makes steps, which are fitted away: .09 less than these two add up to
+        EXPECT_NEAR(std::hypot(c.floor.rmse, row.beyond), row.seen.rmse, 0.1 * row.seen.rmse);
         EXPECT_GT(row.raster_s, 0.0);
         EXPECT_GT(row.fill_s, 0.0);
         EXPECT_EQ(row.fit_s, 0.0);

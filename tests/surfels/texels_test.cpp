@@ -188,6 +188,28 @@ TEST(Texels, AreTheSameHoweverTheRowsAreCut)
     EXPECT_NEAR(area, 70 * 90 * (0.3 * 0.31 + 0.2 * 0.25), 70.0);
 }
 
+TEST(Texels, ThatAreWantedAreThoseOfAll)
+{
+    const Square square(7, [](glm::dvec2 p) {
+        return 0.4 + glm::dvec2(0.9 * p.x - 0.2 * p.y, 0.25 * p.x + 0.31 * p.y);  // over the rim
+    });
+    const MapRaster raster(square.geometry, square.uvs, {72, 90});
+    std::vector<std::uint8_t> blocks(std::size_t{24} * 30, 0);
+    for (std::size_t i = 0; i < blocks.size(); i += i % 5 + 1)
+        blocks[i] = i / 24 % 4 == 1 ? 0 : 1;
+    std::vector<Texel> expected = raster.texels(0, 90);
+    std::erase_if(expected, [&](const Texel& texel) {
+        return blocks[std::size_t{texel.y / 3} * 24 + texel.x / 3] == 0;
+    });
+    const std::vector<Texel> found = raster.texels(0, 90, {blocks, 3});
+    ASSERT_EQ(found.size(), expected.size());
+    EXPECT_GT(found.size(), 300u);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(Place(found[i].x, found[i].y), Place(expected[i].x, expected[i].y));
+        EXPECT_EQ(found[i].point.at, expected[i].point.at);
+    }
+}
+
 TEST(Texels, OfASizeOutOfRangeAreRefused)
 {
     const Square square(1, same);
