@@ -27,7 +27,7 @@ Progress JudgedBaker::progress_in(std::string_view stage) const
 const Prepared& JudgedBaker::prepared_for(const EngineSettings& engine, double& surfels,
                                           double& tree)
 {
-    if (occluders_->has(engine.engine))
+    if (occluders_->has(engine))
         return occluders_->prepared_for(engine);
     enter("build");
     const Prepared& prepared = occluders_->prepared_for(engine);

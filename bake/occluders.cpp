@@ -4,6 +4,8 @@ namespace surfelao {
 
 const Prepared& Occluders::prepared_for(const EngineChoice& choice)
 {
+    if (is_ready(choice))
+        return *ready_;
     const auto found = prepared_.find(choice.engine);
     if (found != prepared_.end())
         return found->second;

@@ -28,7 +28,9 @@ std::vector<Occlusion> bake_at_points(const Scene& scene, BakeReport& report,
                                       const StageProgress& progress)
 {
     const BakeSettings& settings = report.settings;
-    const PointTarget target = make_point_target(scene, settings.target, progress);
+    std::optional<Prepared> masks;
+    const PointTarget target = make_point_target(scene, settings.target, progress, &masks);
+    const Prepared* ready = masks ? &*masks : nullptr;
     report.settings.engine.definition =
         definition_of(settings.max_distance, settings.kernel, target.cloud.frame);
     report.settings.engine.definition.ground = ground_below(target, settings.ground);
@@ -39,8 +41,8 @@ std::vector<Occlusion> bake_at_points(const Scene& scene, BakeReport& report,
     report.vertices_without_normal = target.cloud.counts.without_normal;
     VertexBake baked = settings.error
                            ? bake_points_to_error(target, settings.engine, *settings.error,
-                                                  settings.check, progress)
-                           : bake_points(target, settings.engine, settings.check, progress);
+                                                  settings.check, progress, ready)
+                           : bake_points(target, settings.engine, settings.check, progress, ready);
     take(baked, report);
     report.seconds.points = target.seconds;
 

@@ -30,10 +30,9 @@ Progress part_of(const Progress& whole, double from, double to)
 }
 
 /// Both sides of all occluders, band by band.
-void orient_by_openness(PointTarget& target, const Progress& progress)
+void orient_by_openness(PointTarget& target, const Prepared& prepared, const Progress& progress)
 {
     PointCloud& cloud = target.cloud;
-    const Prepared prepared = prepare(cloud, target.squares);
     const std::span<const std::uint32_t> occluders = cloud.occluders;
     std::vector<Occlusion> sides[2];
     for (std::size_t first = 0; first < occluders.size(); first += kBandPoints) {
@@ -145,7 +144,7 @@ void check_target(const Scene& scene, const TargetSettings& settings, const Part
 }
 
 PointTarget make_point_target(const Scene& scene, const TargetSettings& settings,
-                              const StageProgress& progress)
+                              const StageProgress& progress, std::optional<Prepared>* masks)
 {
     enter_stage(progress, "points");
     Stopwatch watch;
@@ -173,8 +172,10 @@ PointTarget make_point_target(const Scene& scene, const TargetSettings& settings
     if (target.cloud.is_unoriented) {
         enter_stage(progress, "orient");
         const auto in_stage = [&](double done) { return !progress || progress("orient", done); };
-        orient_by_openness(target, in_stage);
-        target.squares = squares_of(target.cloud);
+        Prepared prepared = prepare(target.cloud, target.squares);
+        orient_by_openness(target, prepared, in_stage);
+        if (masks != nullptr)
+            *masks = std::move(prepared);
     }
     target.seconds = watch.lap();
     return target;
@@ -278,16 +279,17 @@ Solution solve_points(const Prepared& prepared, const PointTarget& target,
 }
 
 VertexBake bake_points(const PointTarget& target, const EngineSettings& engine, std::uint32_t check,
-                       const StageProgress& progress)
+                       const StageProgress& progress, const Prepared* ready)
 {
-    Occluders occluders(target.cloud, target.squares);
+    Occluders occluders(target.cloud, target.squares, ready);
     return PointBaker(target, occluders, check, progress).bake(engine);
 }
 
 VertexBake bake_points_to_error(const PointTarget& target, const EngineSettings& engine,
-                                double error, std::uint32_t check, const StageProgress& progress)
+                                double error, std::uint32_t check, const StageProgress& progress,
+                                const Prepared* ready)
 {
-    Occluders occluders(target.cloud, target.squares);
+    Occluders occluders(target.cloud, target.squares, ready);
     PointBaker baker(target, occluders, check, progress, error / 2.0);
     return search_error(baker, engine, error, 1.0);
 }

@@ -15,6 +15,7 @@
 #include "surfels/scene.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,7 +27,7 @@ enum class Orientation { file, viewpoint, openness, up };
 
 struct PointTarget {
     PointCloud cloud;
-    Geometry squares;
+    Geometry squares;  ///< of the cloud, made before its sides were found: they have none
     Offset offset;
     Orientation orientation = Orientation::openness;
     double seconds = 0.0;  ///< neighbours, and the two solves of orient() where they were needed
@@ -52,10 +53,12 @@ inline constexpr std::size_t kBandPoints = std::size_t{1} << 22;
 void check_target(const Scene& scene, const TargetSettings& settings, const PartChoice& parts);
 
 /// scene: without triangles. Stages "points" and "orient". O(n log n), and two solves at draft
-/// where neither the file nor a viewpoint tells where the outside is. Throws as make_point_cloud(),
-/// solve() and offset_of(), Cancelled.
+/// where neither the file nor a viewpoint tells where the outside is. masks: gets what these solves
+/// were prepared with, if there were any. Throws as make_point_cloud(), solve() and offset_of(),
+/// Cancelled.
 [[nodiscard]] PointTarget make_point_target(const Scene& scene, const TargetSettings& settings,
-                                            const StageProgress& progress = {});
+                                            const StageProgress& progress = {},
+                                            std::optional<Prepared>* masks = nullptr);
 
 /// The points as vertices without a triangle, for what shows vertices: their areas are the points',
 /// and the squares occlude.
@@ -79,12 +82,15 @@ inline constexpr double kNotableWeak = 0.01;
 [[nodiscard]] Solution solve_points(const Prepared& prepared, const PointTarget& target,
                                     const SolveSettings& settings, const Progress& progress = {});
 
-/// As bake_vertices() and bake_to_error(), without a fit.
+/// As bake_vertices() and bake_to_error(), without a fit. ready: what is prepared of the target
+/// already, or null.
 [[nodiscard]] VertexBake bake_points(const PointTarget& target, const EngineSettings& engine,
-                                     std::uint32_t check, const StageProgress& progress = {});
+                                     std::uint32_t check, const StageProgress& progress = {},
+                                     const Prepared* ready = nullptr);
 [[nodiscard]] VertexBake bake_points_to_error(const PointTarget& target,
                                               const EngineSettings& engine, double error,
                                               std::uint32_t check,
-                                              const StageProgress& progress = {});
+                                              const StageProgress& progress = {},
+                                              const Prepared* ready = nullptr);
 
 }  // namespace surfelao

@@ -14,6 +14,7 @@
 #include <limits>
 #include <numbers>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 namespace surfelao {
@@ -85,7 +86,8 @@ std::vector<Cell> cells_of(std::span<const glm::vec3> positions, double size)
     return cells;
 }
 
-/// The points of a scene while they become a cloud.
+/// The points of a scene while they become a cloud. A point's number is its place along the curve,
+/// where its neighbours are near in memory too; in the scene they may be anywhere.
 class PointsMaker {
 public:
     PointsMaker(const Scene& scene, const PointSettings& settings)
@@ -102,6 +104,7 @@ public:
         flatten_noise();
         judge_members();
         turn_normals();
+        number_as_scene();
         return std::move(cloud_);
     }
 
@@ -126,10 +129,18 @@ private:
         for (const glm::dvec3& p : scene_.positions)
             box.include(p);
         cloud_.frame = frame_of(box);
+        std::vector<glm::vec3> places(count_);
+        for_each_point(count_, [&](std::size_t i) {
+            places[i] =
+                glm::vec3((scene_.positions[i] - cloud_.frame.centre) / cloud_.frame.diagonal);
+        });
+        cells_ = cells_of(places, 1.0 / kCurveCubes);
+        cloud_.order.resize(count_);
         cloud_.positions.resize(count_);
         for_each_point(count_, [&](std::size_t i) {
-            cloud_.positions[i] =
-                glm::vec3((scene_.positions[i] - cloud_.frame.centre) / cloud_.frame.diagonal);
+            cloud_.order[i] = cells_[i].point;
+            cloud_.positions[i] = places[cells_[i].point];
+            cells_[i].point = static_cast<std::uint32_t>(i);
         });
         cloud_.normals.resize(count_);
         cloud_.radii.resize(count_);
@@ -141,12 +152,9 @@ private:
     void choose_members()
     {
         std::optional<double> spacing = settings_.spacing;
-        std::vector<Cell> cells = cells_of(cloud_.positions, 1.0 / kCurveCubes);
-        members_ = first_of_each(cells, false);
+        members_ = first_of_each(cells_, false);
+        cells_ = {};
         cloud_.counts.duplicates = count_ - members_.size();
-        cloud_.order.reserve(count_);
-        for (const Cell& cell : cells)
-            cloud_.order.push_back(cell.point);
         if (!spacing && members_.size() > kMostOccluders)
             spacing = spacing_for(kMostOccluders);
         if (!spacing)
@@ -160,7 +168,7 @@ private:
         std::vector<glm::vec3> places;
         for (const std::uint32_t member : members_)
             places.push_back(cloud_.positions[member]);
-        cells = cells_of(places, size);
+        std::vector<Cell> cells = cells_of(places, size);
         for (Cell& cell : cells)
             cell.point = members_[cell.point];
         const std::size_t before = members_.size();
@@ -214,7 +222,7 @@ private:
             return;
         from_file_ = true;
         for_each_point(count_, [&](std::size_t i) {
-            const glm::dvec3 normal = scene_.normals.values[i];
+            const glm::dvec3 normal = scene_.normals.values[cloud_.order[i]];
             const double length = glm::length(normal);
             if (length > 0.0 && std::isfinite(length))
                 cloud_.normals[i] = glm::vec3(normal / length);
@@ -305,8 +313,7 @@ private:
         const std::size_t step = (members_.size() + kNoiseSamples - 1) / kNoiseSamples;
         for (std::size_t m = 0; m < members_.size(); m += step)
             noise2_[members_[m]] = 0.0f;
-        for_each_point(count_, [&](std::size_t k) {
-            const std::uint32_t i = cloud_.order[k];
+        for_each_point(count_, [&](std::size_t i) {
             const Around seen = around(i, kNormalNeighbours + 1);
             const std::uint32_t within = std::min(seen.count, kAreaNeighbours + 1);
             if (within > 1)
@@ -342,8 +349,7 @@ private:
         cloud_.noise = std::sqrt(*middle);
         if (cloud_.noise > kScatter) {
             const std::vector<glm::vec3> scattered = cloud_.positions;
-            for_each_point(count_, [&](std::size_t k) {
-                const std::uint32_t i = cloud_.order[k];
+            for_each_point(count_, [&](std::size_t i) {
                 const Plane plane = plane_through(around(i, scattered[i], kPlaneNeighbours + 1),
                                                   scattered[i], scattered);
                 cloud_.positions[i] += glm::dot(plane.middle, plane.normal) * plane.normal;
@@ -436,23 +442,37 @@ private:
     /// way it faces.
     void turn_along_curve()
     {
-        std::vector<std::uint8_t> is_turned(count_, 0);
-        for (const std::uint32_t i : cloud_.order) {
+        for (std::uint32_t i = 0; i < count_; ++i) {
             for (const std::uint32_t other : cloud_.neighbours[i]) {
-                if (other == kNobody || is_turned[other] == 0)
+                if (other >= i)
                     continue;
                 if (glm::dot(cloud_.normals[i], cloud_.normals[other]) < 0.0f)
                     cloud_.normals[i] = -cloud_.normals[i];
                 break;
             }
-            is_turned[i] = 1;
         }
+    }
+
+    void number_as_scene()
+    {
+        const auto number = [&](auto& values) {
+            std::remove_reference_t<decltype(values)> numbered(count_);
+            for_each_point(count_, [&](std::size_t i) { numbered[cloud_.order[i]] = values[i]; });
+            values = std::move(numbered);
+        };
+        number(cloud_.positions);
+        number(cloud_.normals);
+        number(cloud_.radii);
+        number(cloud_.is_uneven);
+        for (std::uint32_t& occluder : cloud_.occluders)
+            occluder = cloud_.order[occluder];
     }
 
     const Scene& scene_;
     const PointSettings& settings_;
     std::size_t count_;
     PointCloud cloud_;
+    std::vector<Cell> cells_;               ///< of the points
     std::vector<std::uint32_t> members_;    ///< along the curve
     std::optional<NearestPoints> nearest_;  ///< of the members
     std::vector<float> noise2_;             ///< per point (noise2_of), or kNotAsked

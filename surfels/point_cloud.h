@@ -113,7 +113,8 @@ struct PointCloud {
                                  ///< there are many points, of each n-th
     bool is_flattened = false;   ///< moved onto planes, since that is above kScatter
     bool is_unoriented = false;  ///< the normals' signs are arbitrary
-    /// While it is unoriented, of each point: its nearest points, kNobody where there are fewer.
+    /// While it is unoriented, along `order`: the nearest points of each, as places in `order`;
+    /// kNobody where there are fewer.
     std::vector<std::array<std::uint32_t, kAreaNeighbours>> neighbours;
 
     static constexpr std::uint32_t kNobody = 0xffffffff;

@@ -29,21 +29,30 @@ float nearness_to_planes(glm::vec3 way, glm::vec3 a, glm::vec3 b)
 void orient(PointCloud& cloud, std::span<const Occlusion> front, std::span<const Occlusion> back)
 {
     const std::size_t count = cloud.occluders.size();
-    SURFELAO_CHECK(cloud.is_unoriented && front.size() == count && back.size() == count);
-    // positive: the normal faces the more open side
+    SURFELAO_CHECK(cloud.is_unoriented && front.size() == count && back.size() == count &&
+                   cloud.order.size() == cloud.positions.size());
+    // along the curve, where neighbours are near in memory; positive: the normal faces the more
+    // open side
     std::vector<float> votes(cloud.positions.size(), 0.0f), next(votes.size());
     for (std::size_t k = 0; k < count; ++k)
-        votes[cloud.occluders[k]] = back[k].occlusion - front[k].occlusion;
+        next[cloud.occluders[k]] = back[k].occlusion - front[k].occlusion;
+    std::vector<glm::vec3> positions(votes.size()), normals(votes.size());
+    for_all(votes.size(), [&](std::size_t i) {
+        const std::uint32_t point = cloud.order[i];
+        votes[i] = next[point];
+        positions[i] = cloud.positions[point];
+        normals[i] = cloud.normals[point];
+    });
     const auto voted = [&](std::size_t i) {
         float sum = votes[i], weights = 1.0f;
         for (const std::uint32_t other : cloud.neighbours[i]) {
             if (other == PointCloud::kNobody)
                 continue;
-            const float cosine = glm::dot(cloud.normals[i], cloud.normals[other]);
+            const float cosine = glm::dot(normals[i], normals[other]);
             // not across edges, nor from the other side of a thin sheet
-            const float weight = cosine * cosine * cosine * cosine *
-                                 nearness_to_planes(cloud.positions[other] - cloud.positions[i],
-                                                    cloud.normals[i], cloud.normals[other]);
+            const float weight =
+                cosine * cosine * cosine * cosine *
+                nearness_to_planes(positions[other] - positions[i], normals[i], normals[other]);
             sum += std::copysign(weight, cosine) * votes[other];
             weights += weight;
         }
@@ -64,8 +73,9 @@ void orient(PointCloud& cloud, std::span<const Occlusion> front, std::span<const
             votes[weak[k]] = next[k];
     }
     for (std::size_t i = 0; i < votes.size(); ++i) {
+        glm::vec3& normal = cloud.normals[cloud.order[i]];
         if (votes[i] < 0.0f)
-            cloud.normals[i] = -cloud.normals[i];
+            normal = -normal;
         cloud.counts.weak += std::abs(votes[i]) < kWeakVote;
     }
     cloud.is_unoriented = false;

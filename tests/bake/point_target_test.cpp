@@ -283,6 +283,7 @@ TEST(Points, TheOtherSideOfAThinSheetHasNoVote)
     cloud.positions = {{0, 0, 0}, {0.01f, 0, 0}, {0, 0, -0.01f}, {0.01f, 0, -0.01f}};
     cloud.normals.assign(4, glm::vec3(0, 0, 1));
     cloud.occluders = {0, 1, 2, 3};
+    cloud.order = {2, 0, 3, 1};  // neighbours are places in it
     cloud.is_unoriented = true;
     cloud.neighbours.resize(4);
     for (std::uint32_t i = 0; i < 4; ++i) {
@@ -373,6 +374,23 @@ TEST(Points, StatedErrorIsThatOfTheEngine)
     const VertexBake asked = bake_points_to_error(target, masks, 0.01, 400);
     EXPECT_TRUE(asked.is_met);
     EXPECT_LE(asked.error->high, 0.01);
+}
+
+// What found the sides answers the bake too, and is asked only what it was prepared for.
+TEST(Points, WhatIsReadyIsNotPreparedAnew)
+{
+    const Scene scan = scenes::sampled(blob(), {.points = 1000, .has_normals = false}).cloud;
+    std::optional<Prepared> masks;
+    const PointTarget target = make_point_target(scan, {}, {}, &masks);
+    ASSERT_TRUE(masks);
+    for (const Engine engine : {Engine::masks, Engine::rays}) {
+        EngineSettings settings;
+        settings.engine = engine;
+        const VertexBake own = bake_points(target, settings, 0);
+        const VertexBake ready = bake_points(target, settings, 0, {}, &*masks);
+        EXPECT_EQ(ready.values, own.values);
+        EXPECT_EQ(ready.seconds.tree == 0.0, engine == Engine::masks);
+    }
 }
 
 TEST(Points, AnyNumberOfThreadsGivesTheSameBytes)
