@@ -29,18 +29,18 @@ Progress part_of(const Progress& whole, double from, double to)
     return [&whole, from, to](double done) { return whole(from + (to - from) * done); };
 }
 
-/// Both sides of all occluders, band by band.
+/// Both sides of all voters, band by band.
 void orient_by_openness(PointTarget& target, const Prepared& prepared, const Progress& progress)
 {
     PointCloud& cloud = target.cloud;
-    const std::span<const std::uint32_t> occluders = cloud.occluders;
+    const std::vector<std::uint32_t> voters = voters_of(cloud);
     std::vector<Occlusion> sides[2];
-    for (std::size_t first = 0; first < occluders.size(); first += kBandPoints) {
-        const std::size_t count = std::min(kBandPoints, occluders.size() - first);
+    for (std::size_t first = 0; first < voters.size(); first += kBandPoints) {
+        const std::size_t count = std::min(kBandPoints, voters.size() - first);
         std::vector<Receiver> receivers =
-            receivers_at(cloud, occluders.subspan(first, count), target.offset);
+            receivers_at(cloud, std::span(voters).subspan(first, count), target.offset);
         for (int side = 0; side < 2; ++side) {
-            const double done = static_cast<double>(first), whole = double(occluders.size());
+            const double done = static_cast<double>(first), whole = double(voters.size());
             const double from = (done + 0.5 * side * double(count)) / whole;
             const std::vector<Occlusion> answers =
                 solve(prepared, receivers, {.quality = kOrientQuality},
@@ -50,7 +50,7 @@ void orient_by_openness(PointTarget& target, const Prepared& prepared, const Pro
             std::ranges::transform(receivers, receivers.begin(), turned_round);
         }
     }
-    orient(cloud, sides[0], sides[1]);
+    orient(cloud, voters, sides[0], sides[1]);
 }
 
 /// Of a cloud: every point counts alike, those without a normal not at all.

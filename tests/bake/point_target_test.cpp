@@ -277,7 +277,8 @@ TEST(Points, NoiseOfManyIsThatOfFew)
 
 // A side of a plate that is nearly as closed as its inside, and the open side below it, so near
 // that they are neighbours.
-TEST(Points, TheOtherSideOfAThinSheetHasNoVote)
+/// Four points, two on each side of a thin sheet.
+PointCloud thin_sheet()
 {
     PointCloud cloud;
     cloud.positions = {{0, 0, 0}, {0.01f, 0, 0}, {0, 0, -0.01f}, {0.01f, 0, -0.01f}};
@@ -294,11 +295,26 @@ TEST(Points, TheOtherSideOfAThinSheetHasNoVote)
                 cloud.neighbours[i][count++] = other;
         }
     }
+    return cloud;
+}
+
+// Nor has it where only one point of each side was asked.
+TEST(Points, TheOtherSideOfAThinSheetHasNoVote)
+{
     const std::vector<Occlusion> front{{0.9f, {}}, {0.9f, {}}, {1.0f, {}}, {1.0f, {}}};
     const std::vector<Occlusion> back{{0.95f, {}}, {0.95f, {}}, {0.2f, {}}, {0.2f, {}}};
-    orient(cloud, front, back);
     const std::vector<glm::vec3> right{{0, 0, 1}, {0, 0, 1}, {0, 0, -1}, {0, 0, -1}};
-    EXPECT_EQ(cloud.normals, right);
+    for (const std::vector<std::uint32_t>& voters :
+         {std::vector<std::uint32_t>{0, 1, 2, 3}, {1, 2}}) {
+        PointCloud cloud = thin_sheet();
+        std::vector<Occlusion> sides[2];
+        for (const std::uint32_t voter : voters) {
+            sides[0].push_back(front[voter]);
+            sides[1].push_back(back[voter]);
+        }
+        orient(cloud, voters, sides[0], sides[1]);
+        EXPECT_EQ(cloud.normals, right);
+    }
 }
 
 TEST(Points, NormalsAreTurnedAsToldTo)
