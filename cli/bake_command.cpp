@@ -21,7 +21,7 @@
 #include "files/scene_io.h"
 #include "grid/grid_file.h"
 #include "surfels/errors.h"
-#include "surfels/freed_pages.h"
+#include "surfels/heap_pages.h"
 #include "surfels/progress.h"
 
 #include <CLI/CLI.hpp>
@@ -318,7 +318,7 @@ bool is_large(const Job& job)
 int run(const BakeOptions& options, const std::vector<Job>& jobs)
 {
     if (std::ranges::any_of(jobs, is_large))
-        keep_freed_pages(false);
+        return_heap_pages();
     OutputFolders folders;
     folders.make_for_report(options.json);
     if (is_folder(options))

@@ -2,7 +2,7 @@
 #include "cli/interrupt.h"
 #include "cli/usage_sentence.h"
 #include "surfels/errors.h"
-#include "surfels/freed_pages.h"
+#include "surfels/heap_pages.h"
 #include "surfels/progress.h"
 
 #include <CLI/CLI.hpp>
@@ -15,7 +15,7 @@ namespace {
 
 int run(int argument_count, char** arguments)
 {
-    keep_freed_pages(true);
+    keep_heap_pages();
     CLI::App app;
     Work work;
     add_commands(app, work);

@@ -1,6 +1,7 @@
 #include "pixels/sampled_triangles.h"
 
 #include "surfels/buckets.h"
+#include "surfels/clones.h"
 #include "surfels/errors.h"
 #include "surfels/for_all.h"
 
@@ -20,6 +21,9 @@ namespace {
 
 /// Rows of one task.
 constexpr int kStripRows = 16;
+
+/// Triangles of one task.
+constexpr std::size_t kTrianglesOfTask = 8192;
 
 using Samples = std::array<float, kSamplesAtOnce>;
 
@@ -100,16 +104,23 @@ public:
 
     std::vector<std::vector<std::uint32_t>> sample()
     {
-        const Buckets<std::uint32_t> of_strips = triangles_of_strips();
+        const std::size_t count = projected_.geometry().triangles.size();
+        Chunks chunks((count + kTrianglesOfTask - 1) / kTrianglesOfTask);
+        for_tasks(chunks.size(), [&](std::size_t chunk) {
+            chunks[chunk].emplace(
+                triangles_of_strips(chunk * kTrianglesOfTask, std::min(count, (chunk + 1) * kTrianglesOfTask)));
+        });
         std::vector<std::vector<std::uint32_t>> triangles(
             shifts_.size(), std::vector<std::uint32_t>(pixels_.size()));
-        for_tasks(of_strips.owner_count(), [&](std::size_t strip) {
-            sample_strip(static_cast<int>(strip) * kStripRows, of_strips[strip], triangles);
-        });
+        for_tasks(strip_count(),
+                  [&](std::size_t strip) { sample_strip(strip, chunks, triangles); });
         return triangles;
     }
 
 private:
+    /// Of kTrianglesOfTask triangles each, those of every strip.
+    using Chunks = std::vector<std::optional<Buckets<std::uint32_t>>>;
+
     /// Of pixels_, those of a row from column first to last.
     struct Run {
         std::uint32_t begin, end;
@@ -121,39 +132,44 @@ private:
                 ranks_.below(row + static_cast<std::size_t>(last) + 1)};
     }
 
-    [[nodiscard]] Buckets<std::uint32_t> triangles_of_strips() const
+    /// A chunk's, by strip.
+    [[nodiscard]] Buckets<std::uint32_t> triangles_of_strips(std::size_t begin,
+                                                             std::size_t end) const
     {
         struct Rows {
-            std::uint16_t first = 1, last = 0;
+            int first = 1, last = 0;
         };
         const auto& triangles = projected_.geometry().triangles;
-        std::vector<Rows> rows(triangles.size());
-        for_all(rows.size(), [&](std::size_t t) {
+        std::vector<Rows> rows(end - begin);
+        for (std::size_t t = begin; t < end; ++t) {
             const PixelBox box = projected_.box_of(triangles[t]);
             if (box.is_empty())
-                return;
+                continue;
             const auto is_asked = [&](int y) {
                 const Run run = run_of(y, box.first.x, box.last.x);
                 return run.begin != run.end;
             };
-            int first = box.first.y, last = box.last.y;
-            while (first <= last && !is_asked(first))
-                ++first;
-            while (last > first && !is_asked(last))
-                --last;
-            if (first <= last)
-                rows[t] = {static_cast<std::uint16_t>(first), static_cast<std::uint16_t>(last)};
-        });
-        const int strips = (size_.y + kStripRows - 1) / kStripRows;
-        return {static_cast<std::size_t>(strips), [&](const auto& put) {
-                    for (std::uint32_t t = 0; t < rows.size(); ++t) {
-                        if (rows[t].first > rows[t].last)
+            Rows& own = rows[t - begin] = {box.first.y, box.last.y};
+            while (own.first <= own.last && !is_asked(own.first))
+                ++own.first;
+            while (own.last > own.first && !is_asked(own.last))
+                --own.last;
+        }
+        return {strip_count(), [&](const auto& put) {
+                    for (std::size_t i = 0; i < rows.size(); ++i) {
+                        if (rows[i].first > rows[i].last)
                             continue;
-                        for (int strip = rows[t].first / kStripRows;
-                             strip <= rows[t].last / kStripRows; ++strip)
-                            put(static_cast<std::uint32_t>(strip), t);
+                        for (int strip = rows[i].first / kStripRows;
+                             strip <= rows[i].last / kStripRows; ++strip)
+                            put(static_cast<std::uint32_t>(strip),
+                                static_cast<std::uint32_t>(begin + i));
                     }
                 }};
+    }
+
+    [[nodiscard]] std::size_t strip_count() const
+    {
+        return static_cast<std::size_t>((size_.y + kStripRows - 1) / kStripRows);
     }
 
     /// None where it is seen edge-on.
@@ -191,28 +207,31 @@ private:
         return seen;
     }
 
-    void sample_strip(int first_row, std::span<const std::uint32_t> strip,
-                      std::vector<std::vector<std::uint32_t>>& triangles) const
+    SURFELAO_CLONES void sample_strip(std::size_t strip, const Chunks& chunks,
+                                      std::vector<std::vector<std::uint32_t>>& triangles) const
     {
-        const int end_row = std::min(first_row + kStripRows, size_.y);
+        const int first_row = static_cast<int>(strip) * kStripRows,
+                  end_row = std::min(first_row + kStripRows, size_.y);
         const std::uint32_t begin = run_of(first_row, 0, 0).begin,
                             end = run_of(end_row - 1, 0, size_.x - 1).end;
         Samples unseen;
         unseen.fill(std::numeric_limits<float>::infinity());
         std::vector<Samples> depths(end - begin, unseen);
         std::vector<std::array<std::uint32_t, kSamplesAtOnce>> nearest(end - begin);
-        for (const std::uint32_t t : strip) {
-            const glm::uvec3& triangle = projected_.geometry().triangles[t];
-            const PixelBox box = projected_.box_of(triangle);
-            const std::optional<Seen> planes = seen(triangle);
-            if (!planes)
-                continue;
-            for (int y = std::max(box.first.y, first_row); y <= std::min(box.last.y, end_row - 1);
-                 ++y) {
-                const Run run = run_of(y, box.first.x, box.last.x);
-                for (std::uint32_t i = run.begin; i < run.end; ++i)
-                    cover(*planes, static_cast<int>(pixels_[i]) % size_.x, y, t + 1,
-                          depths[i - begin], nearest[i - begin]);
+        for (const auto& chunk : chunks) {
+            for (const std::uint32_t t : (*chunk)[strip]) {
+                const glm::uvec3& triangle = projected_.geometry().triangles[t];
+                const PixelBox box = projected_.box_of(triangle);
+                const std::optional<Seen> planes = seen(triangle);
+                if (!planes)
+                    continue;
+                for (int y = std::max(box.first.y, first_row);
+                     y <= std::min(box.last.y, end_row - 1); ++y) {
+                    const Run run = run_of(y, box.first.x, box.last.x);
+                    for (std::uint32_t i = run.begin; i < run.end; ++i)
+                        cover(*planes, static_cast<int>(pixels_[i]) % size_.x, y, t + 1,
+                              depths[i - begin], nearest[i - begin]);
+                }
             }
         }
         for (std::size_t s = 0; s < triangles.size(); ++s) {

@@ -1,19 +1,12 @@
 #include "reference/sobol.h"
 
+#include "surfels/clones.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-// One clone per vector width, chosen when the program is loaded. Without contraction and with only
-// correctly rounded operations all clones give the same bytes. The thread sanitizer is not
-// up yet when the choice is made, and crashes.
-#if defined(__SANITIZE_THREAD__)
-#define SURFELAO_CLONES
-#else
-#define SURFELAO_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#endif
 
 namespace surfelao {
 namespace {
