@@ -8,7 +8,7 @@
 
 #include "surfels/occlusion.h"
 #include "surfels/receiver.h"
-#include "tree/raw_vector.h"
+#include "surfels/raw_vector.h"
 #include "tree/receiver_group.h"
 
 #include <glm/mat3x3.hpp>

@@ -11,7 +11,7 @@
 #include "surfels/placement.h"
 #include "tree/masks/refit.h"
 #include "tree/masks/tree.h"
-#include "tree/raw_vector.h"
+#include "surfels/raw_vector.h"
 
 #include <glm/vec3.hpp>
 

@@ -11,7 +11,7 @@
 #include "tree/masks/patch.h"
 #include "tree/masks/tiles.h"
 #include "tree/masks/tree.h"
-#include "tree/raw_vector.h"
+#include "surfels/raw_vector.h"
 
 #include <glm/vec3.hpp>
 

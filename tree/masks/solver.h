@@ -10,7 +10,7 @@
 #include "tree/masks/limits.h"
 #include "tree/masks/masks.h"
 #include "tree/masks/tree.h"
-#include "tree/raw_vector.h"
+#include "surfels/raw_vector.h"
 #include "tree/receiver_groups.h"
 
 #include <cstddef>

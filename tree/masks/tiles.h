@@ -5,7 +5,7 @@
 #pragma once
 
 #include "surfels/geometry.h"
-#include "tree/raw_vector.h"
+#include "surfels/raw_vector.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>

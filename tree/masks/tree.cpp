@@ -12,7 +12,7 @@
 #include "tree/masks/tiles.h"
 #include "tree/masks/winding.h"
 #include "tree/part.h"
-#include "tree/raw_vector.h"
+#include "surfels/raw_vector.h"
 
 #include <glm/geometric.hpp>
 

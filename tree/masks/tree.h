@@ -9,7 +9,7 @@
 /// Internal to the mask engine; masks.h is its door.
 #pragma once
 
-#include "tree/raw_vector.h"
+#include "surfels/raw_vector.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
