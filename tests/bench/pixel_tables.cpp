@@ -15,6 +15,7 @@
 #include "bake/surface_error.h"
 #include "files/scene_io.h"
 #include "pixels/pixel_picture.h"
+#include "surfels/heap_pages.h"
 
 #include <glm/common.hpp>
 #include <glm/vector_relational.hpp>
@@ -312,6 +313,7 @@ int run(int count, char** words)
 
 int main(int count, char** words)
 {
+    surfelao::keep_heap_pages();  // as the program does
     try {
         return surfelao::run(count, words);
     } catch (const std::exception& error) {

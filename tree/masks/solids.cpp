@@ -14,6 +14,9 @@
 namespace surfelao {
 namespace {
 
+/// Triangles: a tetrahedron. Points of a cloud are bodies of two.
+constexpr std::uint32_t kLeastOfSolid = 4;
+
 /// From one point, the middle of the corners, all triangles are seen from behind. From there
 /// outward the winding number of a closed body only falls, to 0.
 bool is_star(const Geometry& geometry, std::span<const std::uint32_t> triangles)
@@ -52,7 +55,7 @@ std::vector<std::uint8_t> small_solids(const Geometry& geometry)
     // the triangles of small bodies side by side
     std::vector<std::uint32_t> members;
     for (std::uint32_t t = 0; t < count; ++t) {
-        if (size[body[t]] <= kMaskMostOfSolid)
+        if (size[body[t]] >= kLeastOfSolid && size[body[t]] <= kMaskMostOfSolid)
             members.push_back(t);
     }
     std::vector<std::uint8_t> solid(count, 0);
