@@ -107,8 +107,8 @@ public:
         const std::size_t count = projected_.geometry().triangles.size();
         Chunks chunks((count + kTrianglesOfTask - 1) / kTrianglesOfTask);
         for_tasks(chunks.size(), [&](std::size_t chunk) {
-            chunks[chunk].emplace(
-                triangles_of_strips(chunk * kTrianglesOfTask, std::min(count, (chunk + 1) * kTrianglesOfTask)));
+            chunks[chunk].emplace(triangles_of_strips(
+                chunk * kTrianglesOfTask, std::min(count, (chunk + 1) * kTrianglesOfTask)));
         });
         std::vector<std::vector<std::uint32_t>> triangles(
             shifts_.size(), std::vector<std::uint32_t>(pixels_.size()));

@@ -1,8 +1,8 @@
-/// clones.h: functions that are compiled once per vector width, the widest chosen when the program is
-/// loaded.
+/// clones.h: functions that are compiled once per vector width, the widest chosen when the program
+/// is loaded.
 ///
-/// Internal: for the folders' own sources. For loops over lanes that a compiler sees by itself. With
-/// correctly rounded operations only all clones give the same bytes: nothing is contracted
+/// Internal: for the folders' own sources. For loops over lanes that a compiler sees by itself.
+/// With correctly rounded operations only all clones give the same bytes: nothing is contracted
 /// (cmake/options.cmake).
 #pragma once
 

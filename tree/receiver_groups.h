@@ -7,8 +7,8 @@
 #pragma once
 
 #include "surfels/occlusion.h"
-#include "surfels/receiver.h"
 #include "surfels/raw_vector.h"
+#include "surfels/receiver.h"
 #include "tree/receiver_group.h"
 
 #include <glm/mat3x3.hpp>

@@ -9,9 +9,9 @@
 #include "surfels/bodies.h"
 #include "surfels/geometry.h"
 #include "surfels/placement.h"
+#include "surfels/raw_vector.h"
 #include "tree/masks/refit.h"
 #include "tree/masks/tree.h"
-#include "surfels/raw_vector.h"
 
 #include <glm/vec3.hpp>
 

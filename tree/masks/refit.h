@@ -8,10 +8,10 @@
 #pragma once
 
 #include "surfels/geometry.h"
+#include "surfels/raw_vector.h"
 #include "tree/masks/patch.h"
 #include "tree/masks/tiles.h"
 #include "tree/masks/tree.h"
-#include "surfels/raw_vector.h"
 
 #include <glm/vec3.hpp>
 

@@ -5,12 +5,12 @@
 
 #include "surfels/occlusion.h"
 #include "surfels/progress.h"
+#include "surfels/raw_vector.h"
 #include "surfels/receiver.h"
 #include "tree/masks/kernel.h"
 #include "tree/masks/limits.h"
 #include "tree/masks/masks.h"
 #include "tree/masks/tree.h"
-#include "surfels/raw_vector.h"
 #include "tree/receiver_groups.h"
 
 #include <cstddef>

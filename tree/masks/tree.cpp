@@ -2,6 +2,7 @@
 
 #include "surfels/errors.h"
 #include "surfels/for_all.h"
+#include "surfels/raw_vector.h"
 #include "tree/discard.h"
 #include "tree/masks/constants.h"
 #include "tree/masks/masks.h"
@@ -12,7 +13,6 @@
 #include "tree/masks/tiles.h"
 #include "tree/masks/winding.h"
 #include "tree/part.h"
-#include "surfels/raw_vector.h"
 
 #include <glm/geometric.hpp>
 
