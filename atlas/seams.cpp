@@ -1,5 +1,6 @@
 #include "atlas/seams.h"
 
+#include "surfels/conjugate_gradients.h"
 #include "surfels/errors.h"
 
 #include <glm/common.hpp>
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -19,9 +19,7 @@ namespace {
 constexpr int kMostSteps = 64;
 /// Rounding of a share of a triangle.
 constexpr double kLeastShare = -1e-9;
-constexpr int kMostIterations = 40;
-/// Of the residual's length, in parts of what it was: stops the iteration.
-constexpr double kResidual = 1e-4;
+constexpr GradientLimits kStitchLimits{.residual = 1e-4, .steps = 40};
 
 double cross(glm::dvec2 a, glm::dvec2 b)
 {
@@ -313,11 +311,6 @@ private:
     std::vector<double> weights_;
 };
 
-double dot(const std::vector<double>& a, const std::vector<double>& b)
-{
-    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
 /// How much each sample counts: Cauchy's weights (seams.h: kStitchJump).
 std::vector<double> stitch_weights(const std::vector<double>& jumps)
 {
@@ -329,7 +322,7 @@ std::vector<double> stitch_weights(const std::vector<double>& jumps)
 }
 
 /// The change y of values x0 that minimises |W (S (x0 + y))|^2 + kStitchWeight |y|^2, S: the
-/// differences, W^2: the weights (Hestenes, Stiefel. Methods of Conjugate Gradients. 1952).
+/// differences, W^2: the weights.
 std::vector<double> change_to_join(const SeamSamples& samples, const std::vector<double>& values,
                                    const Progress& progress)
 {
@@ -340,29 +333,17 @@ std::vector<double> change_to_join(const SeamSamples& samples, const std::vector
             differences[s] *= weights[s];
         return samples.spread(differences);
     };
-    std::vector<double> rest = normal_product(values);
-    for (double& value : rest)
+    std::vector<double> right = normal_product(values);
+    for (double& value : right)
         value = -value;
-    std::vector<double> change(values.size(), 0.0), way = rest;
-    const double first = dot(rest, rest);
-    double length = first;
-    for (int i = 0; i < kMostIterations && length > kResidual * kResidual * first; ++i) {
-        if (progress && !progress(static_cast<double>(i) / kMostIterations))
-            throw Cancelled();
-        std::vector<double> image = normal_product(way);
-        for (std::size_t k = 0; k < image.size(); ++k)
-            image[k] += kStitchWeight * way[k];
-        const double step = length / dot(way, image);
-        for (std::size_t k = 0; k < image.size(); ++k) {
-            change[k] += step * way[k];
-            rest[k] -= step * image[k];
-        }
-        const double next = dot(rest, rest);
-        for (std::size_t k = 0; k < way.size(); ++k)
-            way[k] = rest[k] + next / length * way[k];
-        length = next;
-    }
-    return change;
+    return conjugate_gradients(
+        [&](const std::vector<double>& of) {
+            std::vector<double> image = normal_product(of);
+            for (std::size_t k = 0; k < image.size(); ++k)
+                image[k] += kStitchWeight * of[k];
+            return image;
+        },
+        std::move(right), kStitchLimits, progress);
 }
 
 float& value_at(std::span<Map> pages, std::uint64_t texel, std::uint32_t channel)
@@ -458,9 +439,12 @@ SeamJump seam_jump(const Seams& seams, std::span<const Map> pages)
         return {};
     SeamJump jump;
     const std::vector<double> differences = samples.differences(values_of(samples, pages, 0));
-    for (const double difference : differences)
+    double sum = 0.0;
+    for (const double difference : differences) {
         jump.most = std::max(jump.most, std::abs(difference));
-    jump.rms = std::sqrt(dot(differences, differences) / static_cast<double>(differences.size()));
+        sum += difference * difference;
+    }
+    jump.rms = std::sqrt(sum / static_cast<double>(differences.size()));
     return jump;
 }
 

@@ -1,18 +1,16 @@
 #include "bake/texel_fit.h"
 
+#include "surfels/conjugate_gradients.h"
 #include "surfels/errors.h"
 
 #include <algorithm>
 #include <functional>
-#include <numeric>
 #include <utility>
 
 namespace surfelao {
 namespace {
 
-constexpr int kMostFitSteps = 40;
-/// Of the residual's length, in parts of what it was: stops the iteration.
-constexpr double kFitResidual = 1e-3;
+constexpr GradientLimits kTexelLimits{.residual = 1e-3, .steps = 40};
 
 /// What a sample fetches: indices into the list of unknowns.
 struct FitRow {
@@ -81,34 +79,6 @@ private:
     std::vector<FitRow> rows_;
 };
 
-double inner(const std::vector<double>& a, const std::vector<double>& b)
-{
-    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
-/// The change that leads from the residual `rest` to none (Hestenes, Stiefel. Methods of Conjugate
-/// Gradients. 1952).
-std::vector<double> change_to_fit(const TexelEquations& equations, const std::vector<double>& held,
-                                  std::vector<double> rest)
-{
-    std::vector<double> change(rest.size(), 0.0), way = rest;
-    const double first = inner(rest, rest);
-    double length = first;
-    for (int i = 0; i < kMostFitSteps && length > kFitResidual * kFitResidual * first; ++i) {
-        const std::vector<double> image = equations.product(held, way);
-        const double step = length / inner(way, image);
-        for (std::size_t k = 0; k < way.size(); ++k) {
-            change[k] += step * way[k];
-            rest[k] -= step * image[k];
-        }
-        const double next = inner(rest, rest);
-        for (std::size_t k = 0; k < way.size(); ++k)
-            way[k] = rest[k] + next / length * way[k];
-        length = next;
-    }
-    return change;
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> texels_with_steps(const Map& visibility,
@@ -146,7 +116,9 @@ void fit_texels(Map& visibility, std::span<const std::uint8_t> known,
     std::vector<double> rest(texels.size(), 0.0);
     for (std::size_t s = 0; s < samples.size(); ++s)
         equations.spread(s, double{samples[s].visibility} - equations.shown(s, values), rest);
-    const std::vector<double> change = change_to_fit(equations, held, std::move(rest));
+    const std::vector<double> change = conjugate_gradients(
+        [&](const std::vector<double>& of) { return equations.product(held, of); }, std::move(rest),
+        kTexelLimits);
     for (std::size_t k = 0; k < texels.size(); ++k)
         visibility.values[texels[k]] =
             static_cast<float>(std::clamp(values[k] + change[k], 0.0, 1.0));

@@ -104,7 +104,7 @@ std::uint32_t PixelSamples::find(const View& view, std::span<const std::uint32_t
     return nearest;
 }
 
-std::size_t PixelSamples::add(const View& view, std::span<const std::uint32_t> triangles)
+void PixelSamples::add(const View& view, std::span<const std::uint32_t> triangles)
 {
     struct Extra {
         Share share;
@@ -151,7 +151,6 @@ std::size_t PixelSamples::add(const View& view, std::span<const std::uint32_t> t
         }
     });
 
-    const std::size_t before = extra_shares_.size();
     for (const std::vector<Extra>& extras : added) {
         for (const Extra& extra : extras) {
             const std::span<std::uint32_t> chosen(&chosen_[kPlaces * extra.place], kPlaces);
@@ -161,7 +160,6 @@ std::size_t PixelSamples::add(const View& view, std::span<const std::uint32_t> t
             extra_points_.push_back(extra.point);
         }
     }
-    return extra_shares_.size() - before;
 }
 
 std::uint64_t PixelSamples::edge_pixels() const

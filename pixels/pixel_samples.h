@@ -54,8 +54,8 @@ public:
                  std::span<const std::uint32_t> pixels, int samples, const BaseColorAt& base = {});
 
     /// A sample of each of the pixels. view: with the lens of the sample. triangles: one a pixel,
-    /// as of seen_pixels(). Returns the number of receivers that it added. O(pixels).
-    std::size_t add(const View& view, std::span<const std::uint32_t> triangles);
+    /// as of seen_pixels(). O(pixels).
+    void add(const View& view, std::span<const std::uint32_t> triangles);
 
     /// Pixels with a receiver beside their middle's, or with one where the middle sees nothing.
     [[nodiscard]] std::uint64_t edge_pixels() const;
