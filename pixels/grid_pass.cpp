@@ -15,21 +15,7 @@
 namespace surfelao {
 namespace {
 
-constexpr int kCapTable = 64;  // of grid_cone.glsl: off by .0014 at most, .0001 RMS
 constexpr std::size_t kBoxVertices = 36;
-
-/// T over the share of the sphere that a cap has and (1 + cos b) / 2.
-std::vector<float> cap_table()
-{
-    std::vector<float> table;
-    constexpr double kLast = kCapTable - 1;
-    for (int y = 0; y < kCapTable; ++y) {
-        for (int x = 0; x < kCapTable; ++x)
-            table.push_back(
-                static_cast<float>(clipped_cap(1.0 - 2.0 * (x / kLast), 2.0 * (y / kLast) - 1.0)));
-    }
-    return table;
-}
 
 std::vector<Texture3D> cells_of(const GlContext& context, const AoGrid& grid)
 {
@@ -97,11 +83,7 @@ void set_warp(Program& program, const AoGrid& grid)
 
 }  // namespace
 
-GridPass::GridPass(const GlContext& context)
-    : context_(context),
-      nothing_(context),
-      caps_(context, kCapTable, kCapTable, TexelFormat::r32f, std::span<const float>(cap_table()),
-            {.filter = TextureFilter::linear})
+GridPass::GridPass(const GlContext& context) : context_(context), nothing_(context)
 {
 }
 
@@ -156,8 +138,6 @@ Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object,
         program.set("u_cells_2", textures[1]);
         program.set("u_cells_3", textures[2]);
     }
-    if (!is_sh && !is_joined)
-        program.set("u_caps", caps_);
     return program;
 }
 
@@ -201,7 +181,6 @@ void GridPass::join(const GBuffer& seen, std::span<const PlacedGrid> objects,
     Program& program = context_.program("fullscreen.vert", "grid_union.frag");
     program.set("u_surface", seen.surface());
     program.set("u_before", before.color());
-    program.set("u_caps", caps_);
     draw_fullscreen(target, program, nothing_);
 }
 

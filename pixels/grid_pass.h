@@ -3,7 +3,7 @@
 /// A pass for each object draws the back faces of its box, without a depth test: every pixel of the
 /// box once. Of the point that the pixel sees it reads the cells around with the device's own
 /// filter, which is why the values are those of visibility_at() (placed_grid.h) to .003 only: cells
-/// are halves, the cap's table has 64 x 64 entries, and a GPU's filter has 8 bits.
+/// are halves, a cap cut by the horizon is told to .0011, and a GPU's filter has 8 bits.
 #pragma once
 
 #include "gpu/context.h"
@@ -47,7 +47,6 @@ private:
 
     const GlContext& context_;
     VertexArray nothing_;
-    Texture2D caps_;
     std::map<const AoGrid*, Stored> stored_;
     /// Of the union: joined so far, and with one object more.
     std::optional<std::pair<Framebuffer, Framebuffer>> joined_;

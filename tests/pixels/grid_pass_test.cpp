@@ -115,6 +115,30 @@ TEST(GridPass, SeesTheSameWithTheEyeInsideOfTheBoxAndWithoutPerspective)
     EXPECT_GT(mean, 0.02);
 }
 
+// All widths of caps and all ways to cut them: of one width everywhere in the box.
+TEST(GridPass, CutsCapsByTheHorizon)
+{
+    for (const float alpha : {0.01f, 0.05f, 0.15f, 0.3f, 0.45f, 0.5f, 0.55f, 0.7f, 0.9f, 0.99f}) {
+        AoGrid grid = sphere_grid(1.0, 3.0, 4, GridStore::cone, GridBorder::rescale);
+        const glm::vec3 mean =
+            alpha * (1.0f - alpha) * glm::normalize(glm::vec3(0.2f, -1.0f, 0.1f));
+        for (std::size_t i = 0; i < grid.values.size(); i += 4) {
+            for (int c = 0; c < 3; ++c)
+                grid.values[i + c] = mean[c];
+            grid.values[i + 3] = alpha;
+        }
+        grid.border_value = 0.0f;
+        const std::vector<PlacedGrid> objects{
+            {std::make_shared<const AoGrid>(grid), placed_at(glm::dvec3(0.0), 1.0, 0.7)}};
+        double mean_occlusion = 0.0;
+        EXPECT_LE(largest_difference(looking_at_hills({0.3f, -1.2f, 0.8f}), objects,
+                                     GridMerge::product, mean_occlusion),
+                  0.0015f)
+            << alpha;
+        EXPECT_GT(mean_occlusion, 0.1 * double{alpha});
+    }
+}
+
 // The floor below a ball, darkest under it: on the way out no step tells where the box ends.
 TEST(PlacedGrids, NoBoxIsSeenOnTheFloor)
 {
