@@ -1,5 +1,6 @@
 #include "bake/grid_target.h"
 
+#include "bake/cone_fit.h"
 #include "bake/grid_fit.h"
 #include "grid/cone.h"
 #include "reference/closest_hit.h"
@@ -91,6 +92,7 @@ public:
         }
         glm::vec4 moments = moments_of(GridStore::sh, found.data());
         moments.w = std::clamp(moments.w, 0.0f, 1.0f);
+        moments = fit_cone(moments, directions, {answers, kHemispheres});
         for (int c = 0; c < 4; ++c)
             values[c] = moments[c];
     }

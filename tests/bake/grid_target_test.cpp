@@ -1,5 +1,6 @@
 #include "bake/grid_target.h"
 
+#include "bake/cone_fit.h"
 #include "bake/grid_fit.h"
 #include "engines/threads.h"
 #include "grid/cone.h"
@@ -13,6 +14,7 @@
 #include <glm/vector_relational.hpp>
 
 #include <cmath>
+#include <vector>
 
 namespace surfelao {
 namespace {
@@ -68,6 +70,41 @@ TEST(GridTarget, ABallHidesItsCap)
         EXPECT_LT(moments, 0.006) << name_of(store);
         EXPECT_LT(read, 0.02) << name_of(store);
     }
+}
+
+/// What two caps hide, half a radian apart, is no cone; what one hides is.
+TEST(ConeFit, ComesNearerToWhatReceiversSee)
+{
+    std::vector<glm::vec3> normals;
+    for (int i = 0; i < 16; ++i) {
+        const float z = 1.0f - (2.0f * static_cast<float>(i) + 1.0f) / 16.0f;
+        const float r = std::sqrt(1.0f - z * z), turn = 2.4f * static_cast<float>(i);
+        normals.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
+    }
+    const auto moments_of_cap = [](glm::vec3 axis, float alpha) {
+        return glm::vec4(alpha * (1.0f - alpha) * axis, alpha);
+    };
+    const glm::vec4 first = moments_of_cap({0.0f, 0.0f, 1.0f}, 0.1f);
+    const glm::vec4 second = moments_of_cap({std::sin(0.5f), 0.0f, std::cos(0.5f)}, 0.15f);
+    std::vector<Occlusion> of_first, of_both;
+    for (const glm::vec3 normal : normals) {
+        of_first.push_back({occlusion_by(cone_of(first), normal)});
+        of_both.push_back({of_first.back().occlusion + occlusion_by(cone_of(second), normal)});
+    }
+    const auto error_of = [&](glm::vec4 moments) {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < normals.size(); ++k) {
+            const double off =
+                double{occlusion_by(cone_of(moments), normals[k]) - of_both[k].occlusion};
+            sum += off * off;
+        }
+        return std::sqrt(sum / 16.0);
+    };
+    EXPECT_LT(glm::distance(fit_cone(first, normals, of_first), first), 1e-5f);
+    const glm::vec4 both = first + second;
+    const double before = error_of(both), after = error_of(fit_cone(both, normals, of_both));
+    EXPECT_GT(before, 0.005);
+    EXPECT_LT(after, 0.97 * before) << before << ' ' << after;
 }
 
 /// A sheet from close above: half of all directions.
