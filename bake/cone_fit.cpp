@@ -57,6 +57,10 @@ glm::vec4 fit_cone(glm::vec4 moments, std::span<const glm::vec3> normals,
     for (int c = 0; c < 4; ++c)
         fitted[c] += static_cast<float>(step[c]);
     fitted.w = std::clamp(fitted.w, 0.0f, 1.0f);
+    // no direction is hidden twice: a cap has the longest mean, and files hold no longer one
+    const float length = glm::length(glm::vec3(fitted)), most = fitted.w * (1.0f - fitted.w);
+    if (length > most)
+        fitted = glm::vec4(glm::vec3(fitted) * (most / length), fitted.w);
     const Eigen::VectorXd change = read_by(fitted, normals) - now;
     return (missing - change).squaredNorm() < missing.squaredNorm() ? fitted : moments;
 }

@@ -7,7 +7,7 @@
 /// Internal to bake_grid (grid_target.h).
 #pragma once
 
-#include "engines/engine.h"
+#include "surfels/occlusion.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>

@@ -6,8 +6,9 @@
 ///     alpha = 1/(4 pi) integral V dw      in [0, 1]
 ///     m     = integral V w dw             |m| <= 4 pi alpha
 ///
-/// (GridStore::cone), or V projected on nine real spherical harmonics (GridStore::sh). A receiver
-/// of any normal reads its occlusion from what lies between the eight cells around it.
+/// (GridStore::cone; a baked cell's are moved to the cone that receivers there read best), or V
+/// projected on nine real spherical harmonics (GridStore::sh). A receiver of any normal reads its
+/// occlusion from what lies between the eight cells around it.
 ///
 /// Cells are places: those of the box's faces lie on it, `cells` an axis. They stand closer by the
 /// object: along each axis, x from the middle of the box in half its size, u the same of the grid,
