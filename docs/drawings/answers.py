@@ -126,11 +126,11 @@ def crack_weights(numbers):
         return max(0.0, min(1.0, (occlusion - start) / reach))
     share = value_of("kMaskFillShare")
     p.path([(a, share * weight(a, "Fill")) for a in places], stroke=ORANGE, width=2.5)
-    for s, dash in ((0.7, None), (0.525, "6 3"), (0.35, "2 3")):
+    for s, dash in ((0.7, None), (0.5, "6 3"), (0.4, "2 3")):
         c = max(0.0, min(1.0, s / value_of("kMaskNarrowCracks") - 1))
         p.path([(a, c * weight(a, "Close")) for a in places], stroke=GREEN, width=2, dash=dash)
     p.text((0.30, 0.72), "cracks of one bit", color=ORANGE)
-    p.text((0.50, 0.14), "of two bits: s = .7, .525, .35", color=GREEN)
+    p.text((0.50, 0.14), "of two bits: s = .7, .5, .4", color=GREEN)
     p.title("How much a crack counts as closed")
     numbers["fill weight at half"] = share * weight(0.5, "Fill")
     return d

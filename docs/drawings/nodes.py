@@ -100,7 +100,7 @@ def open_radius(numbers):
     p = Panel(d, 60, 40, 460, 220, (-6, 0), (0.8, 6.2))
     p.axes([(e, f"1e{e}" if e else "1") for e in range(-6, 1)],
            [(k, str(k)) for k in (1, 2, 3, 4, 5, 6)], "1 - flatness")
-    p.title("Open radius of a node without gaps, in radii")
+    p.title("Open radius of a node without gaps, in spreads")
     places = [10 ** (-6 + 6 * i / 240) for i in range(241)]
     p.path([(math.log10(b), (1 + penalty * b) * (1 + flat_penalty * max(0.0, 1 - flat_slope * b)))
             for b in places], stroke=BLUE, width=2.5)

@@ -96,6 +96,26 @@ TEST(MaskWorlds, ATinyPartOfAHugeSceneIsAsGoodAsAlone)
     EXPECT_LT(rms_difference(expected, answer), 0.01);
 }
 
+// By its area nearly all of the scene is the far ball: the rest is little to see, but not for who
+// is inside of it.
+TEST(MaskWorlds, ASmallBodyIsClosedFromInsideHoweverLargeItsNeighbour)
+{
+    for (const double far : {6.0, 10.0, 20.0, 40.0}) {
+        const glm::dvec3 small(far, 0.3 * far, 0.1 * far);
+        const Geometry geometry =
+            make_geometry(scenes::sphere({0, 0, 0}, 1.0, 12) + scenes::sphere(small, 0.01, 4));
+        std::vector<Receiver> receivers;
+        for (const glm::dvec3 normal : {glm::dvec3(1, 0, 0), {0, 1, 0}, {-1, 0, 0}, {-1, -1, 1}})
+            receivers.push_back(receiver_at(geometry, small, normal));
+        for (const Setting& setting : settings()) {
+            for (const Occlusion& found : solve(geometry, receivers, setting.options)) {
+                // .86: so coarse a ball has cracks
+                EXPECT_GT(found.occlusion, 0.8) << setting.name << " at " << far;
+            }
+        }
+    }
+}
+
 TEST(MaskWorlds, RotationScaleAndOrderDoNotMatter)
 {
     const Scene scene = scenes::bumpy_sphere(12) + scenes::box({0.9, 0.9, 0.9}, {1.6, 1.5, 1.4}, 6);

@@ -120,11 +120,15 @@ void set_rectangles(Columns& of)
 
     const Float4 flatness = of.area > 0.0f ? least(one, of.seen_area / of.area) : zero;
     const Float4 cover = spread_area > 0.0f ? of.area / spread_area : one;
+    // half the diagonal of the box of these second moments: bounds grow with every level that they
+    // follow from, sums do not; and no less than what keeps a cluster off those inside of it
+    const Float4 spread_radius = root(3.0f * per_area * (of.xx + of.yy + of.zz));
     of.open_radius =
-        of.radius *
-        (1.0f + kMaskFlatnessPenalty * (1.0f - flatness) +
-         kMaskGapPenalty * most(zero, kMaskSheetCover - cover)) *
-        (1.0f + kMaskFlatPenalty * most(zero, 1.0f - kMaskFlatSlope * (1.0f - flatness)));
+        most(kMaskRelaxedCluster * of.radius,
+             spread_radius *
+                 (1.0f + kMaskFlatnessPenalty * (1.0f - flatness) +
+                  kMaskGapPenalty * most(zero, kMaskSheetCover - cover)) *
+                 (1.0f + kMaskFlatPenalty * most(zero, 1.0f - kMaskFlatSlope * (1.0f - flatness))));
     of.may_be_whole = (flatness > 1.0f - kMaskWhole) &
                       (absolute(spread_area - of.area) < kMaskWholeMoments * kMaskWhole * of.area);
 

@@ -34,9 +34,11 @@ struct alignas(64) MaskNode {
                        ///< triangle center + skew + axis_a, - skew + axis_b, + skew - axis_a
     float thickness;   ///< no point is farther from the plane (center, axis_a x axis_b)
     glm::vec3 axis_a;
-    float open_radius;  ///< the radius as the opening test sees it: larger where not flat; 0
-                        ///< where the node is exact: its triangles tile the quadrilateral;
-                        ///< -1 where it is a leaf, which is exact too
+    float open_radius;  ///< the radius as the opening test sees it: half the diagonal of the
+                        ///< box of its second moments, larger where not flat, and at least
+                        ///< kMaskRelaxedCluster times the radius; 0 where the node is exact:
+                        ///< its triangles tile the quadrilateral; -1 where it is a leaf,
+                        ///< which is exact too
     glm::vec3 axis_b;
     std::uint32_t links;  ///< kMaskFirstChild and flags (tree/masks/constants.inc)
 };
