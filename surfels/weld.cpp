@@ -1,6 +1,7 @@
 #include "surfels/weld.h"
 
 #include "surfels/for_all.h"
+#include "surfels/lowest_equal.h"
 #include "surfels/owner_ranges.h"
 
 #include <glm/common.hpp>
@@ -32,56 +33,11 @@ std::uint64_t hash_position(glm::dvec3 p)
 }
 
 /// For each vertex the lowest index of a vertex at exactly the same position.
-///
-/// All threads put vertices into one table: once a slot has a vertex it keeps that position, and in
-/// the end the lowest vertex there.
 std::vector<std::uint32_t> weld_equal(const std::vector<glm::dvec3>& positions)
 {
-    const std::size_t slot_count = std::bit_ceil(positions.size() * 2 + 1);
-    std::vector<std::uint32_t> slots(slot_count, kNone);
-    std::vector<std::uint32_t> slot_of(positions.size());
-    for_all(positions.size(), [&](std::size_t index) {
-        const auto v = static_cast<std::uint32_t>(index);
-        for (std::size_t at = hash_position(positions[v]);; ++at) {
-            const std::size_t slot = at & (slot_count - 1);
-            const std::atomic_ref<std::uint32_t> held(slots[slot]);
-            std::uint32_t other = held.load(std::memory_order_relaxed);
-            if (other == kNone && held.compare_exchange_strong(other, v, std::memory_order_relaxed))
-                other = v;
-            if (other != v && positions[other] != positions[v])
-                continue;
-            while (v < other && !held.compare_exchange_weak(other, v, std::memory_order_relaxed)) {
-            }
-            slot_of[v] = static_cast<std::uint32_t>(slot);
-            return;
-        }
-    });
-    for_all(slot_of.size(), [&](std::size_t v) { slot_of[v] = slots[slot_of[v]]; });
-    return slot_of;
-}
-
-/// Around a vertex whose triangles close, each neighbour is once the next corner and once the one
-/// before: the difference of the sums of their hashes is zero, in whatever order they come. Returns
-/// that difference per place; where it is not zero the surface is torn (or its winding turns).
-std::vector<std::uint32_t> tears_of(const std::vector<glm::uvec3>& triangles,
-                                    const std::vector<std::uint32_t>& welded)
-{
-    const auto hash = [](std::uint32_t v) {
-        return (v + 1) * 0x9E3779B1u ^ (v >> 7) * 0x85EBCA6Bu;
-    };
-    std::vector<std::uint32_t> tears(welded.size(), 0);
-    for_owner_ranges(tears.size(), [&](OwnerRange range) {
-        for (const glm::uvec3 t : triangles) {
-            const glm::uvec3 w{welded[t.x], welded[t.y], welded[t.z]};
-            const glm::uvec3 h{hash(w.x), hash(w.y), hash(w.z)};
-            const glm::uvec3 differences{h.y - h.z, h.z - h.x, h.x - h.y};
-            for (int corner = 0; corner < 3; ++corner) {
-                if (range.has(w[corner]))
-                    tears[w[corner]] += differences[corner];
-            }
-        }
-    });
-    return tears;
+    return lowest_equal(
+        positions.size(), [&](std::uint32_t v) { return hash_position(positions[v]); },
+        [&](std::uint32_t v, std::uint32_t w) { return positions[v] == positions[w]; });
 }
 
 /// Joins torn places that are equal but for noise.
@@ -174,6 +130,27 @@ private:
 };
 
 }  // namespace
+
+std::vector<std::uint32_t> tears_of(const std::vector<glm::uvec3>& triangles,
+                                    const std::vector<std::uint32_t>& welded)
+{
+    const auto hash = [](std::uint32_t v) {
+        return (v + 1) * 0x9E3779B1u ^ (v >> 7) * 0x85EBCA6Bu;
+    };
+    std::vector<std::uint32_t> tears(welded.size(), 0);
+    for_owner_ranges(tears.size(), [&](OwnerRange range) {
+        for (const glm::uvec3 t : triangles) {
+            const glm::uvec3 w{welded[t.x], welded[t.y], welded[t.z]};
+            const glm::uvec3 h{hash(w.x), hash(w.y), hash(w.z)};
+            const glm::uvec3 differences{h.y - h.z, h.z - h.x, h.x - h.y};
+            for (int corner = 0; corner < 3; ++corner) {
+                if (range.has(w[corner]))
+                    tears[w[corner]] += differences[corner];
+            }
+        }
+    });
+    return tears;
+}
 
 std::vector<std::uint32_t> weld(const Scene& scene, double diagonal)
 {

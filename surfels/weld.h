@@ -21,6 +21,13 @@ namespace surfelao {
 /// diagonal: of the scene's box, > 0. O(n) expected; equal input gives equal bytes.
 [[nodiscard]] std::vector<std::uint32_t> weld(const Scene& scene, double diagonal);
 
+/// Per place (an entry of `welded` that names itself) 0 where the triangles around it close. There
+/// each neighbour is once the next corner and once the one before: the difference of the sums of
+/// their hashes, which is returned, is zero, in whatever order they come. Where it is not, the
+/// surface is torn or its winding turns. O(n)
+[[nodiscard]] std::vector<std::uint32_t> tears_of(const std::vector<glm::uvec3>& triangles,
+                                                  const std::vector<std::uint32_t>& welded);
+
 /// In diagonals: 32 roundings of a float at the rim of the box (2^-24 each). What exporters leave
 /// is some 3e-7 along each axis, both ways.
 inline constexpr double kWeldDistance = 2e-6;
