@@ -112,7 +112,7 @@ GridComparison compare_grids(const Geometry& object, const GridCompareSettings& 
     comparison.reference_rays = settings.reference_rays;
     comparison.threads = thread_count();
     comparison.rounds = settings.rounds;
-    const AoGrid box = empty_grid(box_of_triangles(object), settings.grid);
+    const AoGrid box = empty_grid(box_of(object), settings.grid);
     comparison.box = {box.low, box.high};
     const Definition definition =
         definition_of(settings.max_distance, Kernel::cosine, object.frame);

@@ -473,31 +473,10 @@ AoGrid empty_grid(const Box& object, const GridSettings& settings)
     return grid;
 }
 
-Box box_of_triangles(const Geometry& geometry)
-{
-    const auto parts = loop_threads();
-    std::vector<Box> boxes(parts);
-    for_tasks(parts, [&](std::size_t part) {
-        const std::size_t count = geometry.triangles.size();
-        for (std::size_t i = part * count / parts; i < (part + 1) * count / parts; ++i)
-            for (int corner = 0; corner < 3; ++corner)
-                boxes[part].include(
-                    geometry.frame.centre +
-                    geometry.frame.diagonal *
-                        glm::dvec3(geometry.positions[geometry.triangles[i][corner]]));
-    });
-    Box all;
-    for (const Box& box : boxes) {
-        all.low = glm::min(all.low, box.low);
-        all.high = glm::max(all.high, box.high);
-    }
-    return all;
-}
-
 std::vector<Receiver> places_about(const Geometry& object, const AoGrid& box, const RayScene& scene,
                                    std::size_t count, std::uint64_t seed)
 {
-    const Box own = box_of_triangles(object);
+    const Box own = box_of(object);
     PlaceNumbers numbers(seed);
     std::vector<Receiver> found;
     // an object that fills its box leaves no place outside
@@ -539,7 +518,7 @@ GridBake bake_grid(const Geometry& object, const GridSettings& settings,
     };
     GridBake bake;
     bake.engine = engine;
-    const Box box = box_of_triangles(object);
+    const Box box = box_of(object);
     bake.grid = empty_grid(box, settings);
     bake.lift = lift_of(box, bake.grid);
     bake.grid.values.resize(bake.grid.cell_count() * channels_of(settings.store));

@@ -86,9 +86,6 @@ struct GridBake {
 /// box, between two layers, and half of what each sees hides half of all from both sides.
 [[nodiscard]] glm::dvec3 lift_of(const Box& object, const AoGrid& grid);
 
-/// The box of the triangles, in the file's units.
-[[nodiscard]] Box box_of_triangles(const Geometry& geometry);
-
 /// object: what occludes; its definition's lengths are in its frame. check: places of the statement
 /// of error; 0: none. Hemispheres are solved in bands, so that memory does not grow with the cells
 /// beyond the grid itself. Equal input gives equal bytes, whatever the number of threads. Throws as

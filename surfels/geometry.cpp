@@ -253,21 +253,15 @@ void set_areas_and_normals(const UnitPositions& positions, const Sums& sums, Geo
     }
 }
 
-}  // namespace
-
-Box box_of(const Scene& scene, const std::vector<bool>& left_out)
+/// What `include` puts into a box for each of the triangles 0 to count - 1.
+template <class Include>
+Box box_of_all(std::size_t count, const Include& include)
 {
     constexpr std::size_t kBlock = 4096;
-    const std::size_t count = scene.triangles.size();
     std::vector<Box> boxes((count + kBlock - 1) / kBlock);
     for_tasks(boxes.size(), [&](std::size_t block) {
-        Box& box = boxes[block];
-        for (std::size_t t = block * kBlock; t < std::min(count, (block + 1) * kBlock); ++t) {
-            if (!left_out.empty() && left_out[t])
-                continue;
-            for (int corner = 0; corner < 3; ++corner)
-                box.include(scene.positions[scene.triangles[t][corner]]);
-        }
+        for (std::size_t t = block * kBlock; t < std::min(count, (block + 1) * kBlock); ++t)
+            include(boxes[block], t);
     });
     Box all;
     for (const Box& box : boxes) {
@@ -275,6 +269,28 @@ Box box_of(const Scene& scene, const std::vector<bool>& left_out)
         all.high = glm::max(all.high, box.high);
     }
     return all;
+}
+
+}  // namespace
+
+Box box_of(const Scene& scene, const std::vector<bool>& left_out)
+{
+    return box_of_all(scene.triangles.size(), [&](Box& box, std::size_t t) {
+        if (!left_out.empty() && left_out[t])
+            return;
+        for (int corner = 0; corner < 3; ++corner)
+            box.include(scene.positions[scene.triangles[t][corner]]);
+    });
+}
+
+Box box_of(const Geometry& geometry)
+{
+    return box_of_all(geometry.triangles.size(), [&](Box& box, std::size_t t) {
+        for (int corner = 0; corner < 3; ++corner) {
+            const glm::dvec3 place(geometry.positions[geometry.triangles[t][corner]]);
+            box.include(geometry.frame.centre + geometry.frame.diagonal * place);
+        }
+    });
 }
 
 Frame frame_of(const Box& box)

@@ -87,6 +87,9 @@ inline constexpr double kZeroAreaRatio = 1e-12;
 /// InputError as check_scene does.
 [[nodiscard]] Geometry make_geometry(const Scene& scene, const GeometryScope& scope = {});
 
+/// Of all its triangles, in world space.
+[[nodiscard]] Box box_of(const Geometry& geometry);
+
 /// Of each triangle, in the unit frame.
 [[nodiscard]] std::vector<double> triangle_areas(const Geometry& geometry);
 

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <vector>
 
 namespace surfelao {
 namespace {
@@ -27,13 +29,8 @@ Scene tube(double radius, int cells)
 
 double area_of(const Geometry& geometry)
 {
-    double area = 0.0;
-    for (const glm::uvec3 t : geometry.triangles) {
-        const glm::dvec3 a(geometry.positions[t.x]);
-        area += 0.5 * glm::length(glm::cross(glm::dvec3(geometry.positions[t.y]) - a,
-                                             glm::dvec3(geometry.positions[t.z]) - a));
-    }
-    return area;
+    const std::vector<double> areas = triangle_areas(geometry);
+    return std::accumulate(areas.begin(), areas.end(), 0.0);
 }
 
 // Cubes are five triangles wide: a column has a dozen vertices.
