@@ -100,7 +100,7 @@ const GridPass::Stored& GridPass::stored(const std::shared_ptr<const AoGrid>& gr
     return stored_.emplace(grid.get(), Stored{grid, cells_of(context_, *grid)}).first->second;
 }
 
-Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object,
+Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object, const OwnPixels& own,
                                const char* fragment_file)
 {
     const AoGrid& grid = *object.grid;
@@ -118,6 +118,8 @@ Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object,
     const bool is_lifted = object.lift != glm::dvec3(0.0);
     if (is_lifted)
         definitions.emplace_back("LIFT");
+    if (own.picture != nullptr)
+        definitions.emplace_back("OWN");
     Program& program = context_.program("grid_box.vert", fragment_file, definitions);
     const glm::dmat4 from_box = box_to_view(object, view);
     program.set("u_from_box", glm::mat4(from_box));
@@ -125,6 +127,10 @@ Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object,
     program.set("u_to_grid", glm::mat3(glm::transpose(object.placement.rotation) * axes_of(view)));
     if (is_lifted)
         program.set("u_lift", glm::vec3(2.0 * object.lift / (grid.high - grid.low)));
+    if (own.picture != nullptr) {
+        program.set("u_own", *own.picture);
+        program.set("u_object", static_cast<float>(own.object + 1));
+    }
     program.set("u_lens_low", view.lens.low);
     program.set("u_lens_high", view.lens.high);
     program.set("u_is_orthographic", view.lens.orthographic ? 1 : 0);
@@ -142,17 +148,22 @@ Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object,
 }
 
 void GridPass::draw(const GBuffer& seen, std::span<const PlacedGrid> objects, GridMerge merge,
-                    const Framebuffer& target)
+                    const Framebuffer& target, std::span<const float> own)
 {
     SURFELAO_CHECK(target.width() == seen.width() && target.height() == seen.height());
+    std::optional<Texture2D> numbers;
+    if (!own.empty())
+        numbers.emplace(context_, seen.width(), seen.height(), TexelFormat::r32f, own);
+    const Texture2D* own_picture = numbers ? &*numbers : nullptr;
     if (merge == GridMerge::caps) {
-        join(seen, objects, target);
+        join(seen, objects, target, own_picture);
         return;
     }
     target.clear_color(glm::vec4(1.0f));
-    for (const PlacedGrid& object : objects) {
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        const PlacedGrid& object = objects[i];
         const Program& program = program_for(
-            seen, object,
+            seen, object, {own_picture, i},
             object.grid->store == GridStore::sh ? "grid_shade_sh.frag" : "grid_shade.frag");
         surfelao::draw(target, program, nothing_, {.count = kBoxVertices},
                        {.blend = Blend::multiply, .cull = back_faces(object)});
@@ -160,7 +171,7 @@ void GridPass::draw(const GBuffer& seen, std::span<const PlacedGrid> objects, Gr
 }
 
 void GridPass::join(const GBuffer& seen, std::span<const PlacedGrid> objects,
-                    const Framebuffer& target)
+                    const Framebuffer& target, const Texture2D* own_picture)
 {
     if (!joined_ || joined_->first.width() != seen.width() ||
         joined_->first.height() != seen.height()) {
@@ -171,11 +182,11 @@ void GridPass::join(const GBuffer& seen, std::span<const PlacedGrid> objects,
     const auto& [before, after] = *joined_;
     before.clear_color(glm::vec4(0.0f));
     after.clear_color(glm::vec4(0.0f));
-    for (const PlacedGrid& object : objects) {
-        Program& program = program_for(seen, object, "grid_merge.frag");
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        Program& program = program_for(seen, objects[i], {own_picture, i}, "grid_merge.frag");
         program.set("u_before", before.color());
         surfelao::draw(after, program, nothing_, {.count = kBoxVertices},
-                       {.cull = back_faces(object)});
+                       {.cull = back_faces(objects[i])});
         after.copy_to(before);
     }
     Program& program = context_.program("fullscreen.vert", "grid_union.frag");

@@ -108,6 +108,15 @@ Label label_of(const std::vector<std::vector<bool>>& triangles)
     return label;
 }
 
+/// What is left where only these triangles of the scene are baked.
+Mesh baked_alone(Scene scene, std::span<const Scene> others, PartChoice choice,
+                 const std::vector<std::vector<bool>>& triangles, const Frame& frame)
+{
+    scene.labels.push_back(label_of(triangles));
+    choice.receivers = {kWithGrids};
+    return mesh_of(std::move(scene), others, {.source = NormalSource::flat}, choice, frame);
+}
+
 /// All that occludes but the objects: as if they alone were baked, and did not occlude.
 std::shared_ptr<const Geometry> rest_of(const Mesh& mesh, std::span<const Scene> others,
                                         PartChoice choice,
@@ -115,13 +124,19 @@ std::shared_ptr<const Geometry> rest_of(const Mesh& mesh, std::span<const Scene>
 {
     if (triangles.empty())
         return std::make_shared<const Geometry>(mesh.occluding());
-    Scene scene = mesh.scene;
-    scene.labels.push_back(label_of(triangles));
-    choice.receivers = {kWithGrids};
     choice.exclude.push_back(kWithGrids);
-    const Mesh objects = mesh_of(std::move(scene), others, {.source = NormalSource::flat}, choice,
-                                 mesh.geometry.frame);
-    return objects.occluders;
+    return baked_alone(mesh.scene, others, std::move(choice), triangles, mesh.geometry.frame)
+        .occluders;
+}
+
+/// An object by itself.
+std::shared_ptr<const Geometry> surface_of(const Mesh& mesh, PartChoice choice,
+                                           const std::vector<bool>& triangles)
+{
+    choice.alone = true;
+    return std::make_shared<const Geometry>(
+        baked_alone(mesh.scene, {}, std::move(choice), {triangles}, mesh.geometry.frame)
+            .occluding());
 }
 
 void darken(Occlusion& value, float visibility)
@@ -129,19 +144,91 @@ void darken(Occlusion& value, float visibility)
     value.occlusion = 1.0f - (1.0f - value.occlusion) * visibility;
 }
 
+/// Both hide what is left out: deviations from the normal add up.
+glm::vec3 joined_bent(const Occlusion& a, const Occlusion& b, glm::vec3 normal)
+{
+    const glm::vec3 sum = a.bent_normal + b.bent_normal - normal;
+    const float length = glm::length(sum);
+    return length > 0.0f ? sum / length : normal;
+}
+
 }  // namespace
 
-void GridWorld::prepare_rest(const EngineChoice& choice)
+GridWorld::GridWorld(std::vector<PlacedGrid> objects, std::shared_ptr<const Geometry> rest,
+                     GridSurfaces surfaces)
+    : objects_(std::move(objects)),
+      rest_(std::move(rest)),
+      surfaces_(std::move(surfaces)),
+      occluders_(*rest_)
+{
+    for (const std::shared_ptr<const Geometry>& geometry : surfaces_.of_object)
+        own_occluders_.emplace_back(*geometry);
+}
+
+std::vector<std::uint32_t> GridWorld::objects_at(std::span<const SurfacePoint> points) const
+{
+    if (surfaces_.of_object.empty())
+        return {};
+    std::vector<std::uint32_t> objects(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+        objects[i] = surfaces_.object_of_triangle[points[i].triangle];
+    return objects;
+}
+
+void GridWorld::prepare(const EngineChoice& choice)
 {
     if (!rest_->triangles.empty())
         static_cast<void>(occluders_.prepared_for(choice));
+    for (Occluders& own : own_occluders_) {
+        if (!own.geometry().triangles.empty())
+            static_cast<void>(own.prepared_for(choice));
+    }
+}
+
+std::vector<Occlusion> GridWorld::solve(std::span<const Receiver> receivers,
+                                        std::span<const std::uint32_t> own,
+                                        const EngineSettings& engine, const Progress& progress)
+{
+    std::vector<Occlusion> answers = solve_rest(receivers, engine, progress);
+    if (!own.empty())
+        add_own(receivers, own, engine, answers);
+    return answers;
+}
+
+void GridWorld::add_own(std::span<const Receiver> receivers, std::span<const std::uint32_t> own,
+                        const EngineSettings& engine, std::span<Occlusion> answers)
+{
+    EngineSettings alone = engine;
+    alone.definition.ground.reset();  // which the rest has
+    std::vector<std::vector<std::size_t>> members(own_occluders_.size());
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        if (own[i] != kNoObject)
+            members[own[i]].push_back(i);
+    }
+    for (std::size_t object = 0; object < members.size(); ++object) {
+        const std::vector<std::size_t>& of_object = members[object];
+        Occluders& occluders = own_occluders_[object];
+        if (of_object.empty() || occluders.geometry().triangles.empty())
+            continue;
+        std::vector<Receiver> asked;
+        for (const std::size_t i : of_object)
+            asked.push_back(receivers[i]);
+        const std::vector<Occlusion> found =
+            surfelao::solve(occluders.prepared_for(alone), asked, alone).occlusion;
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            Occlusion& answer = answers[of_object[k]];
+            answer.bent_normal = joined_bent(answer, found[k], asked[k].normal);
+            darken(answer, 1.0f - found[k].occlusion);
+        }
+    }
 }
 
 std::vector<Occlusion> GridWorld::solve_rest(std::span<const Receiver> receivers,
                                              const EngineSettings& engine, const Progress& progress)
 {
     if (!rest_->triangles.empty())
-        return solve(occluders_.prepared_for(engine), receivers, engine, progress).occlusion;
+        return surfelao::solve(occluders_.prepared_for(engine), receivers, engine, progress)
+            .occlusion;
     std::vector<Occlusion> answers;
     const std::optional<Ground>& ground = engine.definition.ground;
     if (ground && std::isfinite(engine.definition.max_distance))
@@ -165,6 +252,8 @@ std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh, std::span<const Scene
     if (sources.motion && moment)
         poses = sources.motion->at(moment->seconds);
     std::vector<PlacedGrid> objects;
+    GridSurfaces surfaces;
+    surfaces.object_of_triangle.assign(mesh.geometry.triangles.size(), kNoObject);
     for (std::size_t i = 0; i < grids.size(); ++i) {
         const auto pose = pose_of(mesh.scene, frame, grids[i], triangles[i], poses);
         if (!pose)
@@ -173,21 +262,35 @@ std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh, std::span<const Scene
         if (!placement)
             throw InputError(mesh.scene.name + ": " + grids[i].node +
                              " is sheared or scaled unevenly: its grid does not follow that");
+        for (std::size_t t = 0; t < surfaces.object_of_triangle.size(); ++t) {
+            if (triangles[i][mesh.geometry.scene_triangle(t)])
+                surfaces.object_of_triangle[t] = static_cast<std::uint32_t>(objects.size());
+        }
+        surfaces.of_object.push_back(surface_of(mesh, choice, triangles[i]));
         objects.push_back({grids[i].grid, *placement});
     }
-    return std::make_shared<GridWorld>(std::move(objects),
-                                       rest_of(mesh, others, choice, triangles));
+    return std::make_shared<GridWorld>(std::move(objects), rest_of(mesh, others, choice, triangles),
+                                       std::move(surfaces));
 }
 
 std::vector<Occlusion> solve_with_grids(GridPass& pass, const GBuffer& drawing,
                                         const GridPixels& settings,
                                         std::span<const Receiver> receivers,
+                                        std::span<const std::uint32_t> own,
                                         std::span<const std::uint32_t> pixels,
                                         const Progress& progress)
 {
-    std::vector<Occlusion> values = settings.world->solve_rest(receivers, settings.rest, progress);
+    std::vector<Occlusion> values = settings.world->solve(receivers, own, settings.rest, progress);
     const Framebuffer target = pass.make_target(drawing.width(), drawing.height());
-    pass.draw(drawing, settings.world->objects(), settings.merge, target);
+    std::vector<float> numbers;
+    if (!own.empty())
+        numbers.resize(static_cast<std::size_t>(drawing.width()) *
+                       static_cast<std::size_t>(drawing.height()));
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        if (own[i] != kNoObject)
+            numbers[pixels[i]] = static_cast<float>(own[i] + 1);
+    }
+    pass.draw(drawing, settings.world->objects(), settings.merge, target, numbers);
     const std::vector<float> visibility = target.read_red(target.rect());
     for (std::size_t i = 0; i < values.size(); ++i)
         darken(values[i], visibility[pixels[i]]);
@@ -196,12 +299,14 @@ std::vector<Occlusion> solve_with_grids(GridPass& pass, const GBuffer& drawing,
 
 std::vector<Occlusion> solve_with_grids(const GridPixels& settings,
                                         std::span<const Receiver> receivers,
+                                        std::span<const std::uint32_t> own,
                                         const Progress& progress)
 {
-    std::vector<Occlusion> values = settings.world->solve_rest(receivers, settings.rest, progress);
+    std::vector<Occlusion> values = settings.world->solve(receivers, own, settings.rest, progress);
     for_all(receivers.size(), kGridGrain, [&](std::size_t i) {
-        darken(values[i], visibility_at(settings.world->objects(), settings.merge,
-                                        receivers[i].position, receivers[i].normal));
+        darken(values[i],
+               visibility_at(settings.world->objects(), settings.merge, receivers[i].position,
+                             receivers[i].normal, own.empty() ? kNoObject : own[i]));
     });
     return values;
 }

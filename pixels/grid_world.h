@@ -1,10 +1,11 @@
 /// grid_world.h: a scene of objects with AO grids and of the rest, and what pixels of it are
 /// answered:
 ///
-///     occlusion = 1 - (1 - occlusion by the rest) * visibility_at() of the objects
+///     occlusion = 1 - (1 - by the rest) (1 - by the object itself) visibility_at() of the others
 ///
 /// The rest is what has no grid; an engine of the scene is asked about it, also from the surfaces
-/// of objects. What an object hides from itself is read from its own grid.
+/// of objects. It is asked too what an object hides from its own surface: the cells of its grid are
+/// too coarse to tell that at its creases.
 #pragma once
 
 #include "bake/occluders.h"
@@ -39,31 +40,49 @@ struct GridSources {
     std::shared_ptr<const Motion> motion;  ///< null: the scene is asked as it stands
 };
 
+/// What the objects' surfaces are.
+struct GridSurfaces {
+    std::vector<std::shared_ptr<const Geometry>> of_object;  ///< unit frame, one per object
+    std::vector<std::uint32_t> object_of_triangle;  ///< of the mesh's geometry; or kNoObject
+};
+
 class GridWorld {
 public:
-    GridWorld(std::vector<PlacedGrid> objects, std::shared_ptr<const Geometry> rest)
-        : objects_(std::move(objects)), rest_(std::move(rest)), occluders_(*rest_)
-    {
-    }
+    /// Without surfaces no receiver is on an object.
+    GridWorld(std::vector<PlacedGrid> objects, std::shared_ptr<const Geometry> rest,
+              GridSurfaces surfaces = {});
     GridWorld(const GridWorld&) = delete;
     GridWorld& operator=(const GridWorld&) = delete;
 
     [[nodiscard]] std::span<const PlacedGrid> objects() const { return objects_; }
     [[nodiscard]] const Geometry& rest() const { return *rest_; }  ///< unit frame; may be empty
+    /// The objects, or kNoObject, on which points of the mesh lie.
+    [[nodiscard]] std::vector<std::uint32_t> objects_at(std::span<const SurfacePoint> points) const;
 
-    /// Builds the engine that answers for the rest, if that is not done yet.
-    void prepare_rest(const EngineChoice& choice);
+    /// Builds the engines that answer for the rest and the objects' own surfaces, if that is not
+    /// done yet.
+    void prepare(const EngineChoice& choice);
 
-    /// What the rest hides. Throws as solve(); InputError for a ground with a limit of the distance
-    /// where there is no rest. One thread at a time.
-    [[nodiscard]] std::vector<Occlusion> solve_rest(std::span<const Receiver> receivers,
-                                                    const EngineSettings& engine,
-                                                    const Progress& progress = {});
+    /// What the rest hides, and objects from their own surfaces. own: as objects_at(), or empty: on
+    /// none. Throws as solve(); InputError for a ground with a limit of the distance where there is
+    /// no rest. One thread at a time.
+    [[nodiscard]] std::vector<Occlusion> solve(std::span<const Receiver> receivers,
+                                               std::span<const std::uint32_t> own,
+                                               const EngineSettings& engine,
+                                               const Progress& progress = {});
 
 private:
+    void add_own(std::span<const Receiver> receivers, std::span<const std::uint32_t> own,
+                 const EngineSettings& engine, std::span<Occlusion> answers);
+    [[nodiscard]] std::vector<Occlusion> solve_rest(std::span<const Receiver> receivers,
+                                                    const EngineSettings& engine,
+                                                    const Progress& progress);
+
     std::vector<PlacedGrid> objects_;
     std::shared_ptr<const Geometry> rest_;
+    GridSurfaces surfaces_;
     Occluders occluders_;
+    std::vector<Occluders> own_occluders_;  ///< one per object
 };
 
 /// Objects of a scene at a moment, placed from where their grids were made: by the poses of their
@@ -85,17 +104,20 @@ struct GridPixels {
     bool operator==(const GridPixels&) const = default;
 };
 
-/// What a picture's pixels see, answered on the device but for the rest; receivers: of those of the
-/// drawn picture's pixels that are listed (column + width * row from the bottom).
+/// What a picture's pixels see: what the grids hide is read on the device. own: as
+/// GridWorld::solve(); receivers: of those of the drawn picture's pixels that are listed (column +
+/// width * row from the bottom).
 [[nodiscard]] std::vector<Occlusion> solve_with_grids(GridPass& pass, const GBuffer& drawing,
                                                       const GridPixels& settings,
                                                       std::span<const Receiver> receivers,
+                                                      std::span<const std::uint32_t> own,
                                                       std::span<const std::uint32_t> pixels,
                                                       const Progress& progress = {});
 
-/// Answers at any receivers, on the CPU but for the rest's engine. The bent normals are the rest's.
+/// Answers at any receivers. The bent normals are those of the rest and of the object itself.
 [[nodiscard]] std::vector<Occlusion> solve_with_grids(const GridPixels& settings,
                                                       std::span<const Receiver> receivers,
+                                                      std::span<const std::uint32_t> own = {},
                                                       const Progress& progress = {});
 
 }  // namespace surfelao

@@ -76,7 +76,7 @@ PixelAnswer answer(const PixelView& view, Occluders& occluders, ScreenSpace& scr
 PixelAnswer answer(const PixelView& view, GridPass& pass, const GridPixels& settings,
                    const Definition& definition, const Progress& progress)
 {
-    settings.world->prepare_rest(settings.rest);
+    settings.world->prepare(settings.rest);
     Stopwatch watch;
     GridPixels asked = settings;
     asked.rest.definition = definition;
@@ -88,7 +88,8 @@ PixelAnswer answer(const PixelView& view, GridPass& pass, const GridPixels& sett
                          guard);
     PixelAnswer result;
     result.values =
-        solve_with_grids(pass, view.g_buffer(), asked, view.seen().receivers, pixels, progress);
+        solve_with_grids(pass, view.g_buffer(), asked, view.seen().receivers,
+                         settings.world->objects_at(view.seen().points), pixels, progress);
     result.seconds = watch.lap();
     return result;
 }

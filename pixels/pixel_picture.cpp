@@ -57,7 +57,8 @@ std::vector<Band> bands_of(const View& view, const PixelPictureSettings& setting
 /// The answers of one list of receivers.
 struct Answers {
     std::vector<Occlusion> values, references;
-    std::vector<std::uint8_t> holes;  ///< 1 where no cube map answered; empty without maps
+    std::vector<std::uint8_t> holes;     ///< 1 where no cube map answered; empty without maps
+    std::vector<std::uint32_t> objects;  ///< GridWorld::objects_at(); empty without grids
 };
 
 /// What the receivers of each pixel add up to.
@@ -159,18 +160,25 @@ private:
             if (const auto* engine = std::get_if<EngineSettings>(&*settings_.engine))
                 static_cast<void>(occluders_.prepared_for(here(*engine)));
             else if (const GridPixels* grids = with_grids())
-                grids->world->prepare_rest(grids->rest);
+                grids->world->prepare(grids->rest);
         }
         picture_.prepare_s = watch.lap();
     }
 
-    /// What the engine of the scene says of them, or nothing.
-    std::vector<Occlusion> solved(std::span<const Receiver> receivers, const Progress& progress)
+    [[nodiscard]] std::vector<std::uint32_t> objects_at(std::span<const SurfacePoint> points) const
+    {
+        return with_grids() != nullptr ? with_grids()->world->objects_at(points)
+                                       : std::vector<std::uint32_t>();
+    }
+
+    /// What the engine of the scene says of them, or nothing. objects: objects_at() of them.
+    std::vector<Occlusion> solved(std::span<const Receiver> receivers,
+                                  std::span<const std::uint32_t> objects, const Progress& progress)
     {
         if (!settings_.engine || std::holds_alternative<ScreenSettings>(*settings_.engine))
             return std::vector<Occlusion>(receivers.size());
         if (with_grids() != nullptr)
-            return solve_with_grids(defined_grids(), receivers, progress);
+            return solve_with_grids(defined_grids(), receivers, objects, progress);
         const EngineSettings engine = here(std::get<EngineSettings>(*settings_.engine));
         return solve(occluders_.prepared_for(engine), receivers, engine, progress).occlusion;
     }
@@ -210,12 +218,13 @@ private:
     }
 
     /// What grids say of the pixels that the G-buffer was drawn for.
-    std::vector<Occlusion> solved_by_pass(const GBuffer& drawing, const SeenPixels& seen)
+    std::vector<Occlusion> solved_by_pass(const GBuffer& drawing, const SeenPixels& seen,
+                                          std::span<const std::uint32_t> objects)
     {
         if (!grid_pass_)
             grid_pass_.emplace(context_);
-        return solve_with_grids(*grid_pass_, drawing, defined_grids(), seen.receivers, seen.pixels,
-                                stage("solve"));
+        return solve_with_grids(*grid_pass_, drawing, defined_grids(), seen.receivers, objects,
+                                seen.pixels, stage("solve"));
     }
 
     /// What the picture's method finds at those of the pixels that the G-buffer was drawn for.
@@ -239,8 +248,10 @@ private:
         const auto pixels = [&](std::size_t i) { return seen.pixels[i]; };
         Answers answers;
         if (settings_.cube_maps == nullptr) {
-            answers.values = with_grids() != nullptr ? solved_by_pass(*drawing, seen)
-                                                     : solved(seen.receivers, stage("solve"));
+            answers.objects = objects_at(seen.points);
+            answers.values = with_grids() != nullptr
+                                 ? solved_by_pass(*drawing, seen, answers.objects)
+                                 : solved(seen.receivers, {}, stage("solve"));
             if (on_screen())
                 put_screen(*drawing, size, pixels, answers.values);
             picture_.solve_s += watch.lap();
@@ -269,7 +280,7 @@ private:
             }
         }
         if (!asked.empty()) {
-            const std::vector<Occlusion> filled = solved(asked, stage("solve"));
+            const std::vector<Occlusion> filled = solved(asked, {}, stage("solve"));
             for (std::size_t k = 0; k < open.size(); ++k)
                 answers.values[open[k]].occlusion = filled[k].occlusion;
         }
@@ -346,8 +357,9 @@ private:
         }
         const std::vector<Receiver> extra_receivers =
             receivers_facing(mesh_, band.view, samples.extra_points(), settings_.offset);
+        extras.objects = objects_at(samples.extra_points());
         if (!on_screen())
-            extras.values = solved(extra_receivers, {});
+            extras.values = solved(extra_receivers, extras.objects, {});
         picture_.extras += extra_receivers.size();
         picture_.edge_pixels += samples.edge_pixels();
         picture_.edges_s += watch.lap();
@@ -369,9 +381,9 @@ private:
             answers.references.empty() ? answers.values : answers.references;
         std::vector<glm::vec3> colors(receivers.size());
         for_all(receivers.size(), kPaintGrain, [&](std::size_t i) {
-            colors[i] =
-                paint_.color({receivers[i], answers.values[i], references[i],
-                              !answers.holes.empty() && answers.holes[i] != 0, with_grids()});
+            colors[i] = paint_.color({receivers[i], answers.values[i], references[i],
+                                      !answers.holes.empty() && answers.holes[i] != 0, with_grids(),
+                                      answers.objects.empty() ? kNoObject : answers.objects[i]});
         });
         return colors;
     }

@@ -93,11 +93,14 @@ float occlusion_at(const PlacedGrid& object, glm::vec3 position, glm::vec3 norma
 }
 
 std::vector<TakenLight> taken_at(std::span<const PlacedGrid> objects, GridMerge merge,
-                                 glm::vec3 position, glm::vec3 normal)
+                                 glm::vec3 position, glm::vec3 normal, std::uint32_t own)
 {
     std::vector<TakenLight> all;
     glm::vec4 joined(0.0f);
-    for (const PlacedGrid& object : objects) {
+    for (std::uint32_t i = 0; i < objects.size(); ++i) {
+        if (i == own)
+            continue;
+        const PlacedGrid& object = objects[i];
         const Harmonics values = values_at(object, lifted_in_object(object, position, normal));
         const glm::vec4 moments = moments_in_world(object, values);
         if (moments.w < kNothingHidden)
@@ -115,10 +118,10 @@ std::vector<TakenLight> taken_at(std::span<const PlacedGrid> objects, GridMerge 
 }
 
 float visibility_at(std::span<const PlacedGrid> objects, GridMerge merge, glm::vec3 position,
-                    glm::vec3 normal)
+                    glm::vec3 normal, std::uint32_t own)
 {
     float visibility = 1.0f;
-    for (const TakenLight& taken : taken_at(objects, merge, position, normal))
+    for (const TakenLight& taken : taken_at(objects, merge, position, normal, own))
         visibility *= 1.0f - taken.occlusion;
     return visibility;
 }

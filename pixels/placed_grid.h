@@ -19,6 +19,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -32,6 +33,9 @@ enum class GridMerge { product, caps };
 /// "product", "union"
 [[nodiscard]] std::string name_of(GridMerge merge);
 [[nodiscard]] std::optional<GridMerge> grid_merge_of(std::string_view name);
+
+/// In place of an object's number: of none.
+inline constexpr std::uint32_t kNoObject = 0xffffffff;
 
 struct PlacedGrid {
     std::shared_ptr<const AoGrid> grid;
@@ -56,12 +60,15 @@ struct TakenLight {
     float occlusion = 0.0f;
     glm::vec4 moments{0.0f};  ///< from where: m / (4 pi) and alpha
 };
-/// The cones that a merge ends with: one of each object that hides anything, or the joint one.
+/// The cones that a merge ends with: one of each object that hides anything, or the joint one; own:
+/// is left out.
 [[nodiscard]] std::vector<TakenLight> taken_at(std::span<const PlacedGrid> objects, GridMerge merge,
-                                               glm::vec3 position, glm::vec3 normal);
+                                               glm::vec3 position, glm::vec3 normal,
+                                               std::uint32_t own = kNoObject);
 
-/// The share of the light that all of them leave: the twin of GridPass.
+/// The share of the light that all of them, but `own`, leave: the twin of GridPass.
 [[nodiscard]] float visibility_at(std::span<const PlacedGrid> objects, GridMerge merge,
-                                  glm::vec3 position, glm::vec3 normal);
+                                  glm::vec3 position, glm::vec3 normal,
+                                  std::uint32_t own = kNoObject);
 
 }  // namespace surfelao

@@ -7,6 +7,8 @@
 //   u_lift     LIFT: PlacedGrid::lift in half boxes
 //   u_cells    RGBA16F, a texel a cell: m / (4 pi), alpha; SH: coefficients 0 to 3
 //   u_surface  as in g_buffer.glsl: normal in view space, distance forward
+//   u_own      OWN: R32F, 1 + the object on whose surface the pixel looks
+//   u_object   OWN: 1 + the one whose grid this is
 // CPU twin   read_values(), border_weight() in grid/ao_grid.cpp
 flat in mat3 v_across;
 flat in vec3 v_rest;
@@ -21,6 +23,10 @@ uniform vec2 u_border;
 #endif
 #ifdef LIFT
 uniform vec3 u_lift;
+#endif
+#ifdef OWN
+uniform sampler2D u_own;
+uniform float u_object;
 #endif
 
 const float kFade = 0.12;  // kGridFade
@@ -38,6 +44,16 @@ vec3 place_in_box(float distance, vec3 normal)
     place += u_lift * normal;
 #endif
     return place;
+}
+
+// of the object itself, whose grid does not tell what it hides from its own surface
+bool is_own_pixel()
+{
+#ifdef OWN
+    return texelFetch(u_own, ivec2(gl_FragCoord.xy), 0).r == u_object;
+#else
+    return false;
+#endif
 }
 
 float farthest_out(vec3 x)

@@ -5,8 +5,8 @@
 // grid_merge.frag: the cone of one more object, joined to that of those before it.
 //
 // Vertices   grid_box.vert
-// Definitions  SH RESCALE ORTHOGRAPHIC LIFT: GridStore::sh, GridBorder::rescale, Lens,
-//            PlacedGrid::lift
+// Definitions  SH RESCALE ORTHOGRAPHIC LIFT OWN: GridStore::sh, GridBorder::rescale, Lens,
+//            PlacedGrid::lift, GridPass::draw()
 // Reads      grid_cell.glsl, grid_cap.glsl
 //            u_before  RGBA32F: m / (4 pi) in view space and alpha of the objects before
 // Writes     out_moments  the same with this one
@@ -61,7 +61,7 @@ void main()
     vec3 x = place_in_box(seen.w, v_to_grid * seen.xyz);
     vec4 before = texelFetch(u_before, pixel, 0);
     out_moments = before;
-    if (!(farthest_out(x) <= 1.0))
+    if (!(farthest_out(x) <= 1.0) || is_own_pixel())
         return;
     vec4 own = moments_at(x);
     out_moments = merged(before, vec4(transpose(v_to_grid) * own.xyz, own.w));

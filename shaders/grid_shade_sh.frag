@@ -4,7 +4,8 @@
 // grid_shade_sh.frag: what an object with an AO grid of harmonics leaves of the light at each pixel.
 //
 // Vertices   grid_box.vert; blended by multiplication
-// Definitions  RESCALE ORTHOGRAPHIC LIFT: GridBorder::rescale, Lens, PlacedGrid::lift
+// Definitions  RESCALE ORTHOGRAPHIC LIFT OWN: GridBorder::rescale, Lens, PlacedGrid::lift,
+//            GridPass::draw()
 // Reads      grid_cell.glsl: u_cells has the coefficients 0 to 3
 //            u_cells_2 u_cells_3  RGBA16F, a texel a cell: 4 to 7, and 8
 // Writes     out_visibility  1 - occlusion
@@ -36,7 +37,7 @@ void main()
     vec4 seen = texelFetch(u_surface, ivec2(gl_FragCoord.xy), 0);
     vec3 normal = v_to_grid * seen.xyz;
     vec3 x = place_in_box(seen.w, normal);
-    if (!(farthest_out(x) <= 1.0))
+    if (!(farthest_out(x) <= 1.0) || is_own_pixel())
         discard;
     out_visibility = 1.0 - occlusion_at(x, normal);
 }

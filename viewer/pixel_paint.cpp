@@ -52,16 +52,16 @@ private:
           exposure_(automatic_exposure(irradiance_) * std::exp2(options.exposure))
     {
     }
-    /// (1 - occlusion by the rest) (B - A): B the light of the hemisphere, A what the cones'
-    /// patches of the panorama would send, weighed so that together they take what all objects
-    /// take.
+    /// (1 - occlusion by the rest and the object itself) (B - A): B the light of the hemisphere, A
+    /// what the cones' patches of the panorama would send, weighed so that together they take what
+    /// all other objects take.
     [[nodiscard]] glm::vec3 left_by_grids(const AnsweredPixel& pixel, glm::vec3 light) const
     {
         const Receiver& at = pixel.receiver;
         float visible = 1.0f, sum = 0.0f;
         glm::vec3 taken(0.0f);
-        for (const TakenLight& one :
-             taken_at(pixel.grids->world->objects(), pixel.grids->merge, at.position, at.normal)) {
+        for (const TakenLight& one : taken_at(pixel.grids->world->objects(), pixel.grids->merge,
+                                              at.position, at.normal, pixel.object)) {
             const glm::vec3 mean(one.moments);
             const float length = glm::length(mean);
             const glm::vec3 axis = length > 0.0f ? mean / length : at.normal;

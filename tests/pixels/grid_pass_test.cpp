@@ -54,7 +54,8 @@ std::vector<PlacedGrid> three_balls(GridStore store, GridBorder border)
             {grid, placed_at({0.0, -0.2, 0.15}, 0.12, 2.0)}};
 }
 
-/// Largest difference to visibility_at() at any pixel; mean: of the twin's occlusion.
+/// Largest difference to visibility_at() at any pixel; mean: of the twin's occlusion. The picture's
+/// left half is on the second object.
 float largest_difference(const View& view, std::span<const PlacedGrid> objects, GridMerge merge,
                          double& mean)
 {
@@ -63,7 +64,10 @@ float largest_difference(const View& view, std::span<const PlacedGrid> objects, 
     seen.draw(drawn, view);
     GridPass pass(test_context());
     const Framebuffer target = pass.make_target(kSize.width, kSize.height);
-    pass.draw(seen, objects, merge, target);
+    std::vector<float> own(static_cast<std::size_t>(kSize.width * kSize.height), 0.0f);
+    for (std::size_t i = 0; i < own.size(); ++i)
+        own[i] = i % 96 < 48 ? 2.0f : 0.0f;
+    pass.draw(seen, objects, merge, target, own);
     const std::vector<float> found = target.read_red(target.rect());
     const std::vector<glm::vec4> surface = seen.read_surface();
     float largest = 0.0f;
@@ -77,7 +81,8 @@ float largest_difference(const View& view, std::span<const PlacedGrid> objects, 
             const glm::vec3 normal(surface[i]);
             expected = visibility_at(
                 objects, merge, to_world(view, ray.origin + surface[i].w * ray.direction),
-                normal.x * view.right + normal.y * view.up + normal.z * view.forward);
+                normal.x * view.right + normal.y * view.up + normal.z * view.forward,
+                i % 96 < 48 ? 1u : kNoObject);
         }
         mean += (1.0 - static_cast<double>(expected)) / static_cast<double>(found.size());
         largest = std::max(largest, std::abs(found[i] - expected));

@@ -173,9 +173,9 @@ TEST(GridWorld, APictureShowsIt)
     double shown = 0.0, expected = 0.0;
     const PixelPaint paint{[&](const AnsweredPixel& pixel) {
         EXPECT_EQ(pixel.grids->world, scene.pixels.world);
-        return glm::vec3(pixel.value.occlusion,
-                         solve_with_grids(scene.pixels, {&pixel.receiver, 1}).front().occlusion,
-                         0.0f);
+        const std::vector<Occlusion> twin =
+            solve_with_grids(scene.pixels, {&pixel.receiver, 1}, {&pixel.object, 1});
+        return glm::vec3(pixel.value.occlusion, twin.front().occlusion, 0.0f);
     }};
     const PixelPicture picture =
         pixel_picture(test_context(), scene.mesh, drawn, occluders, view, settings, paint);
@@ -186,6 +186,33 @@ TEST(GridWorld, APictureShowsIt)
     EXPECT_GT(picture.extras, 0u);
     EXPECT_GT(expected, 0.03);
     EXPECT_NEAR(shown, expected, 0.002);
+}
+
+// Hollows that 8 cells do not tell.
+TEST(GridWorld, AnObjectHidesFromItsOwnSurfaceWhatItsEngineSays)
+{
+    const Scene hills = scenes::height_field(
+        24, [](double x, double y) { return 0.15 * std::sin(9.0 * x) * std::cos(8.0 * y); });
+    const Scene elsewhere = scenes::moved(hills, [](glm::dvec3 p) { return p + 40.0; });
+    for (const GridMerge merge : {GridMerge::product, GridMerge::caps}) {
+        GridScene scene({}, {hills, elsewhere}, {.resolution = 8});
+        scene.pixels.merge = merge;
+        std::vector<SurfacePoint> points;
+        for (std::uint32_t t = 0; t < hills.triangles.size(); ++t)
+            points.push_back({t, {0.3f, 0.3f}});
+        const std::vector<std::uint32_t> own = scene.pixels.world->objects_at(points);
+        EXPECT_EQ(std::ranges::count(own, 0u), std::ssize(own));
+        const std::vector<Receiver> receivers =
+            receivers_at(scene.mesh.geometry, scene.mesh.surface, points);
+        const std::vector<Occlusion> found = solve_with_grids(scene.pixels, receivers, own);
+        const Geometry geometry = make_geometry(hills, {.frame = scene.mesh.geometry.frame});
+        const std::vector<Occlusion> expected =
+            solve(prepare(geometry, {}), receivers, {}).occlusion;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            EXPECT_NEAR(found[i].occlusion, expected[i].occlusion, 1e-3f) << i;
+            EXPECT_GT(glm::dot(found[i].bent_normal, expected[i].bent_normal), 0.999f) << i;
+        }
+    }
 }
 
 TEST(GridWorld, SaysWhatIsWrong)
