@@ -90,7 +90,7 @@ GridSources grid_sources_of(const GridOptions& options, const std::string& input
 {
     if (!options.grids.empty())
         return read_grids(input, reading, grid_files_of(options));
-    return bake_moving_grids(input, reading, {.extent = kMovingExtent}, {}, progress);
+    return bake_moving_grids(input, reading, {}, {}, progress);
 }
 
 }  // namespace surfelao

@@ -139,14 +139,29 @@ void GBuffer::draw_triangles(const DrawnMesh& mesh, Cull cull)
                    {.depth = DepthTest::less, .cull = cull});
 }
 
-void GBuffer::find_surface(const DrawnMesh& mesh)
+Program& GBuffer::program_at_points(const DrawnMesh& mesh, const char* fragment_file) const
 {
-    Program& program = context_.program("fullscreen.vert", "g_surface.frag");
+    Program& program = context_.program("fullscreen.vert", fragment_file);
     set_view(program, view_);
     program.set("u_size", glm::ivec2(width(), height()));
     program.set("u_seen", triangles_.color());
     program.set("u_positions", mesh.positions_);
     program.set("u_triangles", mesh.triangles_);
+    return program;
+}
+
+void GBuffer::draw_values(const DrawnMesh& mesh, const TextureBuffer& values, glm::vec2 background,
+                          const Framebuffer& target) const
+{
+    Program& program = program_at_points(mesh, "g_values.frag");
+    program.set("u_values", values);
+    program.set("u_background", background);
+    draw_fullscreen(target, program, nothing_);
+}
+
+void GBuffer::find_surface(const DrawnMesh& mesh)
+{
+    Program& program = program_at_points(mesh, "g_surface.frag");
     program.set("u_corners", mesh.corners_);
     program.set("u_normals", mesh.normals_);
     draw_fullscreen(surface_, program, nothing_);

@@ -86,6 +86,12 @@ public:
     /// Both passes. Earlier pictures are forgotten. cull: those triangles are not there.
     void draw(const DrawnMesh& mesh, const View& view, Cull cull = Cull::none);
 
+    /// Values of triangles at the pixels that see them. values: RGBA32F, one texel per triangle, at
+    /// its three corners and one of its own. target: RG32F, as large: interpolated, and the
+    /// triangle's own; background: where nothing is seen. mesh: of the last draw().
+    void draw_values(const DrawnMesh& mesh, const TextureBuffer& values, glm::vec2 background,
+                     const Framebuffer& target) const;
+
     int width() const { return triangles_.width(); }
     int height() const { return triangles_.height(); }
     const View& view() const { return view_; }  ///< of the last drawing
@@ -104,6 +110,8 @@ public:
 private:
     void draw_triangles(const DrawnMesh& mesh, Cull cull);
     void find_surface(const DrawnMesh& mesh);
+    /// The program, with what g_point.glsl reads.
+    Program& program_at_points(const DrawnMesh& mesh, const char* fragment_file) const;
 
     const GlContext& context_;
     Framebuffer triangles_, surface_;

@@ -100,7 +100,7 @@ const GridPass::Stored& GridPass::stored(const std::shared_ptr<const AoGrid>& gr
     return stored_.emplace(grid.get(), Stored{grid, cells_of(context_, *grid)}).first->second;
 }
 
-Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object, const OwnPixels& own,
+Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object, const Texture2D* own,
                                const char* fragment_file)
 {
     const AoGrid& grid = *object.grid;
@@ -118,7 +118,8 @@ Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object, co
     const bool is_lifted = object.lift != glm::dvec3(0.0);
     if (is_lifted)
         definitions.emplace_back("LIFT");
-    if (own.picture != nullptr)
+    const bool is_left_out = own != nullptr && object.surface != 0;
+    if (is_left_out)
         definitions.emplace_back("OWN");
     Program& program = context_.program("grid_box.vert", fragment_file, definitions);
     const glm::dmat4 from_box = box_to_view(object, view);
@@ -127,9 +128,9 @@ Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object, co
     program.set("u_to_grid", glm::mat3(glm::transpose(object.placement.rotation) * axes_of(view)));
     if (is_lifted)
         program.set("u_lift", glm::vec3(2.0 * object.lift / (grid.high - grid.low)));
-    if (own.picture != nullptr) {
-        program.set("u_own", *own.picture);
-        program.set("u_object", static_cast<float>(own.object + 1));
+    if (is_left_out) {
+        program.set("u_own", *own);
+        program.set("u_number", static_cast<float>(object.surface));
     }
     program.set("u_lens_low", view.lens.low);
     program.set("u_lens_high", view.lens.high);
@@ -148,22 +149,22 @@ Program& GridPass::program_for(const GBuffer& seen, const PlacedGrid& object, co
 }
 
 void GridPass::draw(const GBuffer& seen, std::span<const PlacedGrid> objects, GridMerge merge,
-                    const Framebuffer& target, std::span<const float> own)
+                    const Framebuffer& target, const Texture2D* own)
 {
     SURFELAO_CHECK(target.width() == seen.width() && target.height() == seen.height());
-    std::optional<Texture2D> numbers;
-    if (!own.empty())
-        numbers.emplace(context_, seen.width(), seen.height(), TexelFormat::r32f, own);
-    const Texture2D* own_picture = numbers ? &*numbers : nullptr;
     if (merge == GridMerge::caps) {
-        join(seen, objects, target, own_picture);
+        join(seen, objects, target, own);
         return;
     }
     target.clear_color(glm::vec4(1.0f));
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-        const PlacedGrid& object = objects[i];
+    if (own != nullptr) {
+        Program& program = context_.program("fullscreen.vert", "grid_own.frag");
+        program.set("u_own", *own);
+        draw_fullscreen(target, program, nothing_);
+    }
+    for (const PlacedGrid& object : objects) {
         const Program& program = program_for(
-            seen, object, {own_picture, i},
+            seen, object, own,
             object.grid->store == GridStore::sh ? "grid_shade_sh.frag" : "grid_shade.frag");
         surfelao::draw(target, program, nothing_, {.count = kBoxVertices},
                        {.blend = Blend::multiply, .cull = back_faces(object)});
@@ -171,7 +172,7 @@ void GridPass::draw(const GBuffer& seen, std::span<const PlacedGrid> objects, Gr
 }
 
 void GridPass::join(const GBuffer& seen, std::span<const PlacedGrid> objects,
-                    const Framebuffer& target, const Texture2D* own_picture)
+                    const Framebuffer& target, const Texture2D* own)
 {
     if (!joined_ || joined_->first.width() != seen.width() ||
         joined_->first.height() != seen.height()) {
@@ -182,14 +183,19 @@ void GridPass::join(const GBuffer& seen, std::span<const PlacedGrid> objects,
     const auto& [before, after] = *joined_;
     before.clear_color(glm::vec4(0.0f));
     after.clear_color(glm::vec4(0.0f));
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-        Program& program = program_for(seen, objects[i], {own_picture, i}, "grid_merge.frag");
+    for (const PlacedGrid& object : objects) {
+        Program& program = program_for(seen, object, own, "grid_merge.frag");
         program.set("u_before", before.color());
         surfelao::draw(after, program, nothing_, {.count = kBoxVertices},
-                       {.cull = back_faces(objects[i])});
+                       {.cull = back_faces(object)});
         after.copy_to(before);
     }
-    Program& program = context_.program("fullscreen.vert", "grid_union.frag");
+    std::vector<std::string> definitions;
+    if (own != nullptr)
+        definitions.emplace_back("OWN");
+    Program& program = context_.program("fullscreen.vert", "grid_union.frag", definitions);
+    if (own != nullptr)
+        program.set("u_own", *own);
     program.set("u_surface", seen.surface());
     program.set("u_before", before.color());
     draw_fullscreen(target, program, nothing_);

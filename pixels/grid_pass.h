@@ -26,16 +26,18 @@ class GridPass {
 public:
     explicit GridPass(const GlContext& context);
 
+    const GlContext& context() const { return context_; }
+
     /// As large as the picture: R32F.
     [[nodiscard]] Framebuffer make_target(int width, int height) const;
 
     /// The share of the light that the objects leave to every pixel; 1 on the background. seen:
     /// drawn, and as large as the target. Grids stay on the device from one drawing to the next.
     /// Union: costs a copy of the picture for each object besides.
-    /// own: row by row from the bottom, 1 + the object at whose surface a pixel looks, which takes
-    /// nothing of its light; 0: at none. Empty: at none anywhere.
+    /// own: RG32F, as large: what the surface that a pixel looks at leaves of the light by itself,
+    /// and its number (PlacedGrid::surface). Null: 1 and 0 everywhere.
     void draw(const GBuffer& seen, std::span<const PlacedGrid> objects, GridMerge merge,
-              const Framebuffer& target, std::span<const float> own = {});
+              const Framebuffer& target, const Texture2D* own = nullptr);
 
 private:
     struct Stored {
@@ -43,16 +45,11 @@ private:
         std::vector<Texture3D> cells;        ///< one; of harmonics three
     };
     [[nodiscard]] const Stored& stored(const std::shared_ptr<const AoGrid>& grid);
-    /// Who looks at which object: as of draw(); null: nobody. And one object's number.
-    struct OwnPixels {
-        const Texture2D* picture = nullptr;
-        std::size_t object = 0;
-    };
     /// The program with all that tells of the object set.
-    Program& program_for(const GBuffer& seen, const PlacedGrid& object, const OwnPixels& own,
+    Program& program_for(const GBuffer& seen, const PlacedGrid& object, const Texture2D* own,
                          const char* fragment_file);
     void join(const GBuffer& seen, std::span<const PlacedGrid> objects, const Framebuffer& target,
-              const Texture2D* own_picture);
+              const Texture2D* own);
 
     const GlContext& context_;
     VertexArray nothing_;

@@ -61,6 +61,8 @@ GridSources bake_moving_grids(const std::filesystem::path& input, const ReadOpti
                               const GridSettings& settings, const EngineSettings& engine,
                               const StageProgress& progress)
 {
+    GridSettings of_one = settings;
+    of_one.extent *= kMovingShare;
     const Scene rest = read_rest(input, reading);
     if (animations_of(rest).empty())
         throw InputError(rest.name +
@@ -90,7 +92,7 @@ GridSources bake_moving_grids(const std::filesystem::path& input, const ReadOpti
             continue;
         if (progress && !progress("grids", (body - 1.0) / count))
             throw Cancelled();
-        GridBake baked = bake_grid(object, settings, engine, 0);
+        GridBake baked = bake_grid(object, of_one, engine, 0);
         sources.grids.push_back({body_name(rest, bodies, body),
                                  std::make_shared<const AoGrid>(std::move(baked.grid)),
                                  std::move(own)});

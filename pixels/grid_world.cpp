@@ -161,18 +161,18 @@ GridWorld::GridWorld(std::vector<PlacedGrid> objects, std::shared_ptr<const Geom
       surfaces_(std::move(surfaces)),
       occluders_(*rest_)
 {
-    for (const std::shared_ptr<const Geometry>& geometry : surfaces_.of_object)
+    for (const std::shared_ptr<const Geometry>& geometry : surfaces_.list)
         own_occluders_.emplace_back(*geometry);
 }
 
-std::vector<std::uint32_t> GridWorld::objects_at(std::span<const SurfacePoint> points) const
+std::vector<std::uint32_t> GridWorld::surfaces_at(std::span<const SurfacePoint> points) const
 {
-    if (surfaces_.of_object.empty())
+    if (surfaces_.list.empty())
         return {};
-    std::vector<std::uint32_t> objects(points.size());
+    std::vector<std::uint32_t> surfaces(points.size());
     for (std::size_t i = 0; i < points.size(); ++i)
-        objects[i] = surfaces_.object_of_triangle[points[i].triangle];
-    return objects;
+        surfaces[i] = surfaces_.of_triangle[points[i].triangle];
+    return surfaces;
 }
 
 void GridWorld::prepare(const EngineChoice& choice)
@@ -202,21 +202,21 @@ void GridWorld::add_own(std::span<const Receiver> receivers, std::span<const std
     alone.definition.ground.reset();  // which the rest has
     std::vector<std::vector<std::size_t>> members(own_occluders_.size());
     for (std::size_t i = 0; i < own.size(); ++i) {
-        if (own[i] != kNoObject)
-            members[own[i]].push_back(i);
+        if (own[i] != 0)
+            members[own[i] - 1].push_back(i);
     }
-    for (std::size_t object = 0; object < members.size(); ++object) {
-        const std::vector<std::size_t>& of_object = members[object];
-        Occluders& occluders = own_occluders_[object];
-        if (of_object.empty() || occluders.geometry().triangles.empty())
+    for (std::size_t surface = 0; surface < members.size(); ++surface) {
+        const std::vector<std::size_t>& of_one = members[surface];
+        Occluders& occluders = own_occluders_[surface];
+        if (of_one.empty() || occluders.geometry().triangles.empty())
             continue;
         std::vector<Receiver> asked;
-        for (const std::size_t i : of_object)
+        for (const std::size_t i : of_one)
             asked.push_back(receivers[i]);
         const std::vector<Occlusion> found =
             surfelao::solve(occluders.prepared_for(alone), asked, alone).occlusion;
         for (std::size_t k = 0; k < found.size(); ++k) {
-            Occlusion& answer = answers[of_object[k]];
+            Occlusion& answer = answers[of_one[k]];
             answer.bent_normal = joined_bent(answer, found[k], asked[k].normal);
             darken(answer, 1.0f - found[k].occlusion);
         }
@@ -253,7 +253,7 @@ std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh, std::span<const Scene
         poses = sources.motion->at(moment->seconds);
     std::vector<PlacedGrid> objects;
     GridSurfaces surfaces;
-    surfaces.object_of_triangle.assign(mesh.geometry.triangles.size(), kNoObject);
+    surfaces.of_triangle.assign(mesh.geometry.triangles.size(), 0);
     for (std::size_t i = 0; i < grids.size(); ++i) {
         const auto pose = pose_of(mesh.scene, frame, grids[i], triangles[i], poses);
         if (!pose)
@@ -262,12 +262,13 @@ std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh, std::span<const Scene
         if (!placement)
             throw InputError(mesh.scene.name + ": " + grids[i].node +
                              " is sheared or scaled unevenly: its grid does not follow that");
-        for (std::size_t t = 0; t < surfaces.object_of_triangle.size(); ++t) {
+        surfaces.list.push_back(surface_of(mesh, choice, triangles[i]));
+        const auto number = static_cast<std::uint32_t>(surfaces.list.size());
+        for (std::size_t t = 0; t < surfaces.of_triangle.size(); ++t) {
             if (triangles[i][mesh.geometry.scene_triangle(t)])
-                surfaces.object_of_triangle[t] = static_cast<std::uint32_t>(objects.size());
+                surfaces.of_triangle[t] = number;
         }
-        surfaces.of_object.push_back(surface_of(mesh, choice, triangles[i]));
-        objects.push_back({grids[i].grid, *placement});
+        objects.push_back({.grid = grids[i].grid, .placement = *placement, .surface = number});
     }
     return std::make_shared<GridWorld>(std::move(objects), rest_of(mesh, others, choice, triangles),
                                        std::move(surfaces));
@@ -282,15 +283,18 @@ std::vector<Occlusion> solve_with_grids(GridPass& pass, const GBuffer& drawing,
 {
     std::vector<Occlusion> values = settings.world->solve(receivers, own, settings.rest, progress);
     const Framebuffer target = pass.make_target(drawing.width(), drawing.height());
-    std::vector<float> numbers;
-    if (!own.empty())
-        numbers.resize(static_cast<std::size_t>(drawing.width()) *
-                       static_cast<std::size_t>(drawing.height()));
-    for (std::size_t i = 0; i < own.size(); ++i) {
-        if (own[i] != kNoObject)
-            numbers[pixels[i]] = static_cast<float>(own[i] + 1);
+    std::optional<Texture2D> own_picture;
+    if (!own.empty()) {
+        std::vector<glm::vec2> texels(
+            static_cast<std::size_t>(drawing.width()) * static_cast<std::size_t>(drawing.height()),
+            glm::vec2(1.0f, 0.0f));
+        for (std::size_t i = 0; i < own.size(); ++i)
+            texels[pixels[i]].y = static_cast<float>(own[i]);
+        own_picture.emplace(pass.context(), drawing.width(), drawing.height(), TexelFormat::rg32f,
+                            std::span<const glm::vec2>(texels));
     }
-    pass.draw(drawing, settings.world->objects(), settings.merge, target, numbers);
+    pass.draw(drawing, settings.world->objects(), settings.merge, target,
+              own_picture ? &*own_picture : nullptr);
     const std::vector<float> visibility = target.read_red(target.rect());
     for (std::size_t i = 0; i < values.size(); ++i)
         darken(values[i], visibility[pixels[i]]);
@@ -306,7 +310,7 @@ std::vector<Occlusion> solve_with_grids(const GridPixels& settings,
     for_all(receivers.size(), kGridGrain, [&](std::size_t i) {
         darken(values[i],
                visibility_at(settings.world->objects(), settings.merge, receivers[i].position,
-                             receivers[i].normal, own.empty() ? kNoObject : own[i]));
+                             receivers[i].normal, own.empty() ? 0 : own[i]));
     });
     return values;
 }

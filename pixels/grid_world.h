@@ -40,15 +40,15 @@ struct GridSources {
     std::shared_ptr<const Motion> motion;  ///< null: the scene is asked as it stands
 };
 
-/// What the objects' surfaces are.
+/// The objects' surfaces.
 struct GridSurfaces {
-    std::vector<std::shared_ptr<const Geometry>> of_object;  ///< unit frame, one per object
-    std::vector<std::uint32_t> object_of_triangle;  ///< of the mesh's geometry; or kNoObject
+    std::vector<std::shared_ptr<const Geometry>> list;  ///< in the unit frame; numbered from 1 on
+    std::vector<std::uint32_t> of_triangle;  ///< of the mesh's geometry: PlacedGrid::surface
 };
 
 class GridWorld {
 public:
-    /// Without surfaces no receiver is on an object.
+    /// Without surfaces no receiver is on one.
     GridWorld(std::vector<PlacedGrid> objects, std::shared_ptr<const Geometry> rest,
               GridSurfaces surfaces = {});
     GridWorld(const GridWorld&) = delete;
@@ -56,16 +56,17 @@ public:
 
     [[nodiscard]] std::span<const PlacedGrid> objects() const { return objects_; }
     [[nodiscard]] const Geometry& rest() const { return *rest_; }  ///< unit frame; may be empty
-    /// The objects, or kNoObject, on which points of the mesh lie.
-    [[nodiscard]] std::vector<std::uint32_t> objects_at(std::span<const SurfacePoint> points) const;
+    /// The numbers of the surfaces on which points of the mesh lie; 0: of the rest's.
+    [[nodiscard]] std::vector<std::uint32_t> surfaces_at(
+        std::span<const SurfacePoint> points) const;
 
     /// Builds the engines that answer for the rest and the objects' own surfaces, if that is not
     /// done yet.
     void prepare(const EngineChoice& choice);
 
-    /// What the rest hides, and objects from their own surfaces. own: as objects_at(), or empty: on
-    /// none. Throws as solve(); InputError for a ground with a limit of the distance where there is
-    /// no rest. One thread at a time.
+    /// What the rest hides, and objects from their own surfaces. own: as surfaces_at(), or empty:
+    /// on none. Throws as solve(); InputError for a ground with a limit of the distance where there
+    /// is no rest. One thread at a time.
     [[nodiscard]] std::vector<Occlusion> solve(std::span<const Receiver> receivers,
                                                std::span<const std::uint32_t> own,
                                                const EngineSettings& engine,
@@ -82,7 +83,7 @@ private:
     std::shared_ptr<const Geometry> rest_;
     GridSurfaces surfaces_;
     Occluders occluders_;
-    std::vector<Occluders> own_occluders_;  ///< one per object
+    std::vector<Occluders> own_occluders_;  ///< one per surface
 };
 
 /// Objects of a scene at a moment, placed from where their grids were made: by the poses of their

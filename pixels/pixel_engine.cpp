@@ -89,7 +89,7 @@ PixelAnswer answer(const PixelView& view, GridPass& pass, const GridPixels& sett
     PixelAnswer result;
     result.values =
         solve_with_grids(pass, view.g_buffer(), asked, view.seen().receivers,
-                         settings.world->objects_at(view.seen().points), pixels, progress);
+                         settings.world->surfaces_at(view.seen().points), pixels, progress);
     result.seconds = watch.lap();
     return result;
 }

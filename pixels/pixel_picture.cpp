@@ -57,8 +57,8 @@ std::vector<Band> bands_of(const View& view, const PixelPictureSettings& setting
 /// The answers of one list of receivers.
 struct Answers {
     std::vector<Occlusion> values, references;
-    std::vector<std::uint8_t> holes;     ///< 1 where no cube map answered; empty without maps
-    std::vector<std::uint32_t> objects;  ///< GridWorld::objects_at(); empty without grids
+    std::vector<std::uint8_t> holes;      ///< 1 where no cube map answered; empty without maps
+    std::vector<std::uint32_t> surfaces;  ///< GridWorld::surfaces_at(); empty without grids
 };
 
 /// What the receivers of each pixel add up to.
@@ -165,20 +165,20 @@ private:
         picture_.prepare_s = watch.lap();
     }
 
-    [[nodiscard]] std::vector<std::uint32_t> objects_at(std::span<const SurfacePoint> points) const
+    [[nodiscard]] std::vector<std::uint32_t> surfaces_at(std::span<const SurfacePoint> points) const
     {
-        return with_grids() != nullptr ? with_grids()->world->objects_at(points)
+        return with_grids() != nullptr ? with_grids()->world->surfaces_at(points)
                                        : std::vector<std::uint32_t>();
     }
 
-    /// What the engine of the scene says of them, or nothing. objects: objects_at() of them.
+    /// What the engine of the scene says of them, or nothing. surfaces: surfaces_at() of them.
     std::vector<Occlusion> solved(std::span<const Receiver> receivers,
-                                  std::span<const std::uint32_t> objects, const Progress& progress)
+                                  std::span<const std::uint32_t> surfaces, const Progress& progress)
     {
         if (!settings_.engine || std::holds_alternative<ScreenSettings>(*settings_.engine))
             return std::vector<Occlusion>(receivers.size());
         if (with_grids() != nullptr)
-            return solve_with_grids(defined_grids(), receivers, objects, progress);
+            return solve_with_grids(defined_grids(), receivers, surfaces, progress);
         const EngineSettings engine = here(std::get<EngineSettings>(*settings_.engine));
         return solve(occluders_.prepared_for(engine), receivers, engine, progress).occlusion;
     }
@@ -219,11 +219,11 @@ private:
 
     /// What grids say of the pixels that the G-buffer was drawn for.
     std::vector<Occlusion> solved_by_pass(const GBuffer& drawing, const SeenPixels& seen,
-                                          std::span<const std::uint32_t> objects)
+                                          std::span<const std::uint32_t> surfaces)
     {
         if (!grid_pass_)
             grid_pass_.emplace(context_);
-        return solve_with_grids(*grid_pass_, drawing, defined_grids(), seen.receivers, objects,
+        return solve_with_grids(*grid_pass_, drawing, defined_grids(), seen.receivers, surfaces,
                                 seen.pixels, stage("solve"));
     }
 
@@ -248,9 +248,9 @@ private:
         const auto pixels = [&](std::size_t i) { return seen.pixels[i]; };
         Answers answers;
         if (settings_.cube_maps == nullptr) {
-            answers.objects = objects_at(seen.points);
+            answers.surfaces = surfaces_at(seen.points);
             answers.values = with_grids() != nullptr
-                                 ? solved_by_pass(*drawing, seen, answers.objects)
+                                 ? solved_by_pass(*drawing, seen, answers.surfaces)
                                  : solved(seen.receivers, {}, stage("solve"));
             if (on_screen())
                 put_screen(*drawing, size, pixels, answers.values);
@@ -357,9 +357,9 @@ private:
         }
         const std::vector<Receiver> extra_receivers =
             receivers_facing(mesh_, band.view, samples.extra_points(), settings_.offset);
-        extras.objects = objects_at(samples.extra_points());
+        extras.surfaces = surfaces_at(samples.extra_points());
         if (!on_screen())
-            extras.values = solved(extra_receivers, extras.objects, {});
+            extras.values = solved(extra_receivers, extras.surfaces, {});
         picture_.extras += extra_receivers.size();
         picture_.edge_pixels += samples.edge_pixels();
         picture_.edges_s += watch.lap();
@@ -383,7 +383,7 @@ private:
         for_all(receivers.size(), kPaintGrain, [&](std::size_t i) {
             colors[i] = paint_.color({receivers[i], answers.values[i], references[i],
                                       !answers.holes.empty() && answers.holes[i] != 0, with_grids(),
-                                      answers.objects.empty() ? kNoObject : answers.objects[i]});
+                                      answers.surfaces.empty() ? 0 : answers.surfaces[i]});
         });
         return colors;
     }

@@ -50,7 +50,7 @@ struct AnsweredPixel {
     const Occlusion& reference;         ///< the value where none was asked for
     bool is_hole = false;               ///< no cube map answered
     const GridPixels* grids = nullptr;  ///< who answered, if it was grids
-    std::uint32_t object = kNoObject;   ///< of theirs, on which the receiver is
+    std::uint32_t surface = 0;          ///< GridWorld::surfaces_at() it
 };
 
 /// How answers become colours. Both are called from many threads.

@@ -93,14 +93,13 @@ float occlusion_at(const PlacedGrid& object, glm::vec3 position, glm::vec3 norma
 }
 
 std::vector<TakenLight> taken_at(std::span<const PlacedGrid> objects, GridMerge merge,
-                                 glm::vec3 position, glm::vec3 normal, std::uint32_t own)
+                                 glm::vec3 position, glm::vec3 normal, std::uint32_t surface)
 {
     std::vector<TakenLight> all;
     glm::vec4 joined(0.0f);
-    for (std::uint32_t i = 0; i < objects.size(); ++i) {
-        if (i == own)
+    for (const PlacedGrid& object : objects) {
+        if (surface != 0 && object.surface == surface)
             continue;
-        const PlacedGrid& object = objects[i];
         const Harmonics values = values_at(object, lifted_in_object(object, position, normal));
         const glm::vec4 moments = moments_in_world(object, values);
         if (moments.w < kNothingHidden)
@@ -118,10 +117,10 @@ std::vector<TakenLight> taken_at(std::span<const PlacedGrid> objects, GridMerge 
 }
 
 float visibility_at(std::span<const PlacedGrid> objects, GridMerge merge, glm::vec3 position,
-                    glm::vec3 normal, std::uint32_t own)
+                    glm::vec3 normal, std::uint32_t surface)
 {
     float visibility = 1.0f;
-    for (const TakenLight& taken : taken_at(objects, merge, position, normal, own))
+    for (const TakenLight& taken : taken_at(objects, merge, position, normal, surface))
         visibility *= 1.0f - taken.occlusion;
     return visibility;
 }

@@ -34,13 +34,11 @@ enum class GridMerge { product, caps };
 [[nodiscard]] std::string name_of(GridMerge merge);
 [[nodiscard]] std::optional<GridMerge> grid_merge_of(std::string_view name);
 
-/// In place of an object's number: of none.
-inline constexpr std::uint32_t kNoObject = 0xffffffff;
-
 struct PlacedGrid {
     std::shared_ptr<const AoGrid> grid;
-    Placement placement;   ///< from the object's own units to the unit frame
-    glm::dvec3 lift{0.0};  ///< lift_of() the object (bake/grid_target.h)
+    Placement placement;        ///< from the object's own units to the unit frame
+    glm::dvec3 lift{0.0};       ///< lift_of() the object (bake/grid_target.h)
+    std::uint32_t surface = 0;  ///< the number of its own surface, where it is not read; 0: none
 };
 
 /// Unit frame to the object's own units.
@@ -60,15 +58,14 @@ struct TakenLight {
     float occlusion = 0.0f;
     glm::vec4 moments{0.0f};  ///< from where: m / (4 pi) and alpha
 };
-/// The cones that a merge ends with: one of each object that hides anything, or the joint one; own:
-/// is left out.
+/// The cones that a merge ends with: one of each object that hides anything, or the joint one.
+/// surface: whose receiver it is (PlacedGrid::surface); 0: nobody's.
 [[nodiscard]] std::vector<TakenLight> taken_at(std::span<const PlacedGrid> objects, GridMerge merge,
                                                glm::vec3 position, glm::vec3 normal,
-                                               std::uint32_t own = kNoObject);
+                                               std::uint32_t surface = 0);
 
-/// The share of the light that all of them, but `own`, leave: the twin of GridPass.
+/// The share of the light that all of them leave: the twin of GridPass.
 [[nodiscard]] float visibility_at(std::span<const PlacedGrid> objects, GridMerge merge,
-                                  glm::vec3 position, glm::vec3 normal,
-                                  std::uint32_t own = kNoObject);
+                                  glm::vec3 position, glm::vec3 normal, std::uint32_t surface = 0);
 
 }  // namespace surfelao

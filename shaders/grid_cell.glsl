@@ -7,8 +7,9 @@
 //   u_lift     LIFT: PlacedGrid::lift in half boxes
 //   u_cells    RGBA16F, a texel a cell: m / (4 pi), alpha; SH: coefficients 0 to 3
 //   u_surface  as in g_buffer.glsl: normal in view space, distance forward
-//   u_own      OWN: R32F, 1 + the object on whose surface the pixel looks
-//   u_object   OWN: 1 + the one whose grid this is
+//   u_own      OWN: RG32F: what the surface that the pixel looks at leaves of the light by itself,
+//              and its number
+//   u_number   OWN: of the surface of the object whose grid this is
 // CPU twin   read_values(), border_weight() in grid/ao_grid.cpp
 flat in mat3 v_across;
 flat in vec3 v_rest;
@@ -26,7 +27,7 @@ uniform vec3 u_lift;
 #endif
 #ifdef OWN
 uniform sampler2D u_own;
-uniform float u_object;
+uniform float u_number;
 #endif
 
 const float kFade = 0.12;  // kGridFade
@@ -46,11 +47,11 @@ vec3 place_in_box(float distance, vec3 normal)
     return place;
 }
 
-// of the object itself, whose grid does not tell what it hides from its own surface
+// of the object's own surface: what it hides from itself its cells are too coarse to tell
 bool is_own_pixel()
 {
 #ifdef OWN
-    return texelFetch(u_own, ivec2(gl_FragCoord.xy), 0).r == u_object;
+    return texelFetch(u_own, ivec2(gl_FragCoord.xy), 0).g == u_number;
 #else
     return false;
 #endif

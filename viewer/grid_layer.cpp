@@ -12,9 +12,10 @@ Placement into_frame(const Frame& frame)
     return {.scale = 1.0 / frame.diagonal, .translation = -frame.centre / frame.diagonal};
 }
 
-PlacedGrid placed_at(const std::shared_ptr<const GridBake>& bake, const Placement& placement)
+PlacedGrid placed_at(const std::shared_ptr<const ObjectGrid>& bake, const Placement& placement,
+                     std::uint32_t surface = 0)
 {
-    return {std::shared_ptr<const AoGrid>(bake, &bake->grid), placement, bake->lift};
+    return {std::shared_ptr<const AoGrid>(bake, &bake->grid), placement, bake->lift, surface};
 }
 
 /// Those that are there in the pose. objects: of its bodies.
@@ -30,7 +31,8 @@ std::vector<PlacedGrid> placed_grids(const FoundGrids& found, const GridObjects&
             is_placed[object])
             continue;
         is_placed[object] = true;  // what rests is several bodies
-        placed.push_back(placed_at(found.bakes[object], posed.poses[b].placement * at_rest));
+        placed.push_back(
+            placed_at(found.bakes[object], posed.poses[b].placement * at_rest, object + 1));
     }
     return placed;
 }
@@ -55,6 +57,8 @@ void GridLayer::keep_of(const std::shared_ptr<const Model>& model)
     session_.forget();
     pass_.reset();
     in_pass_.reset();
+    own_.reset();
+    own_of_.reset();
     bodies_.reset();
     objects_.reset();
     left_out_.clear();
@@ -109,14 +113,39 @@ bool GridLayer::look(Shot& shot, const Session& session, const Cell& cell,
         return forget_picture();
     if (is_drawn_ && in_pass_ == found)
         return false;
-    if (in_pass_ != found)
+    if (in_pass_ != found) {
         pass_.reset();
+        own_.reset();
+    }
     in_pass_ = found;
+    if (objects_)
+        find_own(shot.model());
+    else
+        own_.reset();
     if (objects_)
         draw(shot, placed_grids(*found, *objects_, *posed));
     else
         draw(shot, {placed_at(found->bakes.front(), into_frame(shot.model()->geometry().frame))});
     return true;
+}
+
+void GridLayer::find_own(const std::shared_ptr<const Model>& model)
+{
+    if (own_ && own_of_ == model)
+        return;
+    std::vector<glm::vec4> of_scene(model->mesh->scene.triangles.size(), {1, 1, 1, 0});
+    for (std::size_t object = 0; object < objects_->triangles.size(); ++object) {
+        const ObjectTriangles& triangles = objects_->triangles[object];
+        for (std::size_t i = 0; i < triangles.size(); ++i)
+            of_scene[triangles[i]] = {in_pass_->bakes[object]->own[i],
+                                      static_cast<float>(object + 1)};
+    }
+    const Geometry& geometry = model->geometry();
+    std::vector<glm::vec4> texels(geometry.triangles.size());
+    for (std::size_t t = 0; t < texels.size(); ++t)
+        texels[t] = of_scene[geometry.scene_triangle(t)];
+    own_.emplace(context_, TexelFormat::rgba32f, std::span<const glm::vec4>(texels));
+    own_of_ = model;
 }
 
 void GridLayer::draw(Shot& shot, const std::vector<PlacedGrid>& objects)
@@ -126,7 +155,16 @@ void GridLayer::draw(Shot& shot, const std::vector<PlacedGrid>& objects)
     const GBuffer& seen = shot.drawn();
     if (!picture_ || picture_->width() != seen.width() || picture_->height() != seen.height())
         picture_.emplace(pass_->make_target(seen.width(), seen.height()));
-    pass_->draw(seen, objects, GridMerge::product, *picture_);
+    if (own_) {
+        if (!own_picture_ || own_picture_->width() != seen.width() ||
+            own_picture_->height() != seen.height())
+            own_picture_.emplace(context_, FramebufferOptions{.width = seen.width(),
+                                                              .height = seen.height(),
+                                                              .colors = {TexelFormat::rg32f}});
+        seen.draw_values(shot.mesh(), *own_, {1.0f, 0.0f}, *own_picture_);
+    }
+    pass_->draw(seen, objects, GridMerge::product, *picture_,
+                own_ ? &own_picture_->color() : nullptr);
     is_drawn_ = true;
 }
 
@@ -135,7 +173,7 @@ float GridLayer::told(glm::ivec2 pixel) const
     return 1.0f - picture_->read_red({pixel.x, pixel.y, 1, 1}).front();
 }
 
-std::span<const std::shared_ptr<const GridBake>> GridLayer::grids() const
+std::span<const std::shared_ptr<const ObjectGrid>> GridLayer::grids() const
 {
     if (!session_.found())
         return {};

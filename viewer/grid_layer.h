@@ -1,6 +1,6 @@
 /// grid_layer.h: the AO grid round a model in a window, or those round its parts where they move,
-/// and what they tell of a picture's pixels: of grids alone, in every frame, as they are read
-/// anywhere about the objects.
+/// and what they tell of a picture's pixels, in every frame: of grids alone, but for what an object
+/// that moves hides from its own surface, which is found at its vertices.
 #pragma once
 
 #include "pixels/grid_pass.h"
@@ -50,7 +50,7 @@ public:
     [[nodiscard]] float told(glm::ivec2 pixel) const;
 
     /// One per object; empty: not yet.
-    std::span<const std::shared_ptr<const GridBake>> grids() const;
+    std::span<const std::shared_ptr<const ObjectGrid>> grids() const;
     std::optional<double> progress() const;
     bool is_busy() const { return session_.solving(); }
     bool was_cancelled() const { return session_.was_cancelled(); }
@@ -64,6 +64,7 @@ public:
 
 private:
     void find_objects(const PosedBodies* posed);
+    void find_own(const std::shared_ptr<const Model>& model);
     void draw(Shot& shot, const std::vector<PlacedGrid>& objects);
 
     const GlContext& context_;
@@ -72,7 +73,10 @@ private:
     std::shared_ptr<const GridObjects> objects_;  ///< of the last look(); null: the whole
     std::optional<GridPass> pass_;                ///< empty until it is wanted
     std::shared_ptr<const FoundGrids> in_pass_;   ///< whose grids it has on the device
-    std::optional<Framebuffer> picture_;
+    /// Of the shot's triangles, as GBuffer::draw_values() takes them; empty until it is wanted.
+    std::optional<TextureBuffer> own_;
+    std::shared_ptr<const Model> own_of_;  ///< whose triangles those are
+    std::optional<Framebuffer> picture_, own_picture_;
     bool is_drawn_ = false;  ///< it shows the shot
     std::string left_out_;
     GridSession session_;

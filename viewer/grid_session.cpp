@@ -1,5 +1,7 @@
 #include "viewer/grid_session.h"
 
+#include "bake/vertex_bake.h"
+#include "pixels/grid_sources.h"
 #include "surfels/geometry.h"
 
 #include <algorithm>
@@ -23,20 +25,42 @@ bool have_same_settings(const GridQuestion& a, const GridQuestion& b)
     return a.model == b.model && a.grid == b.grid && a.engine == b.engine;
 }
 
-GridBake bake_object(const GridQuestion& question, std::size_t object,
-                     const StageProgress& progress)
+/// What an object leaves of the light at the corners of its triangles. alone: its mesh.
+std::vector<glm::vec3> left_by_itself(std::shared_ptr<const Mesh> alone,
+                                      const TargetSettings& settings, const EngineSettings& engine,
+                                      const ObjectTriangles& triangles)
+{
+    const VertexTarget target(alone, settings);
+    const Offset offset = offset_of(settings, alone->geometry.frame);
+    const std::vector<Occlusion> values = bake_vertices(*alone, target, engine, offset, 0).values;
+    std::vector<glm::vec3> left;
+    for (const std::uint32_t triangle : triangles) {
+        const glm::uvec3 corners = alone->scene.triangles[triangle];
+        left.push_back(1.0f - glm::vec3(values[corners.x].occlusion, values[corners.y].occlusion,
+                                        values[corners.z].occlusion));
+    }
+    return left;
+}
+
+ObjectGrid bake_object(const GridQuestion& question, std::size_t object,
+                       const StageProgress& progress)
 {
     const Model& model = *question.model;
     if (!question.objects)
-        return bake_grid(model.occluding(), question.grid, question.engine, 0, progress);
+        return {bake_grid(model.occluding(), question.grid, question.engine, 0, progress), {}};
+    const ObjectTriangles& triangles = question.objects->triangles[object];
     std::vector<bool> others(model.mesh->scene.triangles.size(), true);
-    for (const std::uint32_t triangle : question.objects->triangles[object])
+    for (const std::uint32_t triangle : triangles)
         others[triangle] = false;
-    const Geometry alone = make_geometry(model.mesh->scene, {.left_out = std::move(others)});
+    const auto alone = std::make_shared<const Mesh>(
+        make_mesh(model.mesh->scene, model.settings.normals, {.left_out = std::move(others)}));
     EngineSettings engine = question.engine;
     engine.definition.max_distance *=
-        static_cast<float>(model.geometry().frame.diagonal / alone.frame.diagonal);
-    return bake_grid(alone, question.grid, engine, 0, progress);
+        static_cast<float>(model.geometry().frame.diagonal / alone->geometry.frame.diagonal);
+    GridSettings of_one = question.grid;
+    of_one.extent *= kMovingShare;
+    return {bake_grid(alone->geometry, of_one, engine, 0, progress),
+            left_by_itself(alone, model.settings, engine, triangles)};
 }
 
 void bake_missing(FoundGrids& grids, const Progress& progress)
@@ -51,7 +75,7 @@ void bake_missing(FoundGrids& grids, const Progress& progress)
             return progress((made + (stage == "repair" ? 1.0 : done)) / missing);  // it is short
         };
         grids.bakes[object] =
-            std::make_shared<const GridBake>(bake_object(grids.question, object, in_stage));
+            std::make_shared<const ObjectGrid>(bake_object(grids.question, object, in_stage));
         made += 1.0;
     }
 }
@@ -79,7 +103,7 @@ void GridSession::ask_again()
         start();
 }
 
-std::shared_ptr<const GridBake> GridSession::known(std::size_t object) const
+std::shared_ptr<const ObjectGrid> GridSession::known(std::size_t object) const
 {
     for (const auto& grids : {found_, before_}) {
         if (!grids || !have_same_settings(grids->question, question_))

@@ -24,10 +24,16 @@ struct GridQuestion {
     bool operator==(const GridQuestion&) const = default;
 };
 
+/// In the file's units; without the statement of its error.
+struct ObjectGrid : GridBake {
+    /// One per triangle of the object (GridObjects::triangles): what the object leaves of the light
+    /// at its corners by itself. Empty where all that occludes is one.
+    std::vector<glm::vec3> own;
+};
+
 struct FoundGrids {
     GridQuestion question;
-    /// One per object, in the file's units; without the statement of its error.
-    std::vector<std::shared_ptr<const GridBake>> bakes;
+    std::vector<std::shared_ptr<const ObjectGrid>> bakes;  ///< one per object
 };
 
 /// For one thread; update() takes over what the background thread has finished. Objects that are
@@ -58,7 +64,7 @@ public:
 private:
     void start();
     void take(std::shared_ptr<const FoundGrids> found);
-    [[nodiscard]] std::shared_ptr<const GridBake> known(std::size_t object) const;
+    [[nodiscard]] std::shared_ptr<const ObjectGrid> known(std::size_t object) const;
 
     GridQuestion question_;  ///< without a model: none
     bool was_cancelled_ = false;

@@ -61,7 +61,7 @@ private:
         float visible = 1.0f, sum = 0.0f;
         glm::vec3 taken(0.0f);
         for (const TakenLight& one : taken_at(pixel.grids->world->objects(), pixel.grids->merge,
-                                              at.position, at.normal, pixel.object)) {
+                                              at.position, at.normal, pixel.surface)) {
             const glm::vec3 mean(one.moments);
             const float length = glm::length(mean);
             const glm::vec3 axis = length > 0.0f ? mean / length : at.normal;

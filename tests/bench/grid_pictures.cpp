@@ -297,7 +297,7 @@ void print_robot(const GlContext& context, const char* file)
     constexpr PictureSize kPicture{800, 600};
     const ReadOptions first{.moment = Moment{0.0, ""}};
     Stopwatch watch;
-    const GridSources sources = bake_moving_grids(file, first, {.extent = kMovingExtent}, {});
+    const GridSources sources = bake_moving_grids(file, first, {}, {});
     const double bake_s = watch.lap();
     std::printf("\"robot\": {\"parts\": %zu, \"bake_s\": %.3f, \"frames\": [\n  ",
                 sources.grids.size(), bake_s);

@@ -50,12 +50,12 @@ std::vector<PlacedGrid> three_balls(GridStore store, GridBorder border)
 {
     const auto grid = std::make_shared<const AoGrid>(sphere_grid(1.0, 3.0, 16, store, border));
     return {{grid, placed_at({0.1, 0.1, 0.12}, 0.1, 0.4)},
-            {grid, placed_at({-0.15, 0.0, 0.1}, 0.07, 1.3, true), {0.0, 0.2, 0.4}},
+            {grid, placed_at({-0.15, 0.0, 0.1}, 0.07, 1.3, true), {0.0, 0.2, 0.4}, 2},
             {grid, placed_at({0.0, -0.2, 0.15}, 0.12, 2.0)}};
 }
 
 /// Largest difference to visibility_at() at any pixel; mean: of the twin's occlusion. The picture's
-/// left half is on the second object.
+/// left half is on the second surface, which hides a tenth from itself.
 float largest_difference(const View& view, std::span<const PlacedGrid> objects, GridMerge merge,
                          double& mean)
 {
@@ -64,25 +64,27 @@ float largest_difference(const View& view, std::span<const PlacedGrid> objects, 
     seen.draw(drawn, view);
     GridPass pass(test_context());
     const Framebuffer target = pass.make_target(kSize.width, kSize.height);
-    std::vector<float> own(static_cast<std::size_t>(kSize.width * kSize.height), 0.0f);
-    for (std::size_t i = 0; i < own.size(); ++i)
-        own[i] = i % 96 < 48 ? 2.0f : 0.0f;
-    pass.draw(seen, objects, merge, target, own);
+    std::vector<glm::vec2> texels;
+    for (int i = 0; i < kSize.width * kSize.height; ++i)
+        texels.emplace_back(i % 96 < 48 ? glm::vec2(0.9f, 2.0f) : glm::vec2(1.0f, 0.0f));
+    const Texture2D own(test_context(), kSize.width, kSize.height, TexelFormat::rg32f,
+                        std::span<const glm::vec2>(texels));
+    pass.draw(seen, objects, merge, target, &own);
     const std::vector<float> found = target.read_red(target.rect());
     const std::vector<glm::vec4> surface = seen.read_surface();
     float largest = 0.0f;
     mean = 0.0;
     for (std::size_t i = 0; i < found.size(); ++i) {
-        float expected = 1.0f;
+        float expected = texels[i].x;
         if (surface[i].w < kNothingThere) {
             const glm::vec2 middle(static_cast<float>(i % 96) + 0.5f,
                                    static_cast<float>(i / 96) + 0.5f);
             const PixelRay ray = pixel_ray(view.lens, kSize.width, kSize.height, middle);
             const glm::vec3 normal(surface[i]);
-            expected = visibility_at(
+            expected *= visibility_at(
                 objects, merge, to_world(view, ray.origin + surface[i].w * ray.direction),
                 normal.x * view.right + normal.y * view.up + normal.z * view.forward,
-                i % 96 < 48 ? 1u : kNoObject);
+                static_cast<std::uint32_t>(texels[i].y));
         }
         mean += (1.0 - static_cast<double>(expected)) / static_cast<double>(found.size());
         largest = std::max(largest, std::abs(found[i] - expected));

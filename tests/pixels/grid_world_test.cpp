@@ -174,7 +174,7 @@ TEST(GridWorld, APictureShowsIt)
     const PixelPaint paint{[&](const AnsweredPixel& pixel) {
         EXPECT_EQ(pixel.grids->world, scene.pixels.world);
         const std::vector<Occlusion> twin =
-            solve_with_grids(scene.pixels, {&pixel.receiver, 1}, {&pixel.object, 1});
+            solve_with_grids(scene.pixels, {&pixel.receiver, 1}, {&pixel.surface, 1});
         return glm::vec3(pixel.value.occlusion, twin.front().occlusion, 0.0f);
     }};
     const PixelPicture picture =
@@ -200,8 +200,8 @@ TEST(GridWorld, AnObjectHidesFromItsOwnSurfaceWhatItsEngineSays)
         std::vector<SurfacePoint> points;
         for (std::uint32_t t = 0; t < hills.triangles.size(); ++t)
             points.push_back({t, {0.3f, 0.3f}});
-        const std::vector<std::uint32_t> own = scene.pixels.world->objects_at(points);
-        EXPECT_EQ(std::ranges::count(own, 0u), std::ssize(own));
+        const std::vector<std::uint32_t> own = scene.pixels.world->surfaces_at(points);
+        EXPECT_EQ(std::ranges::count(own, 1u), std::ssize(own));
         const std::vector<Receiver> receivers =
             receivers_at(scene.mesh.geometry, scene.mesh.surface, points);
         const std::vector<Occlusion> found = solve_with_grids(scene.pixels, receivers, own);

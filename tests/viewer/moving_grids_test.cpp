@@ -5,7 +5,9 @@
 #include "../gpu/contexts.h"
 #include "../pixels/looks.h"
 #include "bake/grid_target.h"
+#include "bake/vertex_bake.h"
 #include "files/gltf_maker.h"
+#include "pixels/grid_sources.h"
 #include "scenes.h"
 #include "temporary_folder.h"
 #include "viewer/mover.h"
@@ -90,15 +92,22 @@ struct MovingGrids : testing::Test {
         return {view.grid().grids().begin(), view.grid().grids().end()};
     }
 
-    /// One grid of these parts of the file, made by itself, moved in the unit frame of the model.
-    PlacedGrid twin_of(std::initializer_list<std::uint32_t> movables, const Placement& moved) const
+    /// An object, and what it leaves of the light at the vertices of the scene by itself.
+    struct Twin {
+        PlacedGrid grid;
+        std::vector<bool> triangles;  ///< of the scene
+        std::vector<Occlusion> own;
+    };
+    /// Of these parts of the file, made by itself, moved in the unit frame of the model.
+    Twin twin_of(std::initializer_list<std::uint32_t> movables, const Placement& moved) const
     {
         const Scene& scene = mover.base()->mesh->scene;
         std::vector<bool> others;
         for (const glm::uvec3 triangle : scene.triangles)
             others.push_back(std::ranges::find(movables, mover.movables()->of_vertex[triangle.x]) ==
                              movables.end());
-        const Geometry alone = make_geometry(scene, {.left_out = others});
+        const auto mesh = std::make_shared<const Mesh>(make_mesh(scene, {}, {.left_out = others}));
+        const Geometry& alone = mesh->geometry;
         const Frame& frame = mover.base()->geometry().frame;
         const Placement at_rest{.scale = 1.0 / frame.diagonal,
                                 .translation = -frame.centre / frame.diagonal};
@@ -107,13 +116,24 @@ struct MovingGrids : testing::Test {
             limit = {0.01 * limit.value * frame.diagonal, false, limit.falloff};
         EngineSettings engine;
         engine.definition = definition_of(limit, Kernel::cosine, alone.frame);
-        const GridBake bake = bake_grid(alone, *cell.grid, engine, 0);
-        return {std::make_shared<const AoGrid>(bake.grid), moved * at_rest, bake.lift};
+        GridSettings settings = *cell.grid;
+        settings.extent *= kMovingShare;
+        const GridBake bake = bake_grid(alone, settings, engine, 0);
+        Twin twin{{std::make_shared<const AoGrid>(bake.grid), moved * at_rest, bake.lift},
+                  std::move(others),
+                  bake_vertices(*mesh, VertexTarget(mesh, {}), engine, {}, 0).values};
+        twin.triangles.flip();
+        return twin;
     }
 
     /// What pixels show is what these tell of the surface as it is shown.
-    void expect_told_by(std::span<const PlacedGrid> twins) const
+    void expect_told_by(std::span<const Twin> twins) const
     {
+        std::vector<PlacedGrid> grids;
+        for (const Twin& twin : twins) {
+            grids.push_back(twin.grid);
+            grids.back().surface = static_cast<std::uint32_t>(grids.size());
+        }
         Mesh shown = *view.model()->mesh;
         std::ranges::copy(view.positions(), shown.geometry.positions.begin());
         std::ranges::copy(view.wedge_normals(), shown.surface.normals.begin());
@@ -121,7 +141,18 @@ struct MovingGrids : testing::Test {
         const Look look(shown, eye, kPictured);
         const std::vector<glm::vec4> surface = look.pixels.g_buffer().read_surface();
         float farthest = 0.0f, darkest = 0.0f;
-        for (const std::uint32_t pixel : look.pixels.seen().pixels) {
+        const SeenPixels& seen_pixels = look.pixels.seen();
+        for (std::size_t i = 0; i < seen_pixels.pixels.size(); ++i) {
+            const std::uint32_t pixel = seen_pixels.pixels[i];
+            const SurfacePoint& point = seen_pixels.points[i];
+            std::uint32_t number = 0;
+            float left = 1.0f;
+            for (std::uint32_t t = 0; t < twins.size(); ++t) {
+                if (!twins[t].triangles[shown.geometry.scene_triangle(point.triangle)])
+                    continue;
+                number = t + 1;
+                left = 1.0f - displayed(shown.geometry, twins[t].own, point);
+            }
             const auto column = static_cast<int>(pixel) % kPictured.width;
             const auto row = static_cast<int>(pixel) / kPictured.width;
             const glm::vec2 middle(static_cast<float>(column) + 0.5f,
@@ -129,9 +160,11 @@ struct MovingGrids : testing::Test {
             const PixelRay ray = pixel_ray(eye.lens, kPictured.width, kPictured.height, middle);
             const glm::vec4 seen = surface[pixel];
             const float expected =
-                1.0f - visibility_at(twins, GridMerge::product,
+                1.0f -
+                left * visibility_at(grids, GridMerge::product,
                                      to_world(eye, ray.origin + seen.w * ray.direction),
-                                     seen.x * eye.right + seen.y * eye.up + seen.z * eye.forward);
+                                     seen.x * eye.right + seen.y * eye.up + seen.z * eye.forward,
+                                     number);
             const std::optional<float> told = view.told_by_picture({column, row});
             farthest = std::max(farthest, std::abs(told.value_or(-1.0f) - expected));
             darkest = std::max(darkest, expected);
@@ -168,7 +201,7 @@ TEST_F(MovingGrids, EachPartThatAHandMovesTakesItsGridAlong)
     PartMove move{.translation = {0.05, 0.02, 0.1}, .scale = 1.25};
     move.rotation = glm::angleAxis(0.7, glm::dvec3(0.0, 1.0, 0.0));
     const glm::dvec3 middle = mover.middle_of(1);
-    std::vector<PlacedGrid> twins{twin_of({0, 2}, {}), twin_of({1}, placement_of(move, middle))};
+    std::vector<Twin> twins{twin_of({0, 2}, {}), twin_of({1}, placement_of(move, middle))};
     mover.set_move(1, move);
     mover.hold(true);
     const auto is_shown = [&](const PartMove& wanted) {
@@ -242,7 +275,7 @@ TEST_F(MovingGrids, AnAnimationPlacesThemInEveryFrame)
 
     const double diagonal = mover.base()->geometry().frame.diagonal;
     const auto twins_at = [&](double seconds) {
-        return std::vector<PlacedGrid>{
+        return std::vector<Twin>{
             twin_of({0}, {}),
             twin_of({1}, {.translation = {0.25 * (seconds - 1.0) / diagonal, 0.0, 0.0}})};
     };
