@@ -2,6 +2,8 @@
 
 #include "surfels/conjugate_gradients.h"
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
+#include "surfels/sparse_rows.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -19,6 +21,7 @@ namespace {
 constexpr int kMostSteps = 64;
 /// Rounding of a share of a triangle.
 constexpr double kLeastShare = -1e-9;
+constexpr std::size_t kSeamGrain = 256;  // seams of one task
 constexpr GradientLimits kStitchLimits{.residual = 1e-4, .steps = 40};
 
 double cross(glm::dvec2 a, glm::dvec2 b)
@@ -133,7 +136,7 @@ struct Claim {
     glm::dvec2 place{0.0};
 };
 
-/// Collects the claims of seams.
+/// Finds the claims of seams. Any number of threads.
 class ClaimFinder {
 public:
     ClaimFinder(const Mesh& mesh, const MapLayout& layout, const Seams& seams, std::uint32_t rings,
@@ -142,7 +145,7 @@ public:
     {
     }
 
-    void find(std::size_t seam, int near)
+    void find(std::size_t seam, int near, std::vector<Claim>& claims) const
     {
         const Seam& at = seams_.list[seam];
         const SeamSide &side = at.sides[near], &other = at.sides[1 - near];
@@ -175,23 +178,8 @@ public:
                 to.origin + cross(offset, inward) / whole * to.along + beyond * to.inward;
             if (!at.is_smooth || (is_in_chart(geometry_, layout_, seams_, entry, place) &&
                                   is_known(other.page, place)))
-                claims_.push_back({side.page, other.page, texel, distance, seam, place});
+                claims.push_back({side.page, other.page, texel, distance, seam, place});
         });
-    }
-
-    /// One for each texel: the nearest.
-    [[nodiscard]] std::vector<Claim> claims()
-    {
-        const auto key = [](const Claim& claim) {
-            return std::tuple(claim.page, claim.texel, claim.distance, claim.seam);
-        };
-        std::ranges::stable_sort(claims_, {}, key);
-        claims_.erase(std::unique(claims_.begin(), claims_.end(),
-                                  [](const Claim& a, const Claim& b) {
-                                      return a.page == b.page && a.texel == b.texel;
-                                  }),
-                      claims_.end());
-        return std::move(claims_);
     }
 
 private:
@@ -239,77 +227,77 @@ private:
     const Seams& seams_;
     double reach_;  // texels
     std::span<const std::vector<std::uint8_t>> known_;
-    std::vector<Claim> claims_;
 };
+
+/// One for each texel: the nearest, of several that of the first seam.
+void keep_nearest(std::vector<Claim>& claims)
+{
+    const auto key = [](const Claim& claim) {
+        return std::tuple(claim.page, claim.texel, claim.distance, claim.seam);
+    };
+    std::ranges::stable_sort(claims, {}, key);
+    claims.erase(std::unique(claims.begin(), claims.end(),
+                             [](const Claim& a, const Claim& b) {
+                                 return a.page == b.page && a.texel == b.texel;
+                             }),
+                 claims.end());
+}
+
+std::vector<Claim> nearest_claims(const ClaimFinder& finder, std::size_t seams)
+{
+    std::vector<std::vector<Claim>> found((seams + kSeamGrain - 1) / kSeamGrain);
+    for_tasks(found.size(), [&](std::size_t part) {
+        const std::size_t end = std::min(seams, kSeamGrain * (part + 1));
+        for (std::size_t seam = kSeamGrain * part; seam < end; ++seam)
+            for (const int near : {0, 1})
+                finder.find(seam, near, found[part]);
+        keep_nearest(found[part]);
+    });
+    std::vector<Claim> claims;
+    for (std::vector<Claim>& some : found) {
+        claims.insert(claims.end(), some.begin(), some.end());
+        some = {};
+    }
+    keep_nearest(claims);
+    return claims;
+}
 
 /// Samples of smooth seams: what each shows on one side less what it shows on the other is a sum
-/// over few texels. Rows of a sparse matrix over the texels that occur.
-class SeamSamples {
-public:
-    SeamSamples(const Seams& seams, std::span<const Map> pages)
-    {
-        if (pages.empty())
-            return;
-        const glm::dvec2 scale(pages[0].width, pages[0].height);
-        std::vector<std::uint64_t> texels;  // of all pages; eight a sample
-        for (const Seam& seam : seams.list) {
-            if (!seam.is_smooth)
-                continue;
-            double length = 0.0;
-            for (const SeamSide& side : seam.sides)
-                length = std::max(length, glm::length(scale * (side.ends[1] - side.ends[0])));
-            const auto count = static_cast<std::uint32_t>(std::ceil(kSeamSamples * length));
-            for (std::uint32_t s = 0; s < count; ++s) {
-                const double at = (s + 0.5) / count;
-                double sign = 1.0;
-                for (const SeamSide& side : seam.sides) {
-                    const Footprint print = footprint(pages[0].width, pages[0].height,
-                                                      glm::mix(side.ends[0], side.ends[1], at));
-                    for (int k = 0; k < 4; ++k) {
-                        texels.push_back(side.page * pages[0].texels() + print.texels[k]);
-                        weights_.push_back(sign * print.weights[k]);
-                    }
-                    sign = -1.0;
-                }
+/// over few texels of all pages.
+using SeamSamples = SparseRows<8>;
+
+SeamSamples samples_of(const Seams& seams, std::span<const Map> pages)
+{
+    const std::uint32_t width = pages[0].width, height = pages[0].height;
+    const glm::dvec2 scale(width, height);
+    std::vector<std::size_t> firsts{0};  // of each seam's samples
+    for (const Seam& seam : seams.list) {
+        double length = 0.0;
+        for (const SeamSide& side : seam.sides)
+            length = std::max(length, glm::length(scale * (side.ends[1] - side.ends[0])));
+        firsts.push_back(
+            firsts.back() +
+            (seam.is_smooth ? static_cast<std::size_t>(std::ceil(kSeamSamples * length)) : 0));
+    }
+    std::vector<SeamSamples::Entry> entries(8 * firsts.back());
+    for_all(seams.list.size(), kSeamGrain, [&](std::size_t number) {
+        const auto count = static_cast<double>(firsts[number + 1] - firsts[number]);
+        for (std::size_t s = firsts[number]; s < firsts[number + 1]; ++s) {
+            const double at = (static_cast<double>(s - firsts[number]) + 0.5) / count;
+            SeamSamples::Entry* entry = &entries[8 * s];
+            double sign = 1.0;
+            for (const SeamSide& side : seams.list[number].sides) {
+                const Footprint print =
+                    footprint(width, height, glm::mix(side.ends[0], side.ends[1], at));
+                for (int k = 0; k < 4; ++k)
+                    *entry++ = {side.page * pages[0].texels() + print.texels[k],
+                                sign * print.weights[k]};
+                sign = -1.0;
             }
         }
-        texels_ = texels;
-        std::ranges::sort(texels_);
-        texels_.erase(std::unique(texels_.begin(), texels_.end()), texels_.end());
-        columns_.reserve(texels.size());
-        for (const std::uint64_t texel : texels)
-            columns_.push_back(static_cast<std::uint32_t>(std::ranges::lower_bound(texels_, texel) -
-                                                          texels_.begin()));
-    }
-
-    /// Texels that occur, page after page, rising.
-    [[nodiscard]] const std::vector<std::uint64_t>& texels() const { return texels_; }
-
-    /// Of the values of these texels the differences, one per sample.
-    [[nodiscard]] std::vector<double> differences(const std::vector<double>& values) const
-    {
-        std::vector<double> sums(columns_.size() / kRow, 0.0);
-        for (std::size_t i = 0; i < columns_.size(); ++i)
-            sums[i / kRow] += weights_[i] * values[columns_[i]];
-        return sums;
-    }
-
-    /// The transposed product.
-    [[nodiscard]] std::vector<double> spread(const std::vector<double>& samples) const
-    {
-        std::vector<double> values(texels_.size(), 0.0);
-        for (std::size_t i = 0; i < columns_.size(); ++i)
-            values[columns_[i]] += weights_[i] * samples[i / kRow];
-        return values;
-    }
-
-private:
-    static constexpr std::size_t kRow = 8;
-
-    std::vector<std::uint64_t> texels_;
-    std::vector<std::uint32_t> columns_;
-    std::vector<double> weights_;
-};
+    });
+    return {entries, pages.size() * pages[0].texels()};
+}
 
 /// How much each sample counts: Cauchy's weights (seams.h: kStitchJump).
 std::vector<double> stitch_weights(const std::vector<double>& jumps)
@@ -326,12 +314,12 @@ std::vector<double> stitch_weights(const std::vector<double>& jumps)
 std::vector<double> change_to_join(const SeamSamples& samples, const std::vector<double>& values,
                                    const Progress& progress)
 {
-    const std::vector<double> weights = stitch_weights(samples.differences(values));
+    const std::vector<double> weights = stitch_weights(samples.times(values));
     const auto normal_product = [&](const std::vector<double>& of) {
-        std::vector<double> differences = samples.differences(of);
+        std::vector<double> differences = samples.times(of);
         for (std::size_t s = 0; s < weights.size(); ++s)
             differences[s] *= weights[s];
-        return samples.spread(differences);
+        return samples.transposed_times(differences);
     };
     std::vector<double> right = normal_product(values);
     for (double& value : right)
@@ -356,8 +344,8 @@ std::vector<double> values_of(const SeamSamples& samples, std::span<const Map> p
                               std::uint32_t channel)
 {
     std::vector<double> values;
-    values.reserve(samples.texels().size());
-    for (const std::uint64_t texel : samples.texels()) {
+    values.reserve(samples.columns().size());
+    for (const std::uint64_t texel : samples.columns()) {
         const Map& page = pages[texel / pages[0].texels()];
         values.push_back(page.values[texel % pages[0].texels() * page.channels + channel]);
     }
@@ -401,11 +389,8 @@ void fill_across(const Mesh& mesh, const MapLayout& layout, const Seams& seams, 
                  std::span<Map> pages, std::span<std::vector<std::uint8_t>> known)
 {
     SURFELAO_CHECK(pages.size() == layout.pages.size() && known.size() == pages.size());
-    ClaimFinder finder(mesh, layout, seams, rings, known);
-    for (std::size_t seam = 0; seam < seams.list.size(); ++seam)
-        for (const int near : {0, 1})
-            finder.find(seam, near);
-    for (const Claim& claim : finder.claims()) {
+    const ClaimFinder finder(mesh, layout, seams, rings, known);
+    for (const Claim& claim : nearest_claims(finder, seams.list.size())) {
         const Seam& seam = seams.list[claim.seam];
         if (!seam.is_smooth)
             continue;
@@ -419,26 +404,26 @@ void fill_across(const Mesh& mesh, const MapLayout& layout, const Seams& seams, 
 
 void stitch(const Seams& seams, std::span<Map> pages, const Progress& progress)
 {
-    const SeamSamples samples(seams, pages);
-    if (samples.texels().empty())
+    if (seams.smooth_count() == 0)
         return;
+    const SeamSamples samples = samples_of(seams, pages);
     for (std::uint32_t channel = 0; channel < pages[0].channels; ++channel) {
         const std::vector<double> values = values_of(samples, pages, channel);
         const std::vector<double> change = change_to_join(samples, values, progress);
         const auto [least, most] = std::ranges::minmax(values);
         for (std::size_t k = 0; k < values.size(); ++k)
-            value_at(pages, samples.texels()[k], channel) =
+            value_at(pages, samples.columns()[k], channel) =
                 static_cast<float>(std::clamp(values[k] + change[k], least, most));
     }
 }
 
 SeamJump seam_jump(const Seams& seams, std::span<const Map> pages)
 {
-    const SeamSamples samples(seams, pages);
-    if (samples.texels().empty())
+    if (seams.smooth_count() == 0)
         return {};
+    const SeamSamples samples = samples_of(seams, pages);
     SeamJump jump;
-    const std::vector<double> differences = samples.differences(values_of(samples, pages, 0));
+    const std::vector<double> differences = samples.times(values_of(samples, pages, 0));
     double sum = 0.0;
     for (const double difference : differences) {
         jump.most = std::max(jump.most, std::abs(difference));

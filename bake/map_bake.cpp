@@ -367,9 +367,8 @@ private:
             if (std::find(begin, begin + std::ptrdiff_t{rows} * width, 1) ==
                 begin + std::ptrdiff_t{rows} * width)
                 continue;
-            for (const Texel& texel : raster.texels(first, rows))
-                if (marked[index_of(texel)] != 0)
-                    texels.push_back(texel);
+            const std::vector<Texel> some = raster.texels(first, rows, {marked, 1});
+            texels.insert(texels.end(), some.begin(), some.end());
         }
         return texels;
     }
