@@ -225,6 +225,8 @@ void bake_texels(const Mesh& mesh, Occluders* occluders, SceneBake& baked,
     const BakeSettings& settings = report.settings;
     const TexelSettings& texels = *settings.texels;
     TexelReport& told = report.texels.emplace();
+    if (!settings.output.empty())
+        open_images_early();
     Stopwatch watch;
     const MapRoom room{
         .new_places = settings.output.empty() || !is_map(settings.output),

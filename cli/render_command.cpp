@@ -280,6 +280,7 @@ int run(const RenderCommandOptions& options, FrameSequence* sequence)
     if (picture.view.colors == Colors::textured && !model.cloud)
         shown.paint = base_paint_of(*model.mesh);
     const double read_s = options.once.seconds + watch.lap();
+    open_images_early();
 
     const std::uint32_t rays = options.show.reference_rays;
     if (texels)

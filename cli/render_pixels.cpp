@@ -147,6 +147,7 @@ int render_pixels(const RenderCommandOptions& options)
     const double read_s = options.once.seconds + watch.lap();
 
     const GlContext context = GlContext::create(backend_of(options.backend));
+    open_images_early();
     const DrawnMesh drawn(context, job.mesh.geometry, job.mesh.surface);
     Occluders occluders(job.mesh.occluding());
     std::optional<PlacedMaps> maps;

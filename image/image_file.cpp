@@ -4,6 +4,7 @@
 #include "surfels/atomic_file.h"
 #include "surfels/errors.h"
 #include "surfels/extension.h"
+#include "surfels/for_all.h"
 
 #include <dlfcn.h>
 
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 namespace surfelao {
 namespace {
@@ -38,6 +40,23 @@ const ImageModule& module()
     static const ImageModule& opened = open_module();
     return opened;
 }
+
+}  // namespace
+
+void open_images_early()
+{
+    if (loop_threads() < 2)
+        return;
+    static const std::jthread opening([] {
+        try {
+            static_cast<void>(module());
+        } catch (const std::exception&) {
+            // whoever reads or writes a picture is told
+        }
+    });
+}
+
+namespace {
 
 /// One line without a full stop, whatever a library wrote.
 std::string one_line(std::string text)

@@ -15,6 +15,10 @@
 
 namespace surfelao {
 
+/// Begins to open the module, on a thread of its own where several are allowed: for who is going to
+/// write a picture and has work to do before. The program's end waits for it.
+void open_images_early();
+
 /// Reads .png, .jpg, .hdr, .exr and whatever else OpenImageIO knows. 8- and 16-bit files are taken
 /// as sRGB, float files as linear; grey becomes RGB, missing alpha becomes 1. Throws InputError
 /// with one sentence for a file that is missing, not a picture, cut short, larger than 2^28 pixels
