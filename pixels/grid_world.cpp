@@ -1,5 +1,6 @@
 #include "pixels/grid_world.h"
 
+#include "surfels/bodies.h"
 #include "surfels/errors.h"
 #include "surfels/for_all.h"
 #include "surfels/labels.h"
@@ -129,14 +130,39 @@ std::shared_ptr<const Geometry> rest_of(const Mesh& mesh, std::span<const Scene>
         .occluders;
 }
 
-/// An object by itself.
-std::shared_ptr<const Geometry> surface_of(const Mesh& mesh, PartChoice choice,
-                                           const std::vector<bool>& triangles)
+/// Over its own vertices alone.
+std::shared_ptr<const Geometry> geometry_of(const Geometry& whole, BodyMesh body)
 {
+    Scene scene;
+    for (const std::uint32_t vertex : body.vertices)
+        scene.positions.push_back(whole.frame.centre +
+                                  whole.frame.diagonal * glm::dvec3(whole.positions[vertex]));
+    scene.triangles = std::move(body.triangles);
+    return std::make_shared<const Geometry>(make_geometry(scene, {.frame = whole.frame}));
+}
+
+/// Each object by itself. of_triangle: GridSurfaces'. O(n); where something is cut or left out, for
+/// each object.
+std::vector<std::shared_ptr<const Geometry>> surfaces_of(
+    const Mesh& mesh, PartChoice choice, std::span<const std::vector<bool>> triangles,
+    std::vector<std::uint32_t> of_triangle)
+{
+    std::vector<std::shared_ptr<const Geometry>> surfaces;
+    if (!mesh.occluders) {
+        std::vector<BodyMesh> bodies = split_bodies(mesh.geometry, of_triangle);
+        bodies.resize(triangles.size() + 1);
+        for (std::size_t i = 1; i < bodies.size(); ++i)
+            surfaces.push_back(geometry_of(mesh.geometry, std::move(bodies[i])));
+        return surfaces;
+    }
     choice.alone = true;
-    return std::make_shared<const Geometry>(
-        baked_alone(mesh.scene, {}, std::move(choice), {triangles}, mesh.geometry.frame)
-            .occluding());
+    for (const std::vector<bool>& of_one : triangles) {
+        const Mesh alone = baked_alone(mesh.scene, {}, choice, {of_one}, mesh.geometry.frame);
+        const Geometry& whole = alone.occluding();
+        of_triangle.assign(whole.triangles.size(), 0);
+        surfaces.push_back(geometry_of(whole, std::move(split_bodies(whole, of_triangle).front())));
+    }
+    return surfaces;
 }
 
 void darken(Occlusion& value, float visibility)
@@ -252,6 +278,7 @@ std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh, std::span<const Scene
     if (sources.motion && moment)
         poses = sources.motion->at(moment->seconds);
     std::vector<PlacedGrid> objects;
+    std::vector<std::vector<bool>> placed;  // triangles of the objects
     GridSurfaces surfaces;
     surfaces.of_triangle.assign(mesh.geometry.triangles.size(), 0);
     for (std::size_t i = 0; i < grids.size(); ++i) {
@@ -262,14 +289,15 @@ std::shared_ptr<GridWorld> grid_world_of(const Mesh& mesh, std::span<const Scene
         if (!placement)
             throw InputError(mesh.scene.name + ": " + grids[i].node +
                              " is sheared or scaled unevenly: its grid does not follow that");
-        surfaces.list.push_back(surface_of(mesh, choice, triangles[i]));
-        const auto number = static_cast<std::uint32_t>(surfaces.list.size());
+        const auto number = static_cast<std::uint32_t>(objects.size() + 1);
         for (std::size_t t = 0; t < surfaces.of_triangle.size(); ++t) {
             if (triangles[i][mesh.geometry.scene_triangle(t)])
                 surfaces.of_triangle[t] = number;
         }
         objects.push_back({.grid = grids[i].grid, .placement = *placement, .surface = number});
+        placed.push_back(triangles[i]);
     }
+    surfaces.list = surfaces_of(mesh, choice, placed, surfaces.of_triangle);
     return std::make_shared<GridWorld>(std::move(objects), rest_of(mesh, others, choice, triangles),
                                        std::move(surfaces));
 }

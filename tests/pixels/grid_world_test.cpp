@@ -215,6 +215,34 @@ TEST(GridWorld, AnObjectHidesFromItsOwnSurfaceWhatItsEngineSays)
     }
 }
 
+// What is found among parts that are left out is found part by part.
+TEST(GridWorld, SurfacesAreTheSameHoweverTheyAreFound)
+{
+    Scene scene = floor_below();
+    scene += scenes::box({-0.5, -0.5, 0.3}, {0.5, 0.5, 1.3}, 2);
+    std::vector<bool> own(scene.triangles.size(), true);
+    own[0] = own[1] = false;
+    const auto grid = std::make_shared<const AoGrid>(
+        bake_grid(make_geometry(scenes::box({0, 0, 0}, {1, 1, 1}, 1)), {.resolution = 4}, {}, 0)
+            .grid);
+    const GridSources sources{{{"object", grid, own}}, nullptr};
+    Mesh mesh = make_mesh(scene);
+    const SurfacePoint top{2, {0.3f, 0.3f}};
+    const std::vector<Receiver> inside{{{0.0f, 0.0f, 0.01f}, {1, 0, 0}, 0.0f},
+                                       {{0.0f, 0.0f, 0.1f}, {0, 0, -1}, 0.0f}};
+    const auto answers = [&] {
+        const auto world = grid_world_of(mesh, {}, {}, sources);
+        EXPECT_EQ(world->surfaces_at({&top, 1}).front(), 1u);
+        return world->solve(inside, std::vector<std::uint32_t>{1, 1}, {});
+    };
+    const std::vector<Occlusion> whole = answers();
+    mesh.occluders = std::make_shared<const Geometry>(mesh.geometry);
+    const std::vector<Occlusion> by_part = answers();
+    EXPECT_NEAR(whole[0].occlusion, 1.0f, 0.01f);
+    for (std::size_t i = 0; i < whole.size(); ++i)
+        EXPECT_EQ(whole[i].occlusion, by_part[i].occlusion) << i;
+}
+
 TEST(GridWorld, SaysWhatIsWrong)
 {
     const Mesh robot = make_mesh(read_scene(kRobot));
