@@ -263,8 +263,9 @@ std::vector<Claim> nearest_claims(const ClaimFinder& finder, std::size_t seams)
 }
 
 /// Samples of smooth seams: what each shows on one side less what it shows on the other is a sum
-/// over few texels of all pages.
-using SeamSamples = SparseRows<8>;
+/// over few texels of all pages, four on each side.
+constexpr std::size_t kFetched = 8;
+using SeamSamples = SparseRows<kFetched>;
 
 SeamSamples samples_of(const Seams& seams, std::span<const Map> pages)
 {
@@ -279,12 +280,12 @@ SeamSamples samples_of(const Seams& seams, std::span<const Map> pages)
             firsts.back() +
             (seam.is_smooth ? static_cast<std::size_t>(std::ceil(kSeamSamples * length)) : 0));
     }
-    std::vector<SeamSamples::Entry> entries(8 * firsts.back());
+    std::vector<SeamSamples::Entry> entries(kFetched * firsts.back());
     for_all(seams.list.size(), kSeamGrain, [&](std::size_t number) {
         const auto count = static_cast<double>(firsts[number + 1] - firsts[number]);
         for (std::size_t s = firsts[number]; s < firsts[number + 1]; ++s) {
             const double at = (static_cast<double>(s - firsts[number]) + 0.5) / count;
-            SeamSamples::Entry* entry = &entries[8 * s];
+            SeamSamples::Entry* entry = &entries[kFetched * s];
             double sign = 1.0;
             for (const SeamSide& side : seams.list[number].sides) {
                 const Footprint print =

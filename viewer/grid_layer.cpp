@@ -118,14 +118,12 @@ bool GridLayer::look(Shot& shot, const Session& session, const Cell& cell,
         own_.reset();
     }
     in_pass_ = found;
-    if (objects_)
+    if (objects_) {
         find_own(shot.model());
-    else
-        own_.reset();
-    if (objects_)
         draw(shot, placed_grids(*found, *objects_, *posed));
-    else
+    } else {
         draw(shot, {placed_at(found->bakes.front(), into_frame(shot.model()->geometry().frame))});
+    }
     return true;
 }
 

@@ -26,13 +26,15 @@ bool have_same_settings(const GridQuestion& a, const GridQuestion& b)
 }
 
 /// What an object leaves of the light at the corners of its triangles. alone: its mesh.
-std::vector<glm::vec3> left_by_itself(std::shared_ptr<const Mesh> alone,
-                                      const TargetSettings& settings, const EngineSettings& engine,
-                                      const ObjectTriangles& triangles)
+std::vector<glm::vec3> left_by_itself(std::shared_ptr<const Mesh> alone, TargetSettings settings,
+                                      const EngineSettings& engine,
+                                      const ObjectTriangles& triangles,
+                                      const StageProgress& progress)
 {
+    settings.offset.reset();  // a length that may be larger than the object
     const VertexTarget target(alone, settings);
-    const Offset offset = offset_of(settings, alone->geometry.frame);
-    const std::vector<Occlusion> values = bake_vertices(*alone, target, engine, offset, 0).values;
+    const std::vector<Occlusion> values =
+        bake_vertices(*alone, target, engine, {}, 0, progress).values;
     std::vector<glm::vec3> left;
     for (const std::uint32_t triangle : triangles) {
         const glm::uvec3 corners = alone->scene.triangles[triangle];
@@ -59,8 +61,9 @@ ObjectGrid bake_object(const GridQuestion& question, std::size_t object,
         static_cast<float>(model.geometry().frame.diagonal / alone->geometry.frame.diagonal);
     GridSettings of_one = question.grid;
     of_one.extent *= kMovingShare;
-    return {bake_grid(alone->geometry, of_one, engine, 0, progress),
-            left_by_itself(alone, model.settings, engine, triangles)};
+    GridBake grid = bake_grid(alone->geometry, of_one, engine, 0, progress);
+    const auto at_end = [&](std::string_view, double) { return progress("repair", 1.0); };
+    return {std::move(grid), left_by_itself(alone, model.settings, engine, triangles, at_end)};
 }
 
 void bake_missing(FoundGrids& grids, const Progress& progress)

@@ -65,9 +65,7 @@ def main(program, files):
     for path in files:
         bpy.ops.wm.read_factory_settings(use_empty=True)
         bpy.ops.import_scene.gltf(filepath=path)
-        first = bpy.data.actions[0].frame_range[1] / bpy.context.scene.render.fps
-        length = max([first] + [action.frame_range[1] / bpy.context.scene.render.fps
-                                for action in bpy.data.actions])
+        length = max(action.frame_range[1] for action in bpy.data.actions) / bpy.context.scene.render.fps
         for moment in range(kMoments):
             seconds = length * (moment + 0.37) / kMoments
             a, b = ours(program, path, seconds), theirs(seconds)
