@@ -69,7 +69,7 @@ def moving_robot(figures):
 
 @view
 def moving_disks(figures):
-    """Disks in two passes: with what is remembered, and built and corrected anew in each frame"""
+    """Disks in three passes: with what is remembered, and built and corrected anew in each frame"""
     rows = []
     for scene in figures["moving"]["scenes"]:
         row, rebuilt = scene["disks"], scene["disks_rebuilt"]

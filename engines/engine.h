@@ -69,7 +69,7 @@ struct EngineChoice {
 struct SolveSettings {
     Definition definition = {};
     float quality = kGood;     ///< masks, disks: least_quality to most_quality
-    int passes = 2;            ///< disks: >= 1 (tree/disks/disks.h)
+    int passes = 3;            ///< disks: >= 1 (tree/disks/disks.h)
     float strength = 1.0f;     ///< disks: >= 0
     std::uint32_t rays = 256;  ///< rays: 1 to kMostRays
     std::uint32_t seed = 0;    ///< rays: another seed, another independent estimate

@@ -155,8 +155,7 @@ private:
 };
 
 /// What the correcting passes have come to. It depends on the octree and on these options, not on
-/// who is asked, so it is where every later solve starts from: all that are left of two passes is
-/// one.
+/// who is asked, so it is where every later solve starts from: one pass is left.
 struct Corrected {
     DiskOptions of;
     std::vector<Framebuffer> visibility;  ///< per side: FarVisibility of each record
@@ -257,7 +256,7 @@ private:
             double change = 0.0;
             for (FarSide& side : sides) {
                 gather(side.gathered, beyond_settings(options_), nullptr, meter);
-                change += fit(side, pass == 1 ? 1.0f : kDamping);
+                change += fit(side, pass);
             }
             average(sides);
             const auto count = static_cast<double>(sides.size() * scene_.octree.surfels.size());
@@ -310,7 +309,7 @@ private:
     }
 
     /// From the sums in the side's grid. Returns the sum of the squared changes.
-    double fit(FarSide& side, float weight)
+    double fit(FarSide& side, int pass)
     {
         std::swap(side.found, side.before);
         Program& program = scene_.context.program("fullscreen.vert", "disks_fit.frag");
@@ -319,7 +318,8 @@ private:
         program.set("u_records", scene_.records_texture);
         program.set("u_slots", side.slots);
         program.set("u_side", side.sign);
-        program.set("u_weight", weight);
+        program.set("u_first", pass == 1 ? 1 : 0);
+        program.set("u_weight", correction_weight(pass));
         program.set("u_before", side.before.color());
         draw_fullscreen(side.found, program, scene_.empty);
 

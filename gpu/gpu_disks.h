@@ -4,7 +4,7 @@
 /// step, with all data on the device between its first and its last pass: the octree as one array
 /// of records (shaders/disk_record.glsl), groups of sixteen receivers that open the same nodes as
 /// on the CPU. What the correcting passes come to is kept for the next solve with the same options,
-/// whoever is asked then: of two passes one is left, with the same answers. Results agree with
+/// whoever is asked then: one pass is left, with the same answers. Results agree with
 /// solve_disks to 1e-4 but where rounding tips the opening of a node (tests say how often).
 #pragma once
 

@@ -221,7 +221,7 @@ TEST(Batch, MarksNameTheSettingsOfTheEngineAtHand)
                        .offset = Length{0.5, true}};
     settings.colors = VertexColors::shaded;
     EXPECT_NE(mark_of(settings).find(
-                  "engine=disks device=gpu quality=0.1 passes=2 strength=1 "
+                  "engine=disks device=gpu quality=0.1 passes=3 strength=1 "
                   "kernel=bunnell max_distance=12.5% falloff=smooth "
                   "normals=smooth crease=30 values=point offset=0.5% colors=shaded encoding=auto"),
               std::string::npos)

@@ -4,7 +4,7 @@
 //
 // A Markdown table, one line per size; times are processor time on one thread, which other work on
 // the machine disturbs least. The mesh is a sphere with four octaves of bumps, two triangles a
-// vertex; quality good, disks with two passes. Brute force: every triangle drawn, or every disk
+// vertex; quality good, disks with three passes. Brute force: every triangle drawn, or every disk
 // summed in one pass, for some receivers; beside it the root mean square of what the engine differs
 // from that.
 //

@@ -91,11 +91,14 @@ DiskResult solve_disks_brute_force(const Octree& octree, std::span<const Receive
             for_tasks(count, [&](std::size_t s) {
                 const Receiver& at = asked[s];
                 const glm::vec3 normal = at.normal;
-                const Sum sum = capped(gather(octree, before, beyond, at));
+                Sum sum = gather(octree, before, beyond, at);
+                const double divisor =
+                    pass == 1 ? 1.0 + sum.occlusion : std::max(1.0, sum.occlusion);
+                sum = {sum.occlusion / divisor, sum.direction / divisor};
                 const glm::dvec3 mean = 2.0 / 3.0 * glm::dvec3(normal);
                 const glm::dvec3 slope = -4.0 * (sum.direction - sum.occlusion * mean);
                 const double constant = 1.0 - sum.occlusion - glm::dot(slope, mean);
-                const double weight = pass == 1 ? 1.0 : kDamping;
+                const double weight = pass <= 2 ? 1.0 : kDamping;
                 Far& now = far[side][s];
                 now.slope += weight * (slope - now.slope);
                 now.constant += weight * (constant - now.constant);

@@ -56,9 +56,10 @@ DiskSum capped(const DiskSum& sum)
     return {scale * sum.occlusion, scale * sum.direction};
 }
 
-FarVisibility fit(const DiskSum& sum, const glm::vec3& normal)
+FarVisibility fit(const DiskSum& sum, const glm::vec3& normal, int pass)
 {
-    const DiskSum s = capped(sum);
+    const float scale = 1.0f / correction_divisor(pass, sum.occlusion);
+    const DiskSum s = {scale * sum.occlusion, scale * sum.direction};
     const glm::vec3 mean = 2.0f / 3.0f * normal;
     const glm::vec3 slope = -4.0f * (s.direction - s.occlusion * mean);
     return {slope, 1.0f - s.occlusion - glm::dot(slope, mean)};
@@ -67,12 +68,13 @@ FarVisibility fit(const DiskSum& sum, const glm::vec3& normal)
 }  // namespace
 
 double update_visibility(std::span<const Surfel> surfels, float sign, std::span<const DiskSum> sums,
-                         float weight, std::span<FarVisibility> visibility)
+                         int pass, std::span<FarVisibility> visibility)
 {
+    const float weight = correction_weight(pass);
     double change = 0.0;
     for (std::size_t i = 0; i < sums.size(); ++i) {
         const glm::vec3 normal = sign * surfels[i].normal;
-        const FarVisibility found = fit(sums[i], normal);
+        const FarVisibility found = fit(sums[i], normal, pass);
         const glm::vec3 slope = weight * (found.slope - visibility[i].slope);
         const float constant = weight * (found.constant - visibility[i].constant);
         visibility[i].slope += slope;

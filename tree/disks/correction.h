@@ -26,14 +26,15 @@ void gather_all(const Octree& octree, const EmitterVisibility& visibility,
                 const ReceiverGroups& groups, const ShareRange& leaves,
                 const GatherSettings& settings, std::span<DiskSum> sums, ProgressMeter& meter);
 
-/// Moves the visibility of surfels, on the side of their normal (sign 1) or the other (-1), by
-/// `weight` of the way to what the sums there say: to a linear function with the same mean over the
-/// hemisphere (cosine-weighted) as 1 - occlusion. Its slope is what least squares gives along the
-/// surface, where the mean square of w is 1/4. Along the normal w varies less (variance 1/18 about
-/// its mean 2/3) and least squares would mostly amplify errors: the same factor there was measured
-/// to be best. Returns the sum of the squared changes of the mean. All spans of one length.
+/// Moves the visibility of surfels, on the side of their normal (sign 1) or the other (-1), by what
+/// of the way the pass goes to what the sums there say: to a linear function with the same mean
+/// over the hemisphere (cosine-weighted) as 1 - occlusion. Its slope is what least squares gives
+/// along the surface, where the mean square of w is 1/4. Along the normal w varies less (variance
+/// 1/18 about its mean 2/3) and least squares would mostly amplify errors: the same factor there
+/// was measured to be best. pass: from 1 on. Returns the sum of the squared changes of the mean.
+/// All spans of one length.
 double update_visibility(std::span<const Surfel> surfels, float sign, std::span<const DiskSum> sums,
-                         float weight, std::span<FarVisibility> visibility);
+                         int pass, std::span<FarVisibility> visibility);
 
 /// A node's visibility: the mean over its surfels, by area; two-sided surfels that face against the
 /// node give their other side. same, other, nodes: one per surfel and node of the octree; other may

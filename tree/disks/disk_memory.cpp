@@ -209,10 +209,9 @@ double DiskMemory::Impl::correct(const DiskForest& forest, int pass, ProgressMet
             std::size_t first = 0;
             for (const NodeRange& range : body.surfels) {
                 const std::size_t count = range.end - range.begin;
-                change +=
-                    update_visibility(std::span(octree.surfels).subspan(range.begin, count),
-                                      side.sign, sums.subspan(first, count),
-                                      pass == 1 ? 1.0f : kDamping, all.subspan(range.begin, count));
+                change += update_visibility(std::span(octree.surfels).subspan(range.begin, count),
+                                            side.sign, sums.subspan(first, count), pass,
+                                            all.subspan(range.begin, count));
                 first += count;
             }
             changed += sums.size();

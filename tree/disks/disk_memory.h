@@ -2,7 +2,7 @@
 ///
 /// As solve_disks, but for what the first correction starts from. Its sums are linear: what a body
 /// hides from its own disks turns with the body and is remembered, and only what the other bodies
-/// hide is summed anew. So two passes cost little more than one, and still a frame's answer depends
+/// hide is summed anew; the corrections after it are whole passes. A frame's answer depends
 /// on that frame alone, in every bit: what moves away and back gives the first frame's bytes. (The
 /// visibility that the last frame ended with, as Bunnell starts from it, would not: it leads to
 /// where the passes settle, by another way for every path, and is off by as much as the last pass

@@ -117,11 +117,10 @@ std::vector<DiskResult> solve_disk_lists(const Octree& octree,
         for (FarSide& side : sides)
             gather_all(octree, visibility, side.groups, {0, side.groups.leaves.size()}, beyond,
                        side.sums, meter);
-        const float weight = pass == 1 ? 1.0f : kDamping;
         double change =
-            update_visibility(octree.surfels, 1.0f, sides[0].sums, weight, visibility.surfel_front);
+            update_visibility(octree.surfels, 1.0f, sides[0].sums, pass, visibility.surfel_front);
         if (two_sided)
-            change += update_visibility(octree.surfels, -1.0f, sides[1].sums, weight,
+            change += update_visibility(octree.surfels, -1.0f, sides[1].sums, pass,
                                         visibility.surfel_back);
         const NodeRange all{0, static_cast<std::uint32_t>(octree.nodes.size())};
         average_over_nodes(octree, all, visibility.surfel_front, visibility.surfel_back,

@@ -11,7 +11,7 @@
 /// which is exact and refers to itself: the next pass weights each disk by what the pass before
 /// found beyond it. The classic weights by one number for all directions; here it is a linear
 /// function of the direction, fitted to the first moment of the occluders that the disk sees. That
-/// halves the error, and settles in two passes where one number oscillates.
+/// halves the error, and settles in few passes where one number oscillates.
 ///
 /// Surfaces that have no back (open, not manifold: OccluderSide::both) occlude from both sides and
 /// carry two such functions, one for each side; the same is done to all surfaces where a maximum
@@ -26,7 +26,7 @@
 ///
 /// Known limits: surfaces nearer to each other than three times the vertex spacing; many layers one
 /// behind the other (foliage, machines: a linear function of the direction does not tell which of
-/// them a ray leaves through, and two passes do not settle); a ground of few triangles that is
+/// them a ray leaves through, and three passes do not settle); a ground of few triangles that is
 /// hundreds of times as wide as the model on it (surfels_of cuts triangles by the size of the whole
 /// scene, not by what is near them: what lies beyond a piece is one function for all of it).
 ///
@@ -44,6 +44,7 @@
 #include "surfels/topology.h"
 #include "tree/disks/octree.h"
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -61,7 +62,7 @@ struct DiskOptions {
     Definition definition = {};
     float opening = kGoodOpening;  ///< 0 (every surfel is summed) to below 1: a node that holds the
                                    ///< receiver is always opened
-    int passes = 2;         ///< >= 1: 1 = plain sum; each further one corrects over-occlusion
+    int passes = 3;         ///< >= 1: 1 = plain sum; each further one corrects over-occlusion
     float strength = 1.0f;  ///< >= 0: occlusion is multiplied by it, then cut to [0, 1]
     /// Of the groups of receivers, of each list; the others get kUnsolved, but for those without a
     /// normal. The emitters are corrected all the same.
@@ -78,10 +79,27 @@ struct DiskResult {
 /// Corrections stop when a pass changes the emitters by no more than this.
 inline constexpr double kSettled = 5e-4;
 
-/// From the second correction on, emitters go this share of the way to what the pass found. The map
-/// is order-reversing, so whole steps can end in a cycle of two (rooms); the first step starts from
-/// "nothing is beyond" and is best taken whole.
+/// The first correction sums all layers beyond a disk, each as if it were the last. How they hide
+/// each other is not known yet: one layer leaves 1 - sum open, layers at random less than
+/// exp(-sum), and 1 / (1 + sum) is what was measured to start from best, so a sum is divided by 1 +
+/// sum. From then on sums know of layers: what is more than a full hemisphere is cut.
+/// 3 passes, good, RMSE, cut at once -> so: pine .101 -> .073, mountain .018 -> .016, engine .048
+/// -> .048, pandora .053 -> .058, blocks .044 -> .048, FlightHelmet .120 -> .136. With 2, cut:
+/// .102, .012, .079, .092, .069, .133, in seven tenths of the time.
+[[nodiscard]] inline float correction_divisor(int pass, float occlusion)
+{
+    return pass == 1 ? 1.0f + occlusion : std::max(1.0f, occlusion);
+}
+
 inline constexpr float kDamping = 0.7f;
+
+/// The share of the way that emitters go to what a correcting pass found. The map is
+/// order-reversing, so whole steps can end in a cycle of two (rooms); the first two are best taken
+/// whole.
+[[nodiscard]] inline float correction_weight(int pass)
+{
+    return pass <= 2 ? 1.0f : kDamping;
+}
 
 /// O(n log n) per pass, all cores, same bytes for any number of threads and on every processor.
 /// The first pass costs one gather at the receivers; each correcting pass one at the surfels, two
