@@ -9,9 +9,11 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cmath>
+#include <iterator>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 namespace surfelao {
@@ -127,14 +129,30 @@ SideFrame frame_of(const Geometry& geometry, const MapLayout& layout, const Seam
             (apex - side.ends[0] - share * along) / glm::length(up - share * edge)};
 }
 
+/// Which claim of a texel counts: the lowest. The squared distance from the seam in texels, as the
+/// bits of a float, and behind it the seam and its side.
+using ClaimRank = std::uint64_t;
+constexpr ClaimRank kNoClaim = ~ClaimRank{0};
+
 /// A texel beyond a seam and where the other side shows it.
 struct Claim {
-    std::uint32_t page = 0, other = 0;  ///< whose texel, and where it is shown
     std::size_t texel = 0;
-    double distance = 0.0;  ///< from the seam, in texels, squared
-    std::size_t seam = 0;
+    ClaimRank rank = kNoClaim;
     glm::dvec2 place{0.0};
 };
+
+/// Of each texel of a page; any number of threads.
+using BestClaims = std::vector<std::atomic<ClaimRank>>;
+
+/// Whether this one is better than all before it.
+bool takes(std::atomic<ClaimRank>& best, ClaimRank rank)
+{
+    ClaimRank before = best.load(std::memory_order_relaxed);
+    while (rank < before)
+        if (best.compare_exchange_weak(before, rank, std::memory_order_relaxed))
+            return true;
+    return false;
+}
 
 /// Finds the claims of seams. Any number of threads.
 class ClaimFinder {
@@ -145,7 +163,8 @@ public:
     {
     }
 
-    void find(std::size_t seam, int near, std::vector<Claim>& claims) const
+    /// Those beyond one side of a seam that are the best so far.
+    void find(std::size_t seam, int near, BestClaims& best, std::vector<Claim>& claims) const
     {
         const Seam& at = seams_.list[seam];
         const SeamSide &side = at.sides[near], &other = at.sides[1 - near];
@@ -174,11 +193,18 @@ public:
             const double distance = glm::dot(nearest, nearest);
             if (beyond <= 0.0 || distance > reach_ * reach_)
                 return;
+            const ClaimRank rank =
+                ClaimRank{std::bit_cast<std::uint32_t>(static_cast<float>(distance))} << 32 |
+                (2 * seam + static_cast<std::size_t>(near));
+            if (rank >= best[texel].load(std::memory_order_relaxed))
+                return;
             const glm::dvec2 place =
                 to.origin + cross(offset, inward) / whole * to.along + beyond * to.inward;
-            if (!at.is_smooth || (is_in_chart(geometry_, layout_, seams_, entry, place) &&
+            if (at.is_smooth && !(is_in_chart(geometry_, layout_, seams_, entry, place) &&
                                   is_known(other.page, place)))
-                claims.push_back({side.page, other.page, texel, distance, seam, place});
+                return;
+            if (takes(best[texel], rank))
+                claims.push_back({texel, rank, place});
         });
     }
 
@@ -229,36 +255,26 @@ private:
     std::span<const std::vector<std::uint8_t>> known_;
 };
 
-/// One for each texel: the nearest, of several that of the first seam.
-void keep_nearest(std::vector<Claim>& claims)
+/// The best claim of each texel of a page that has any.
+std::vector<Claim> best_claims(const ClaimFinder& finder, const std::vector<Seam>& seams,
+                               std::uint32_t page, std::size_t texels)
 {
-    const auto key = [](const Claim& claim) {
-        return std::tuple(claim.page, claim.texel, claim.distance, claim.seam);
-    };
-    std::ranges::stable_sort(claims, {}, key);
-    claims.erase(std::unique(claims.begin(), claims.end(),
-                             [](const Claim& a, const Claim& b) {
-                                 return a.page == b.page && a.texel == b.texel;
-                             }),
-                 claims.end());
-}
-
-std::vector<Claim> nearest_claims(const ClaimFinder& finder, std::size_t seams)
-{
-    std::vector<std::vector<Claim>> found((seams + kSeamGrain - 1) / kSeamGrain);
+    BestClaims best(texels);
+    for_all(texels, [&](std::size_t texel) { best[texel] = kNoClaim; });
+    std::vector<std::vector<Claim>> found((seams.size() + kSeamGrain - 1) / kSeamGrain);
     for_tasks(found.size(), [&](std::size_t part) {
-        const std::size_t end = std::min(seams, kSeamGrain * (part + 1));
+        const std::size_t end = std::min(seams.size(), kSeamGrain * (part + 1));
         for (std::size_t seam = kSeamGrain * part; seam < end; ++seam)
             for (const int near : {0, 1})
-                finder.find(seam, near, found[part]);
-        keep_nearest(found[part]);
+                if (seams[seam].sides[near].page == page)
+                    finder.find(seam, near, best, found[part]);
+        std::erase_if(found[part],
+                      [&](const Claim& claim) { return best[claim.texel] != claim.rank; });
     });
     std::vector<Claim> claims;
-    for (std::vector<Claim>& some : found) {
-        claims.insert(claims.end(), some.begin(), some.end());
-        some = {};
-    }
-    keep_nearest(claims);
+    for (const std::vector<Claim>& some : found)
+        std::ranges::copy_if(some, std::back_inserter(claims),
+                             [&](const Claim& claim) { return best[claim.texel] == claim.rank; });
     return claims;
 }
 
@@ -391,15 +407,22 @@ void fill_across(const Mesh& mesh, const MapLayout& layout, const Seams& seams, 
 {
     SURFELAO_CHECK(pages.size() == layout.pages.size() && known.size() == pages.size());
     const ClaimFinder finder(mesh, layout, seams, rings, known);
-    for (const Claim& claim : nearest_claims(finder, seams.list.size())) {
-        const Seam& seam = seams.list[claim.seam];
-        if (!seam.is_smooth)
-            continue;
-        Map& page = pages[claim.page];
-        const Map& other = pages[claim.other];  // of which known texels alone are taken
-        for (std::uint32_t c = 0; c < page.channels; ++c)
-            page.values[claim.texel * page.channels + c] = fetch(other, c, claim.place);
-        known[claim.page][claim.texel] = 1;
+    std::vector<std::vector<Claim>> claims(pages.size());
+    for (std::uint32_t page = 0; page < pages.size() && !seams.list.empty(); ++page)
+        claims[page] = best_claims(finder, seams.list, page, pages[page].texels());
+    for (std::size_t to = 0; to < pages.size(); ++to) {
+        Map& page = pages[to];
+        for (const Claim& claim : claims[to]) {
+            const std::size_t side = claim.rank & 0xffffffffu;
+            const Seam& seam = seams.list[side / 2];
+            if (!seam.is_smooth)
+                continue;
+            // of which texels alone are taken that were known before
+            const Map& other = pages[seam.sides[1 - side % 2].page];
+            for (std::uint32_t c = 0; c < page.channels; ++c)
+                page.values[claim.texel * page.channels + c] = fetch(other, c, claim.place);
+            known[to][claim.texel] = 1;
+        }
     }
 }
 
