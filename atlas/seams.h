@@ -65,7 +65,8 @@ struct Seams {
 /// neighbouring chart: along the edge at the same share of it, across it at the same distance. Only
 /// where that place lies in that chart and its fetch takes known texels alone. The nearest seam
 /// counts, of several the first; where that is a hard one, nothing happens. Sets known of what it
-/// gave. One Map and one list of flags per page. O(texels beyond seams).
+/// gave. One Map and one list of flags per page. O(texels + pages * seams); 8 bytes for each texel
+/// of one page meanwhile.
 void fill_across(const Mesh& mesh, const MapLayout& layout, const Seams& seams, std::uint32_t rings,
                  std::span<Map> pages, std::span<std::vector<std::uint8_t>> known);
 

@@ -107,7 +107,7 @@ void add_engine_options(CLI::App& command, EngineOptions& options,
                     "For --engine disks: 1 = plain sum, more correct it where layers overlap")
         ->check(whole_from(1, kMostPasses))
         ->type_name("N")
-        ->default_str("2")
+        ->default_str(std::to_string(SolveSettings{}.passes))
         ->group("Engine");
     command
         .add_option("--strength", options.strength,

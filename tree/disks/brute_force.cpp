@@ -98,7 +98,7 @@ DiskResult solve_disks_brute_force(const Octree& octree, std::span<const Receive
                 const glm::dvec3 mean = 2.0 / 3.0 * glm::dvec3(normal);
                 const glm::dvec3 slope = -4.0 * (sum.direction - sum.occlusion * mean);
                 const double constant = 1.0 - sum.occlusion - glm::dot(slope, mean);
-                const double weight = pass <= 2 ? 1.0 : kDamping;
+                const double weight = correction_weight(pass);
                 Far& now = far[side][s];
                 now.slope += weight * (slope - now.slope);
                 now.constant += weight * (constant - now.constant);
