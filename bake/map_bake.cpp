@@ -2,6 +2,7 @@
 
 #include "bake/hidden_texels.h"
 #include "bake/high_to_low.h"
+#include "bake/sparse_texels.h"
 #include "bake/texel_fit.h"
 #include "bake/vertex_fit.h"
 #include "surfels/errors.h"
@@ -37,7 +38,6 @@ public:
                 ++end;
             write(page, texels.subspan(first, end - first), answers.subspan(first, end - first));
         }
-        bake_.receivers += texels.size();
     }
 
     /// After the last band.
@@ -217,14 +217,23 @@ private:
                     receivers_of(points_of(texels), &bake.misses);
                 seconds_.raster += watch.lap();
                 const double begin = first, share = std::min(rows, height - first);
-                const Solution solution = solve(prepared, receivers, engine, [&](double done) {
+                const auto progress = [&](double done) {
                     const double of_page = (begin + share * done) / height;
                     return !progress_ ||
                            progress_("solve", (static_cast<double>(page) + of_page) / pages);
-                });
+                };
+                const auto ask = [&](std::span<const Receiver> asked) {
+                    Solution solution = solve(prepared, asked, engine, progress);
+                    bake.residual = solution.residual;
+                    bake.receivers += asked.size();
+                    return std::move(solution.occlusion);
+                };
+                // rays have noise of their own in each texel
+                writer.add(page, texels,
+                           engine.engine == Engine::rays
+                               ? ask(receivers)
+                               : sparse_answers(texels, receivers, layout_.size.width, ask));
                 seconds_.solve += watch.lap();
-                bake.residual = solution.residual;
-                writer.add(page, texels, solution.occlusion);
             }
         }
         writer.finish();
@@ -332,7 +341,7 @@ private:
             rows = rows_of_samples(marked, first);
             const std::vector<Texel> texels =
                 raster.texels(kFitSide * first, kFitSide * rows, {marked, kFitSide});
-            const std::vector<Receiver> receivers = receivers_of(points_of(texels), &bake.misses);
+            const std::vector<Receiver> receivers = receivers_of(points_of(texels));
             seconds_.raster += watch.lap();
             const std::vector<Occlusion> answers =
                 solve(prepared, receivers, engine, progress_in("fit")).occlusion;

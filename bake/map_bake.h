@@ -1,7 +1,8 @@
 /// map_bake.h: from a mesh and its places in a map to the occlusion at every texel.
 ///
 /// Texels are receivers (surfels/texels.h), solved band by band, page by page: memory follows the
-/// band, not the map, and the bytes do not depend on it. Where sheets lie on each other a texel
+/// band, not the map. Engines that make groups of receivers are asked at few of them where
+/// occlusion hardly changes (sparse_texels.h). Where sheets lie on each other a texel
 /// holds their mean, and how far they differ is told. Texels that nothing covers, or what nobody
 /// sees (hidden_texels.h), take what lies beyond the seam (atlas/seams.h) or surrounds them
 /// (image/map.h), so that filters and mip levels fetch no emptiness. Then both sides of smooth
@@ -41,9 +42,10 @@ struct MapSettings {
     std::uint32_t check = kCheckPoints;  ///< as BakeSettings::check
 };
 
-/// Texels of a band: receivers, answers and what engines need of them take some 100 bytes each, and
-/// as little as that is used again for the next band (4096^2: a tenth of the time less than 2^19).
-inline constexpr std::uint64_t kBandTexels = std::uint64_t{1} << 17;
+/// Texels of a band: receivers, answers and what engines need of them take some 100 bytes each.
+/// Those that are asked shall lie close to each other (2^17: engine at 4,096^2 takes 1.3 times as
+/// long, for its bands are narrow strips over many charts).
+inline constexpr std::uint64_t kBandTexels = std::uint64_t{1} << 20;
 
 struct MapSeconds {
     double raster = 0.0;  ///< which texels and samples, and where each is asked
@@ -70,7 +72,7 @@ struct MapBake {
     double spread = 0.0;  ///< of these: RMS difference of the sheets' occlusion to their mean
     std::uint64_t flat_triangles = 0;     ///< that show no texel
     std::uint64_t outside_triangles = 0;  ///< that reach out of the map
-    std::uint64_t misses = 0;             ///< receivers that met nothing of the high detail
+    std::uint64_t misses = 0;             ///< texels' points that met nothing of the high detail
     std::uint64_t surfels = 0;
     std::optional<double> residual;  ///< of the disk engine's correction
     std::vector<Trial> trials;       ///< of bake_map_to_error()

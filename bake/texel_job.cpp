@@ -62,8 +62,9 @@ void add_notes(const BakeReport& report, std::uint64_t triangles, std::vector<st
         notes.push_back(count_text(texels.outside_triangles, "triangle") +
                         " reach out of the map: it repeats there");
     if (texels.misses > 0)
-        notes.push_back(std::to_string(texels.misses) + " of " + std::to_string(report.receivers) +
-                        " points meet nothing of the high mesh within the cage");
+        notes.push_back(std::to_string(texels.misses) + " points of " +
+                        std::to_string(texels.covered) +
+                        " texels meet nothing of the high mesh within the cage");
 }
 
 /// The fine mesh, where one was asked for, and how the coarse one looks at it.
