@@ -24,7 +24,7 @@ constexpr int kMostSteps = 64;
 /// Rounding of a share of a triangle.
 constexpr double kLeastShare = -1e-9;
 constexpr std::size_t kSeamGrain = 256;  // seams of one task
-constexpr GradientLimits kStitchLimits{.residual = 1e-4, .steps = 40};
+constexpr GradientLimits kStitchLimits{.residual = 1e-3, .steps = 40};
 
 double cross(glm::dvec2 a, glm::dvec2 b)
 {
@@ -341,6 +341,9 @@ std::vector<double> change_to_join(const SeamSamples& samples, const std::vector
     std::vector<double> right = normal_product(values);
     for (double& value : right)
         value = -value;
+    std::vector<double> diagonal = samples.squares(weights);
+    for (double& value : diagonal)
+        value += kStitchWeight;
     return conjugate_gradients(
         [&](const std::vector<double>& of) {
             std::vector<double> image = normal_product(of);
@@ -348,7 +351,7 @@ std::vector<double> change_to_join(const SeamSamples& samples, const std::vector
                 image[k] += kStitchWeight * of[k];
             return image;
         },
-        std::move(right), kStitchLimits, progress);
+        diagonal, std::move(right), kStitchLimits, progress);
 }
 
 float& value_at(std::span<Map> pages, std::uint64_t texel, std::uint32_t channel)

@@ -58,23 +58,26 @@ void fit_texels(Map& visibility, std::span<const std::uint8_t> known,
         values.push_back(visibility.values[texel]);
         held.push_back(known[texel] != 0 && marked[texel] == 0 ? 1.0 : kFitHold);
     }
-    const auto weighted = [&](std::size_t s, double residual) {
-        return double{samples[s].share} / (kFitSide * kFitSide) * residual;
-    };
+    std::vector<double> weights;
+    for (const TexelSample& sample : samples)
+        weights.push_back(double{sample.share} / (kFitSide * kFitSide));
     std::vector<double> residuals = rows.times(values);
     for (std::size_t s = 0; s < samples.size(); ++s)
-        residuals[s] = weighted(s, double{samples[s].visibility} - residuals[s]);
+        residuals[s] = weights[s] * (double{samples[s].visibility} - residuals[s]);
+    std::vector<double> diagonal = rows.squares(weights);
+    for (std::size_t k = 0; k < diagonal.size(); ++k)
+        diagonal[k] += held[k];
     const std::vector<double> change = conjugate_gradients(
         [&](const std::vector<double>& of) {
             std::vector<double> shown = rows.times(of);
             for (std::size_t s = 0; s < shown.size(); ++s)
-                shown[s] = weighted(s, shown[s]);
+                shown[s] *= weights[s];
             std::vector<double> sums = rows.transposed_times(shown);
             for (std::size_t k = 0; k < sums.size(); ++k)
                 sums[k] += held[k] * of[k];
             return sums;
         },
-        rows.transposed_times(residuals), kTexelLimits);
+        diagonal, rows.transposed_times(residuals), kTexelLimits);
     for (std::size_t k = 0; k < texels.size(); ++k)
         visibility.values[texels[k]] =
             static_cast<float>(std::clamp(values[k] + change[k], 0.0, 1.0));

@@ -1,6 +1,7 @@
 #include "image/map.h"
 
 #include "surfels/errors.h"
+#include "surfels/for_all.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,19 +16,53 @@ std::uint32_t repeated(double texel, std::uint32_t side)
     return place < side ? place : 0;
 }
 
-/// Texels without a value beside one of `front`, each once, rising.
-std::vector<std::size_t> ring_around(const Map& map, const std::vector<std::uint8_t>& known,
-                                     const std::vector<std::size_t>& front)
+/// Of a texel for fill_around().
+enum : std::uint8_t { kWithout, kKnown, kNext };
+
+/// Known texels beside one without a value, and the mean of all known ones; none: empty.
+struct Rim {
+    std::vector<std::size_t> texels;
+    std::vector<float> mean;
+};
+
+Rim rim_of(const Map& map, const std::vector<std::uint8_t>& known)
 {
-    std::vector<std::size_t> ring;
-    for (const std::size_t texel : front)
-        for_each_around(map, texel, [&](std::size_t neighbour) {
-            if (known[neighbour] == 0)
-                ring.push_back(neighbour);
-        });
-    std::ranges::sort(ring);
-    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-    return ring;
+    struct Row {
+        std::vector<std::size_t> rim;
+        std::vector<double> sums;
+        std::size_t count = 0;
+    };
+    std::vector<Row> rows(map.height);
+    constexpr std::size_t kRowGrain = 4;
+    for_all(rows.size(), kRowGrain, [&](std::size_t y) {
+        Row& row = rows[y];
+        row.sums.assign(map.channels, 0.0);
+        for (std::size_t texel = y * map.width; texel < (y + 1) * map.width; ++texel) {
+            if (known[texel] == kWithout)
+                continue;
+            ++row.count;
+            for (std::uint32_t c = 0; c < map.channels; ++c)
+                row.sums[c] += map.values[texel * map.channels + c];
+            bool is_rim = false;
+            for_each_around(map, texel,
+                            [&](std::size_t other) { is_rim |= known[other] == kWithout; });
+            if (is_rim)
+                row.rim.push_back(texel);
+        }
+    });
+    Rim rim;
+    std::vector<double> sums(map.channels, 0.0);
+    std::size_t count = 0;
+    for (const Row& row : rows) {
+        rim.texels.insert(rim.texels.end(), row.rim.begin(), row.rim.end());
+        count += row.count;
+        for (std::uint32_t c = 0; c < map.channels; ++c)
+            sums[c] += row.sums[c];
+    }
+    for (const double sum : sums)
+        if (count > 0)
+            rim.mean.push_back(static_cast<float>(sum / static_cast<double>(count)));
+    return rim;
 }
 
 }  // namespace
@@ -69,47 +104,41 @@ void round_to_depth(Map& map, MapDepth depth, bool half_is_whole)
 void fill_around(Map& map, std::vector<std::uint8_t>& known, std::uint32_t rings)
 {
     SURFELAO_CHECK(known.size() == map.texels());
-    std::vector<std::size_t> front;
-    std::vector<double> mean(map.channels, 0.0);
-    double count = 0.0;
-    for (std::size_t texel = 0; texel < known.size(); ++texel) {
-        if (known[texel] == 0)
-            continue;
-        ++count;
-        for (std::uint32_t c = 0; c < map.channels; ++c)
-            mean[c] += map.values[texel * map.channels + c];
-        bool is_rim = false;
-        for_each_around(map, texel, [&](std::size_t other) { is_rim |= known[other] == 0; });
-        if (is_rim)
-            front.push_back(texel);
-    }
-    if (count == 0.0)
+    auto [front, mean] = rim_of(map, known);
+    if (mean.empty())
         return;
     for (std::uint32_t ring = 0; ring < rings && !front.empty(); ++ring) {
-        front = ring_around(map, known, front);
-        for (const std::size_t texel : front) {
-            double neighbours = 0.0;
-            std::vector<double> sums(map.channels, 0.0);
-            for_each_around(map, texel, [&](std::size_t other) {
-                if (known[other] == 0)
-                    return;
-                ++neighbours;
-                for (std::uint32_t c = 0; c < map.channels; ++c)
-                    sums[c] += map.values[other * map.channels + c];
-            });
-            for (std::uint32_t c = 0; c < map.channels; ++c)
-                map.values[texel * map.channels + c] = static_cast<float>(sums[c] / neighbours);
-        }
+        std::vector<std::size_t> next;
         for (const std::size_t texel : front)
-            known[texel] = 1;
+            for_each_around(map, texel, [&](std::size_t other) {
+                if (known[other] != kWithout)
+                    return;
+                known[other] = kNext;
+                next.push_back(other);
+            });
+        for_all(next.size(), [&](std::size_t i) {
+            for (std::uint32_t c = 0; c < map.channels; ++c) {
+                double sum = 0.0, count = 0.0;
+                for_each_around(map, next[i], [&](std::size_t other) {
+                    if (known[other] != kKnown)
+                        return;
+                    ++count;
+                    sum += map.values[other * map.channels + c];
+                });
+                map.values[next[i] * map.channels + c] = static_cast<float>(sum / count);
+            }
+        });
+        for (const std::size_t texel : next)
+            known[texel] = kKnown;
+        front = std::move(next);
     }
-    for (std::size_t texel = 0; texel < known.size(); ++texel) {
-        if (known[texel] != 0)
-            continue;
-        for (std::uint32_t c = 0; c < map.channels; ++c)
-            map.values[texel * map.channels + c] = static_cast<float>(mean[c] / count);
-        known[texel] = 1;
-    }
+    for_all(known.size(), [&](std::size_t texel) {
+        if (known[texel] != kWithout)
+            return;
+        std::ranges::copy(mean,
+                          map.values.begin() + static_cast<std::ptrdiff_t>(texel * map.channels));
+        known[texel] = kKnown;
+    });
 }
 
 }  // namespace surfelao

@@ -22,10 +22,12 @@ struct GradientLimits {
     int steps;
 };
 
-/// x of A x = right, from 0 on. product: A times a vector, A symmetric and positive definite. A
-/// product and three loops over the vector a step. Throws Cancelled.
+/// x of A x = right, from 0 on. product: A times a vector, A symmetric and positive definite;
+/// diagonal: A's, the preconditioner. A product and three loops over the vector a step. Throws
+/// Cancelled.
 template <class Product>
 [[nodiscard]] std::vector<double> conjugate_gradients(const Product& product,
+                                                      const std::vector<double>& diagonal,
                                                       std::vector<double> right,
                                                       const GradientLimits& limits,
                                                       const Progress& progress = {})
@@ -33,8 +35,16 @@ template <class Product>
     const auto dot = [](const std::vector<double>& a, const std::vector<double>& b) {
         return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
     };
-    std::vector<double> x(right.size(), 0.0), rest = std::move(right), way = rest;
-    const double first = dot(rest, rest);
+    const auto length_of = [&](const std::vector<double>& rest) {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < rest.size(); ++k)
+            sum += rest[k] * rest[k] / diagonal[k];
+        return sum;
+    };
+    std::vector<double> x(right.size(), 0.0), rest = std::move(right), way(rest.size());
+    for (std::size_t k = 0; k < way.size(); ++k)
+        way[k] = rest[k] / diagonal[k];
+    const double first = length_of(rest);
     double length = first;
     for (int i = 0; i < limits.steps && length > limits.residual * limits.residual * first; ++i) {
         if (progress && !progress(static_cast<double>(i) / limits.steps))
@@ -45,9 +55,9 @@ template <class Product>
             x[k] += step * way[k];
             rest[k] -= step * image[k];
         }
-        const double next = dot(rest, rest);
+        const double next = length_of(rest);
         for (std::size_t k = 0; k < way.size(); ++k)
-            way[k] = rest[k] + next / length * way[k];
+            way[k] = rest[k] / diagonal[k] + next / length * way[k];
         length = next;
     }
     return x;

@@ -72,6 +72,19 @@ public:
         return of_columns;
     }
 
+    /// One number per column: of its entries squared, each times what its row has.
+    [[nodiscard]] std::vector<double> squares(const std::vector<double>& of_rows) const
+    {
+        std::vector<double> of_columns(columns_.size());
+        for_all(of_columns.size(), [&](std::size_t column) {
+            double sum = 0.0;
+            for (const std::uint32_t i : (*by_column_)[column])
+                sum += weights_[i] * weights_[i] * of_rows[i / kEntries];
+            of_columns[column] = sum;
+        });
+        return of_columns;
+    }
+
 private:
     /// Which columns occur, and how many of them before each.
     class Ranks {
