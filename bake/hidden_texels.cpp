@@ -13,31 +13,31 @@ namespace {
 
 constexpr std::size_t kReceiverGrain = 256;  // of one task
 
-constexpr int kHalf = kPacket / 2;
+/// Rays that tell by themselves where they agree, one in each quarter of the hemisphere.
+constexpr std::size_t kFirstRays = 4;
 
-/// What rays `begin` to `begin` + kHalf - 1 of each of the asked receivers meet.
-std::vector<ClosestHit> half_of_hits(const RayScene& scene, std::span<const Receiver> receivers,
-                                     std::span<const std::uint32_t> asked, int begin,
-                                     float max_distance)
+/// What rays `begin` to `end` - 1 of each of the asked receivers meet.
+std::vector<ClosestHit> hits_of(const RayScene& scene, std::span<const Receiver> receivers,
+                                std::span<const std::uint32_t> asked, std::size_t begin,
+                                std::size_t end, float max_distance)
 {
     const SobolPoints points = sobol_points_by_cell(kPacket);
-    std::vector<Ray> rays(kHalf * asked.size());
+    const std::size_t count = end - begin;
+    std::vector<Ray> rays(count * asked.size());
     for_all(asked.size(), kReceiverGrain, [&](std::size_t i) {
         const Receiver& receiver = receivers[asked[i]];
         DirectionPacket directions;
         fill_directions(points, 0, hemisphere_over(receiver.normal, 0, asked[i]), directions);
-        for (int k = 0; k < kHalf; ++k)
-            rays[kHalf * i + static_cast<std::size_t>(k)] = {
-                receiver.position,
-                {directions.x[begin + k], directions.y[begin + k], directions.z[begin + k]},
-                max_distance};
+        for (std::size_t k = 0; k < count; ++k) {
+            // four points behind each other lie in one quarter
+            const std::size_t point =
+                (begin + k) % kFirstRays * (kPacket / kFirstRays) + (begin + k) / kFirstRays;
+            rays[count * i + k] = {receiver.position,
+                                   {directions.x[point], directions.y[point], directions.z[point]},
+                                   max_distance};
+        }
     });
     return closest_hits(scene, rays);
-}
-
-std::span<const ClosestHit> half_of(const std::vector<ClosestHit>& hits, std::size_t number)
-{
-    return std::span(hits).subspan(kHalf * number, kHalf);
 }
 
 }  // namespace
@@ -83,21 +83,32 @@ std::vector<std::uint8_t> inside_bodies(const Geometry& geometry, const RayScene
     std::vector<std::uint8_t> inside(receivers.size(), 0);
     std::vector<std::uint32_t> asked(receivers.size());
     std::iota(asked.begin(), asked.end(), 0u);
-    const std::vector<ClosestHit> first = half_of_hits(scene, receivers, asked, 0, max_distance);
-    // who meets no inner side yet will not meet them mostly
-    std::vector<std::uint32_t> may_be;
-    for (const std::uint32_t i : asked)
-        if (std::ranges::any_of(half_of(first, i), &ClosestHit::is_back))
-            may_be.push_back(i);
-    const std::vector<ClosestHit> second =
-        half_of_hits(scene, receivers, may_be, kHalf, max_distance);
+    const std::vector<ClosestHit> first =
+        hits_of(scene, receivers, asked, 0, kFirstRays, max_distance);
+    std::vector<std::uint32_t> agreed, others;  // that may be inside
+    for (const std::uint32_t i : asked) {
+        const auto backs = std::ranges::count_if(
+            std::span(first).subspan(kFirstRays * i, kFirstRays), &ClosestHit::is_back);
+        if (backs > 0)
+            (backs == kFirstRays ? agreed : others).push_back(i);
+    }
+    constexpr std::size_t kRest = kPacket - kFirstRays;
+    const std::vector<ClosestHit> rest =
+        hits_of(scene, receivers, others, kFirstRays, kPacket, max_distance);
     const auto mark = [&](const auto& is_inner) {
-        for (std::size_t k = 0; k < may_be.size(); ++k)
-            inside[may_be[k]] = std::ranges::count_if(half_of(first, may_be[k]), is_inner) +
-                                            std::ranges::count_if(half_of(second, k), is_inner) >
-                                        kHalf
-                                    ? 1
-                                    : 0;
+        const auto inner_of_first = [&](std::uint32_t i) {
+            return std::ranges::count_if(std::span(first).subspan(kFirstRays * i, kFirstRays),
+                                         is_inner);
+        };
+        for (const std::uint32_t i : agreed)
+            inside[i] = 2 * inner_of_first(i) > std::ptrdiff_t{kFirstRays} ? 1 : 0;
+        for (std::size_t k = 0; k < others.size(); ++k)
+            inside[others[k]] =
+                2 * (inner_of_first(others[k]) +
+                     std::ranges::count_if(std::span(rest).subspan(kRest * k, kRest), is_inner)) >
+                        kPacket
+                    ? 1
+                    : 0;
     };
     mark([](const ClosestHit& hit) { return hit.is_back; });
     if (std::ranges::count(inside, 0) == std::ssize(inside))

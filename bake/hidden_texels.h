@@ -36,9 +36,10 @@ inline constexpr std::uint32_t kHiddenRings = 6;
 [[nodiscard]] std::vector<std::uint8_t> texels_maybe_hidden(const Map& visibility,
                                                             std::span<const std::uint8_t> known);
 
-/// Nonzero where a receiver stands inside of a body: more than half of 16 rays over its hemisphere,
-/// within the distance at which surfaces occlude, first meet the inner side of one that is closed
-/// and faces outward (OccluderSide::back of surfels/topology.h). Of all others nothing is guessed.
+/// Nonzero where a receiver stands inside of a body: more than half of 16 rays over its hemisphere
+/// (of four where these agree), within the distance at which surfaces occlude, first meet the inner
+/// side of one that is closed and faces outward (OccluderSide::back of surfels/topology.h). Of all
+/// others nothing is guessed.
 /// scene: of the geometry. All cores; O(n) for the topology where many inner sides are met.
 [[nodiscard]] std::vector<std::uint8_t> inside_bodies(const Geometry& geometry,
                                                       const RayScene& scene,

@@ -104,9 +104,10 @@ void round_to_depth(Map& map, MapDepth depth, bool half_is_whole)
 void fill_around(Map& map, std::vector<std::uint8_t>& known, std::uint32_t rings)
 {
     SURFELAO_CHECK(known.size() == map.texels());
-    auto [front, mean] = rim_of(map, known);
-    if (mean.empty())
+    const Rim rim = rim_of(map, known);
+    if (rim.mean.empty())
         return;
+    std::vector<std::size_t> front = rim.texels;
     for (std::uint32_t ring = 0; ring < rings && !front.empty(); ++ring) {
         std::vector<std::size_t> next;
         for (const std::size_t texel : front)
@@ -135,7 +136,7 @@ void fill_around(Map& map, std::vector<std::uint8_t>& known, std::uint32_t rings
     for_all(known.size(), [&](std::size_t texel) {
         if (known[texel] != kWithout)
             return;
-        std::ranges::copy(mean,
+        std::ranges::copy(rim.mean,
                           map.values.begin() + static_cast<std::ptrdiff_t>(texel * map.channels));
         known[texel] = kKnown;
     });
