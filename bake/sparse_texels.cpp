@@ -40,18 +40,18 @@ public:
                !(i + 1 < texels_.size() && is_same(texels_[i + 1]));
     }
 
-    [[nodiscard]] bool is_on(std::size_t i, std::uint32_t distance) const
+    /// Asked first.
+    [[nodiscard]] bool is_first(std::size_t i) const
     {
-        return texels_[i].x % distance == 0 && texels_[i].y % distance == 0;
+        return (texels_[i].x % 2 == 0 && texels_[i].y % 2 == 0) || !is_single(i);
     }
 
-    /// The mean of those at this distance around the texel, which is on the lattice of the distance
-    /// and not on that of twice the distance; nothing where it has to be asked itself.
-    [[nodiscard]] std::optional<Occlusion> mean_around(std::size_t i, std::int64_t distance,
+    /// The mean of those around a texel that is not asked first; nothing where it has to be asked
+    /// itself.
+    [[nodiscard]] std::optional<Occlusion> mean_around(std::size_t i,
                                                        std::span<const Occlusion> answers) const
     {
-        const std::int64_t right = texels_[i].x % (2 * distance) != 0 ? distance : 0,
-                           down = texels_[i].y % (2 * distance) != 0 ? distance : 0;
+        const std::int64_t right = texels_[i].x % 2, down = texels_[i].y % 2;
         // opposite ones one behind the other
         const std::uint32_t around[] = {at(i, -right, -down), at(i, right, down),
                                         at(i, right, -down), at(i, -right, down)};
@@ -115,39 +115,34 @@ std::vector<Occlusion> sparse_answers(std::span<const Texel> texels,
         return {};
     const Lattice lattice(texels, receivers, width);
     std::vector<Occlusion> answers(texels.size());
-    enum class State : std::uint8_t { open, wanted, known };
-    std::vector<State> states(texels.size(), State::open);
-    const auto ask_wanted = [&] {
+    std::vector<std::uint8_t> is_asked(texels.size(), 0);
+    const auto ask_some = [&](std::uint8_t round) {
         std::vector<std::size_t> numbers;
-        std::vector<Receiver> wanted;
+        std::vector<Receiver> asked;
         for (std::size_t i = 0; i < texels.size(); ++i) {
-            if (states[i] != State::wanted)
+            if (is_asked[i] != round)
                 continue;
             numbers.push_back(i);
-            wanted.push_back(receivers[i]);
-            states[i] = State::known;
+            asked.push_back(receivers[i]);
         }
-        if (wanted.empty())
+        if (asked.empty())
             return;
-        const std::vector<Occlusion> found = ask(wanted);
+        const std::vector<Occlusion> found = ask(asked);
         for (std::size_t k = 0; k < numbers.size(); ++k)
             answers[numbers[k]] = found[k];
     };
+    for_all(texels.size(), [&](std::size_t i) { is_asked[i] = lattice.is_first(i) ? 1 : 0; });
+    ask_some(1);
     for_all(texels.size(), [&](std::size_t i) {
-        if (lattice.is_on(i, kSparseStride) || !lattice.is_single(i))
-            states[i] = State::wanted;
+        if (is_asked[i] != 0)
+            return;
+        const std::optional<Occlusion> mean = lattice.mean_around(i, answers);
+        if (mean)
+            answers[i] = *mean;
+        else
+            is_asked[i] = 2;
     });
-    ask_wanted();
-    for (std::uint32_t distance = kSparseStride / 2; distance > 0; distance /= 2) {
-        for_all(texels.size(), [&](std::size_t i) {
-            if (states[i] == State::known || !lattice.is_on(i, distance))
-                return;
-            const std::optional<Occlusion> mean = lattice.mean_around(i, distance, answers);
-            states[i] = mean ? State::known : State::wanted;
-            answers[i] = mean.value_or(answers[i]);
-        });
-        ask_wanted();
-    }
+    ask_some(2);
     return answers;
 }
 
